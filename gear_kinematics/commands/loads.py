@@ -11,6 +11,7 @@ from gear_kinematics.commands.output import complain
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.measurement.loads.document import WORK, document
 from gear_kinematics.measurement.loads.recorded import Task
+from gear_kinematics.parameters import default_config
 from gear_kinematics.report.document import Verdict
 
 
@@ -52,7 +53,8 @@ def run(options: argparse.Namespace) -> ExitCode:
             options.joint is None,
             options.cam_rating,
             options.slot_friction,
-            options.debug,
+            by_default=arguments.config_path(options, bag) == default_config(),
+            debug=options.debug,
         )
         for bag in found.bags
     ]

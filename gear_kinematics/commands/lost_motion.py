@@ -116,7 +116,12 @@ def _compared(
     """Return the reports, at a common torque if they are compared, and what that tells."""
     groups, apart = None, []
     if options.group:
-        patterns, groups = options.group, grouped([one.name for one in reports], options.group)
+        patterns = options.group
+        try:
+            groups = grouped([report.name for report in reports], patterns)
+        except ValueError as error:  # what was measured is worth reporting
+            complain(f'{error} among the usable recordings; nothing is compared')
+            return reports, None
         members = {number for group in groups for number in group.members}
         apart = [report for number, report in enumerate(reports) if number not in members]
         reports = [reports[number] for number in sorted(members)]
@@ -127,6 +132,4 @@ def _compared(
         return reports, None
     reports = at_common_torque(reports)
     found = compared(reports, groups)
-    if options.plot and not (found and found.section.figure):
-        raise ValueError('--plot: the recordings have no torque ramps in common')
     return [*reports, *apart], found

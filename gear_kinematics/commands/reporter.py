@@ -73,6 +73,7 @@ class Reporter:
             raise ValueError(f'only one report can go to stdout, not {" and ".join(to_stdout)}')
         check_targets(options, given)
         self._silent = bool(to_stdout)
+        self._of_comparison = compared and sections > 1
         if options.plot:
             if sections > 1 and not compared:
                 raise ValueError('--plot takes one recording')
@@ -89,6 +90,9 @@ class Reporter:
             document: the report.
             configs: the parameter files that were used.
             printed: False where one line on stderr has said it all.
+
+        Raises:
+            ValueError: if there is nothing to plot; everything else is written by then.
         """
         plot: str | None = self._options.plot
         document = replace(document, origin=self._origin(configs))
@@ -96,13 +100,15 @@ class Reporter:
             with closed_pipe_ignored():
                 shown = document.of_failed() if self._options.quiet else document
                 render(shown, Console(), brief=self._brief)
-        if plot:
-            figure = document.sections[-1].image  # of several, the last compares the others
-            if not figure:
-                raise ValueError(f'{plot}: there is nothing to plot')
-            write_file(plot, to_image(figure, Path(plot)))
         for form, target in self._forms.items():
             write_text(target, _FORMS[form](document))
+        if plot:
+            last = document.sections[-1]
+            if self._of_comparison and not last.leads:
+                raise ValueError('--plot: the recordings have no torque ramps in common')
+            if not (figure := last.image):
+                raise ValueError(f'{plot}: there is nothing to plot')
+            write_file(plot, to_image(figure, Path(plot)))
 
     def _origin(self, configs: Iterable[Path]) -> Origin:
         """Describe this moment, the command and its parameter files, each of them once.

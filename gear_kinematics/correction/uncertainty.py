@@ -81,9 +81,14 @@ class Estimate:
         return student_t(degrees) * self.standard if degrees else math.inf
 
     @property
+    def expanded(self) -> float:
+        """Expanded uncertainty for a decision: infinite where it is not known."""
+        return math.inf if self.uncertainty is None else self.uncertainty
+
+    @property
     def clear(self) -> bool:
-        """Whether the expanded uncertainty, if known, does not exceed the value."""
-        return (self.uncertainty or 0.0) <= abs(self.value)
+        """Whether the expanded uncertainty is known and does not exceed the value."""
+        return self.expanded <= abs(self.value)
 
     def inverse(self) -> 'Estimate':
         """Estimate the reciprocal of the quantity."""

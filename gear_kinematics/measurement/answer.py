@@ -6,15 +6,16 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import NamedTuple
 
-from gear_kinematics.measurement.figures import GearFigures
+from gear_kinematics.measurement.figures import LOST_MOTION_SHARE, GearFigures
 from gear_kinematics.measurement.lost_motion import LostMotion
-from gear_kinematics.measurement.measured import Measured, shown
+from gear_kinematics.measurement.measured import LOST_MOTION, Measured, shown
 from gear_kinematics.measurement.middle_line import Cause
 from gear_kinematics.measurement.wording import ARC_MINUTES, PERCENT, arc_minutes
 from gear_kinematics.report.document import number
 
 _SMALLER = 0.7
 """Share of their amplitude to which smaller ramps are worth recording."""
+_HELD = 'the lost motion cannot be judged: it is read at a torque below the friction'
 
 
 def answer(report: LostMotion) -> str:
@@ -39,24 +40,25 @@ def answer(report: LostMotion) -> str:
 
 
 def _of_ramps(figures: GearFigures) -> str:
-    if figures.hysteresis.value < -(figures.hysteresis.uncertainty or 0.0):
+    width = figures.hysteresis
+    if width.value < 0.0 and (width.uncertainty is None or width.clear):
         return (
-            f'The hysteresis is negative, {arc_minutes(figures.hysteresis)}′, which no gear has: '
+            f'The hysteresis is negative, {arc_minutes(width)}′, which no gear has: '
             'the torque comes later than the angle, as behind a filter or from another clock.'
         )
-    width = f'At zero torque the output rests anywhere within {arc_minutes(figures.hysteresis)}′.'
+    rests = f'At zero torque the output rests anywhere within {arc_minutes(width)}′.'
     backlash, cause = figures.backlash, figures.backlash.cause
     if backlash.high is None:
-        return f'{width} How much of it is play is not known; {cause.value}.'
+        return f'{rests} How much of it is play is not known; {cause.value}.'
     if value := backlash.value:
-        return f'{width} Of it, {arc_minutes(value)}′ is play, the rest friction.'
+        return f'{rests} Of it, {arc_minutes(value)}′ is play, the rest friction.'
     low, high = (number(end * ARC_MINUTES) for end in (backlash.low, backlash.high))
     said = cause.value
     enough = 2.0 * figures.friction.value if figures.friction else math.inf
     if cause in {Cause.BENT, Cause.SOFT} and enough < _SMALLER * figures.ramps[0].amplitude:
         said = f'to separate them, repeat slow ramps to ±{number(enough, 2)} N·m'
     rest = f'the rest friction; {said}.' if said else 'the rest friction.'
-    return f'{width} Of it, at least {low}′ and at most {high}′ is play, {rest}'
+    return f'{rests} Of it, at least {low}′ and at most {high}′ is play, {rest}'
 
 
 # Limits
@@ -85,8 +87,11 @@ class Limits:
     def judge(self, report: LostMotion) -> list[Judgement]:
         """Judge a recording by each limit, at the end of the interval that speaks against it."""
         limits = {name.replace('_', ' '): limit for name, limit in asdict(self).items()}
+        held = report.figures is not None and report.figures.held_by_friction
         return [
-            _judged(figure, limit)
+            Judgement(LOST_MOTION, holds=False, text=_HELD)
+            if held and figure.name == LOST_MOTION
+            else _judged(figure, limit)
             for figure in report.main_figures
             if (limit := limits.get(figure.name)) is not None
         ]
@@ -102,6 +107,11 @@ def _judged(figure: Measured, limit: float) -> Judgement:
     place = 'is within' if holds else 'is beyond' if fails else 'may be beyond'
     value, most = figure.cell.with_unit(), shown(figure.unit, limit).with_unit()
     text = f'the {name} of {value} {place} the limit of {most}'
+    if math.inf in figure.ends:
+        text = (
+            f'the {name} of {value} cannot be shown to hold the limit of {most}: it was measured '
+            'once, so that its uncertainty is not known'
+        )
     return Judgement(name, holds, text)
 
 
@@ -119,6 +129,12 @@ def remarks(report: LostMotion) -> Iterator[str]:
             else 'Inferred, not measured: the angle is that of the motor encoder, with the output '
             'taken to be locked. The figures include the compliance of motor, bench and clamping.'
         )
+        if found.held_by_friction and found.lost_motion and found.friction:
+            yield (
+                f'Lost motion is read at ±{number(LOST_MOTION_SHARE * found.rated_torque)} N·m, '
+                f'below the friction of {number(found.friction.value)} N·m: it does not contain '
+                'the play, and no limit is judged by it.'
+            )
         if len(found.ramps) == 1:
             yield 'All ramps have about one amplitude: small ones would separate play better.'
     if motion := report.transmission:

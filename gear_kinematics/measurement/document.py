@@ -12,7 +12,7 @@ from gear_kinematics.measurement.curves import panels
 from gear_kinematics.measurement.figures import GearFigures
 from gear_kinematics.measurement.loops import Ramps
 from gear_kinematics.measurement.lost_motion import LostMotion
-from gear_kinematics.measurement.measured import Measured, shown
+from gear_kinematics.measurement.measured import LOST_MOTION, Measured, shown
 from gear_kinematics.measurement.wording import plain
 from gear_kinematics.report.document import (
     Case,
@@ -123,7 +123,7 @@ def _tables(report: LostMotion) -> Iterator[Table]:
             Measured('transmission accuracy', 'rad', motion.forward, ' forward'),
             Measured('transmission accuracy', 'rad', motion.backward, ' backward'),
             Measured('backward minus forward', 'rad', motion.reversals),
-            Measured('lost motion', 'rad', motion.lost_motion, ' on reversals'),
+            Measured(LOST_MOTION, 'rad', motion.lost_motion, ' on reversals'),
             Measured(
                 'delay of the output encoder', 's' if both and both.timed else 'rows', motion.delay
             ),

@@ -10,7 +10,7 @@ import numpy as np
 
 from gear_kinematics.correction.uncertainty import Component, Estimate, resolution
 from gear_kinematics.measurement.loops import HalfLoop, Loop, RampError, Ramps
-from gear_kinematics.measurement.measured import HYSTERESIS, Measured
+from gear_kinematics.measurement.measured import HYSTERESIS, LOST_MOTION, Measured
 from gear_kinematics.measurement.middle_line import (
     MOST_FRICTION,
     Backlash,
@@ -71,13 +71,19 @@ class GearFigures:
     overall: Estimate | None
     """N·m/rad, the slope of a straight line through each whole side of the loop."""
 
+    @property
+    def held_by_friction(self) -> bool:
+        """Whether lost motion is read at a torque below the friction, which hides the play."""
+        reading = LOST_MOTION_SHARE * self.rated_torque
+        return self.friction is not None and reading < self.friction.value
+
     def listed(self) -> Iterator[Measured]:
         """Yield the figures in the order of reports."""
         at = number(LOST_MOTION_SHARE * self.rated_torque)
         yield Measured(HYSTERESIS, 'rad', self.hysteresis, ' at zero torque')
         yield Measured('backlash', 'rad', self.backlash)
         yield Measured('friction', 'N·m', self.friction)
-        yield Measured('lost motion', 'rad', self.lost_motion, f' at ±{at} N·m')
+        yield Measured(LOST_MOTION, 'rad', self.lost_motion, f' at ±{at} N·m')
         for stiffness in self.stiffness:
             ends = f'{number(stiffness.low)} to {number(stiffness.high)} N·m'
             yield Measured(f'stiffness {ends}', 'N·m/rad', stiffness.slope)

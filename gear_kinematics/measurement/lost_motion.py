@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.figures import GearFigures, gear_figures
 from gear_kinematics.measurement.loops import RampError, find_ramps
-from gear_kinematics.measurement.measured import HYSTERESIS, Measured
+from gear_kinematics.measurement.measured import HYSTERESIS, LOST_MOTION, Measured
 from gear_kinematics.measurement.ratio import check_ratio
 from gear_kinematics.measurement.recording import Recording
 from gear_kinematics.measurement.transmission import TransmissionFigures, transmission_figures
@@ -44,7 +44,7 @@ class LostMotion:
             Measured('backlash', 'rad', found.backlash if found else None),
             Measured('friction', 'N·m', found.friction if found else None),
             Measured(
-                'lost motion',
+                LOST_MOTION,
                 'rad',
                 moving.lost_motion if moving else None,
                 '' if found else ' on reversals',

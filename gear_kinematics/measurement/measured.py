@@ -10,6 +10,8 @@ from gear_kinematics.report.document import Cell, Tone, number
 
 HYSTERESIS = 'hysteresis'
 """The name of the figure that is judged first."""
+LOST_MOTION = 'lost motion'
+"""The name of the figure at a small torque, or on reversals."""
 SHOWN = {'rad': ('′', ARC_MINUTES), 's': ('ms', 1e3)}
 """Units in which others are shown, and their factors."""
 
@@ -39,13 +41,12 @@ class Measured(NamedTuple):
 
     @property
     def ends(self) -> tuple[float, ...]:
-        """The ends of the interval that contains it, SI; none if that is not known."""
+        """Ends of the interval that contains it, SI; infinite without a ±, none if not known."""
         if isinstance(self.value, Backlash):
             return () if self.value.high is None else (self.value.low, self.value.high)
         if not self.value:
             return ()
-        spread = self.value.uncertainty or 0.0
-        return self.value.value - spread, self.value.value + spread
+        return self.value.value - self.value.expanded, self.value.value + self.value.expanded
 
 
 def shown(unit: str, *values: float) -> Cell:

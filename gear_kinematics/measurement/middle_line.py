@@ -205,7 +205,9 @@ def backlash_of(
         loaded: stiffness of the largest ramps, N·m/rad; 0 if unknown.
         light: torque, N·m, that ramps with a soft middle certainly reach.
     """
-    most = hysteresis.value + (hysteresis.uncertainty or 0.0)
+    if hysteresis.uncertainty is None:
+        return Backlash(0.0, None, Cause.REPEATS)
+    most = hysteresis.value + hysteresis.expanded
     if not lines:
         return Backlash(0.0, most, Cause.REPEATS)
     if _friction(lines) > MOST_FRICTION * ramps.amplitude:
@@ -222,28 +224,28 @@ def backlash_of(
     stiffness = 1.0 / float(np.mean(side[:, 1]))
     reading = resolution(step) + resolution(_spacing(ramps)) / stiffness
     whole, bend = _mean(side[:, 0]), _mean(far[:, 0] - near[:, 0])
-    bent = abs(bend.value) > _expanded(bend) + reading
+    bent = abs(bend.value) > bend.expanded + reading
     if bent:
         beyond = _mean(near[:, 0] - _EXTRAPOLATED * (far[:, 0] - near[:, 0]))
-        guesses = [(e.value, _expanded(e)) for e in (whole, _mean(near[:, 0]), beyond)]
+        guesses = [(e.value, e.expanded) for e in (whole, _mean(near[:, 0]), beyond)]
     else:
-        guesses = [(whole.value, math.hypot(_expanded(whole), _HIDDEN * _expanded(bend)))]
+        guesses = [(whole.value, math.hypot(whole.expanded, _HIDDEN * bend.expanded))]
     # A gear that speeds up in a gap takes more torque there, as if it were loaded at its ends.
     more = _mean([line.friction_of_gap() for line in lines])
     moved = reading
-    if more.value > _expanded(more):
+    if more.value > more.expanded:
         moved += _MOVED_BY_GAP * more.value / stiffness
     low = min(value - spread for value, spread in guesses) - moved
     high = max(value + spread for value, spread in guesses) + moved
     soft = stiffness * _MOST_COMPLIANT < loaded
     if soft:
         wide = _mean([line.width(light) for line in lines])
-        low, high = 0.0, max(high, wide.value + _expanded(wide))
+        low, high = 0.0, max(high, wide.value + wide.expanded)
     high = min(max(high, step), most)
     if low <= 0.0:
         return Backlash(0.0, high, Cause.SOFT if soft else Cause.BENT if bent else Cause.NONE)
     within = _mean([line.stiffness_within(_MIDDLE * whole.value) for line in lines])
-    if within.value + _expanded(within) > _DEAD * stiffness:
+    if within.value + within.expanded > _DEAD * stiffness:
         return Backlash(0.0, high, Cause.SOFT)
     return Backlash(min(low, high), high, Cause.BENT if bent else Cause.NONE)
 
@@ -252,7 +254,8 @@ def reconciled(found: Sequence[Backlash | None]) -> Backlash:
     """The backlash that ramps of ascending amplitudes leave room for; a gear has only one."""
     known = [(own.high, own.low, own.cause) for own in found if own and own.high is not None]
     if not known:
-        return Backlash(0.0, None, Cause.FRICTION)
+        cause = next((own.cause for own in found if own), Cause.FRICTION)
+        return Backlash(0.0, None, cause)
     highs, lows, causes = zip(*known, strict=True)
     if Cause.SOFT in causes:
         # A soft middle, which small ramps have not left, is play to larger ones.
@@ -294,7 +297,3 @@ def _reach(lines: Sequence[MiddleLine], ramps: Ramps) -> float:
 
 def _mean(values: Sequence[float] | Array) -> Estimate:
     return Estimate.of_mean([float(value) for value in values])
-
-
-def _expanded(estimate: Estimate) -> float:
-    return estimate.uncertainty or 0.0

@@ -72,8 +72,7 @@ class RatioEstimate:
 
     def fits(self, ratio: Fraction) -> bool:
         """Return whether this may be the true ratio."""
-        spread = self.measured.uncertainty or 0.0
-        return abs(self.measured.value - ratio) <= _MAX_DISTANCE * spread
+        return abs(self.measured.value - ratio) <= _MAX_DISTANCE * self.measured.expanded
 
     @property
     def plus_minus(self) -> str:
@@ -168,10 +167,10 @@ def estimate_ratio(rotor: Array, output: Array, time: Array | None = None) -> Ra
         Component((lagging.terms[0] - fit.terms[0]) / travel / math.sqrt(3.0)),
     )
     measured = Estimate(slope, *combined(parts), _BLOCKS)
-    if not _MAX_DISTANCE * (measured.uncertainty or 0.0) < abs(slope):
+    if not _MAX_DISTANCE * measured.expanded < abs(slope):
         raise RecordingError('the output does not follow the rotor, or turns too little')
     measured = measured.inverse()
-    if abs(measured.value) + (measured.uncertainty or 0.0) < 1.0:
+    if abs(measured.value) + measured.expanded < 1.0:
         raise RecordingError('the output turns more than the rotor: exchange the two')
     return _judged(measured, math.degrees(abs(slope) * travel))
 
@@ -246,7 +245,7 @@ def _noise(residual: Array) -> float:
 
 def _judged(measured: Estimate, turned: float) -> RatioEstimate:
     """Take the simplest fraction that may be the ratio, or say by how many degrees to turn."""
-    value, spread = measured.value, measured.uncertainty or 0.0
+    value, spread = measured.value, measured.expanded
     around = _MAX_DISTANCE * spread
     low, high = Fraction(value - around), Fraction(value + around)
     simplest = simplest_fraction(low, high)

@@ -100,7 +100,7 @@ def _ratio_of_sums(above: Array, below: Array) -> Estimate | None:
 
 def _is_near(found: Estimate, other: float) -> bool:
     """Whether another value is no clear deviation."""
-    return abs(found.value - other) <= _CLEAR_DEVIATION * (found.uncertainty or 0.0)
+    return abs(found.value - other) <= _CLEAR_DEVIATION * found.expanded
 
 
 def _written(found: Estimate) -> str:
@@ -133,7 +133,7 @@ def _another_ratio(gear: Gear, slope: Estimate) -> str:
             'the sign is flipped: the recorded output turns the other way (rotor_direction?), '
             f'with a ratio of {ratio}'
         )
-    spread = _CLEAR_DEVIATION * (slope.uncertainty or 0.0)
+    spread = _CLEAR_DEVIATION * slope.expanded
     if isinstance(gear, Mechanism) and (pair := _tooth_pair(gear, abs(slope.value), spread)):
         ring, satellite = pair
         flipped = ' with the sign flipped' if slope.value > 0.0 else ''

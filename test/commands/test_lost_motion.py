@@ -150,10 +150,6 @@ def page_of(path):
     [
         (['nowhere.csv'], 'nowhere.csv: No such file'),
         (['nowhere'], 'nowhere: no such file or folder'),
-        (
-            ['{recording}', '{motion}', '--plot', 'x.png'],
-            '--plot: the recordings have no torque ramps in common',
-        ),
         (['{recording}', '--plot', 'x.txt'], 'x.txt: the suffix must be png or'),
         (['{recording}', '--json', '-', '--html', '-'], 'only one report can go to stdout'),
         (['{motion}', '--rotor-column', 'phi'], "no column 'phi'; there are: output, rotor"),
@@ -272,6 +268,30 @@ def test_groups_are_compared_in_a_sentence_in_json_and_in_a_figure(worn, tmp_pat
     assert plot.read_bytes().startswith(b'\x89PNG')
     loops, *_ = page_of(page)[1]
     assert len(loops['data']) == len(worn)
+
+
+def test_what_was_measured_is_reported_where_a_group_is_unusable(worn, tmp_path, capsys):
+    bad, report = tmp_path / '0303_bad.csv', tmp_path / 'x.json'
+    bad.write_text('nothing\n', 'utf-8')
+    options = ['--group', '*_new.csv', '--group', '*_bad.csv', '--json', str(report)]
+    assert main(['lost-motion', *worn[:2], str(bad), *options]) == 2
+    told, compared = capsys.readouterr().err.splitlines()
+    assert told.startswith(f'gearkin: {bad}: ')
+    assert compared == (
+        'gearkin: group *_new.csv, *_bad.csv: there is only the group *_new.csv '
+        'among the usable recordings; nothing is compared'
+    )
+    found = json.loads(report.read_bytes())['recordings']
+    assert [one['recording'] for one in found] == [path.rpartition('/')[2] for path in worn[:2]]
+
+
+def test_plot_that_cannot_be_made_loses_no_report(recording, motion, tmp_path, capsys):
+    report = tmp_path / 'x.json'
+    files = ['--plot', str(tmp_path / 'x.png'), '--json', str(report)]
+    assert main(['lost-motion', str(recording), str(motion), *files]) == 2
+    told = 'gearkin: --plot: the recordings have no torque ramps in common\n'
+    assert capsys.readouterr().err == told
+    assert len(json.loads(report.read_bytes())['recordings']) == 2
 
 
 @pytest.mark.slow

@@ -62,6 +62,27 @@ def test_what_is_not_known_holds_no_limit(report_of):
     assert all('is not known' in one.text for one in judged)
 
 
+@pytest.mark.parametrize('name', ['hysteresis', 'stiffness', 'backlash'])
+def test_a_limit_cannot_be_shown_to_hold_where_the_uncertainty_is_unknown(report_of, name):
+    torque = ramps((40.0, 400))
+    report = report_of(angle=creep(GEAR, torque), torque=torque)
+    limits = {'stiffness': 1.0} | dict.fromkeys(['hysteresis', 'backlash'], 1.0)
+    (judged,) = Limits(**{name: limits[name]}).judge(report)
+    assert not judged.holds
+    said = 'is not known' if name == 'backlash' else 'cannot be shown to hold the limit'
+    assert said in judged.text
+
+
+@pytest.mark.parametrize(('amplitude', 'below'), [(4.0, True), (40.0, False)])
+def test_lost_motion_below_the_friction_is_said_and_not_judged(report_of, amplitude, below):
+    torque = ramps(*[(amplitude, 400)] * 5)  # read at 0.12 or 1.2 N·m; friction is 1 N·m
+    report = report_of(angle=creep(GEAR, torque), torque=torque)
+    (judged,) = Limits(lost_motion=1.0).judge(report)
+    assert judged.holds != below
+    assert ('cannot be judged: it is read at a torque below the friction' in judged.text) == below
+    assert ('below the friction of 1' in ' '.join(remarks(report))) == below
+
+
 @pytest.mark.parametrize(
     ('friction', 'said'),
     [

@@ -67,7 +67,8 @@ def test_overloads_are_found_to_the_sample(tmp_path, config, capsys):
     assert moments == [(4e9, 300, 'a'), (9e9, 1, 'b'), (15e9, 497, 'a')]
     assert found['needed_preload'] == pytest.approx(19 * 0.5 / 2)
     assert found['answer'].startswith(
-        'In 20 s both branches were in mesh but for 3 moments (0.798 s), the first at 4.000 s; '
+        'With the ratio -19 of the given parameters, in 20 s both branches were in mesh but for '
+        '3 moments (0.798 s), the first at 4.000 s; '
         'the least preload that would have held: 4.75 N·m (set: 3)'
     )
 
@@ -162,6 +163,7 @@ def test_without_a_preload_only_the_forces_are_told(tmp_path, capsys):
     assert code == 0
     assert found['needed_preload'] is None
     assert 'nothing is known of the mesh' in found['answer']
+    assert found['answer'].startswith('With the ratio -19 of the default parameters, over 20 s')
     assert found['forces']['mesh_a']['greatest'] == pytest.approx(9.5 / 2 / RADIUS, rel=1e-6)
 
 

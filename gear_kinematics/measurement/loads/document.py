@@ -82,7 +82,8 @@ WORK = fleet.Work(report, _lost)
 def _report(task: Task, loads: RecordedLoads) -> Report:
     preload, verdict = abs(loads.parameters.preload), None
     moments, forces = [*loads.moments()], [*loads.forces(task.cam_rating)]
-    answer, loss = _answer(loads, moments), loads.slot_loss(task.slot_friction)
+    source = 'the default parameters' if task.by_default else 'the given parameters'
+    answer, loss = _answer(loads, moments, source), loads.slot_loss(task.slot_friction)
     if preload:
         verdict = Verdict.FAIL if moments else Verdict.PASS
     section = Section(
@@ -111,19 +112,21 @@ def _report(task: Task, loads: RecordedLoads) -> Report:
     return Report(section, data, loads.damage)
 
 
-def _answer(loads: RecordedLoads, moments: Sequence[Moment]) -> str:
-    """Say whether both branches stayed in mesh, and what preload would have held."""
+def _answer(loads: RecordedLoads, moments: Sequence[Moment], source: str) -> str:
+    """Say whose gear it is, whether both branches stayed in mesh, and with what preload."""
     seconds, preload, lost = loads.time[-1], abs(loads.parameters.preload), ''
+    gear = f'With the ratio {loads.parameters.mechanism.gear_ratio} of {source}'
     time = f'{seconds / 60.0:.1f} min' if seconds >= 100.0 else f'{number(seconds)} s'  # noqa: PLR2004
     if not preload:
-        most = f'Over {time} the output gave at most {number(np.max(np.abs(loads.torque)))} N·m'
-        return f'{most}; without the parameter preload, nothing is known of the mesh.'
+        most = number(np.max(np.abs(loads.torque)))
+        given = f'{gear}, over {time} the output gave at most {most} N·m'
+        return f'{given}; without the parameter preload, nothing is known of the mesh.'
     if moments:
         total = number(sum(moment.duration for moment in moments))
         first = f'the first at {moments[0].start:.3f} s'
         lost = f' but for {counted(len(moments), "moment")} ({total} s), {first}'
     needed = f'{number(loads.needed_preload)} N·m (set: {number(preload)})'
-    held = f'In {time} both branches were in mesh{lost}'
+    held = f'{gear}, in {time} both branches were in mesh{lost}'
     return f'{held}; the least preload that would have held: {needed}.'
 
 

@@ -41,6 +41,8 @@ class Task(NamedTuple):
     """C, N: the basic dynamic load rating of the bearing of a cam, for its life."""
     slot_friction: float = math.nan
     """μ of the slots, for their loss."""
+    by_default: bool = False
+    """Whether the parameters are those of the installed default file."""
     debug: bool = False
     """Whether to print tracebacks of unexpected errors to stderr."""
 
