@@ -83,15 +83,19 @@ class TransmissionError:
     """
 
     def __init__(self, *, max_gap: int, travel: float) -> None:
-        """Start with no samples.
+        """Start with no samples; see `configure`."""
+        self.matched = 0
+        self.unmatched: Counter[str] = Counter()
+        """Numbers of measured angles without an error, by cause."""
+        self.configure(max_gap=max_gap, travel=travel)
+
+    def configure(self, *, max_gap: int, travel: float) -> None:
+        """Forget all samples, but no counts.
 
         Args:
             max_gap: ns between ideal samples beyond which nothing is interpolated.
             travel: rad of the output after a reversal until the new direction counts.
         """
-        self.matched = 0
-        self.unmatched: Counter[str] = Counter()
-        """Numbers of measured angles without an error, by cause."""
         self._max_gap = max_gap
         self._direction = Direction(travel)
         self._ideal: deque[_Ideal] = deque(maxlen=_DEPTH)

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import replace
 from functools import partial
@@ -49,6 +49,7 @@ _LISTENERS = 2  # to each encoder: the node and the recorder
 _PROBE_PERIOD = 0.05  # s
 _AFTERWARDS = 0.1  # s to wait for unexpected messages
 _WINDOW = 500  # messages by which the node may lag; a queue of DEPTH does not overflow
+_STOP_TIMEOUT = 10.0  # s for a node to end; it needs one at most
 _MAX_SILENCE = 5.0  # s without messages after which no more are expected; DDS repeats every 3 s
 _PROBE_SECOND = 2**31 - 1  # the latest in a stamp
 _PROBE_STAMP = struct.pack('<iI', _PROBE_SECOND, 0)
@@ -71,7 +72,11 @@ def running_node(arguments: Sequence[str] = (), **options: Any) -> Iterator[subp
         yield process
     finally:
         process.terminate()
-        process.wait()
+        try:
+            process.wait(_STOP_TIMEOUT)
+        except subprocess.TimeoutExpired:  # as of one that is stopped, or hangs
+            process.kill()
+            process.wait()
 
 
 def live_messages(
@@ -275,8 +280,10 @@ def replay_node(namespace: str) -> Iterator[Node]:
 def _private_node(parameters: NodeParameters) -> Iterator[Replay]:
     """Run a node process that is isolated from all others, and connect to it."""
     # The middleware reads these when a context is created, here and in the node's process.
-    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
-    os.environ['SKIP_DEFAULT_XML_FILE'] = '1'  # Fast DDS would read one in the current folder
+    private = {
+        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
+        'SKIP_DEFAULT_XML_FILE': '1',  # Fast DDS would read one in the current folder
+    }
     namespace = f'/gear_kinematics_{os.getpid()}'
     with TemporaryDirectory() as folder:
         config, log = Path(folder, 'parameters.yaml'), Path(folder, 'log')
@@ -288,6 +295,7 @@ def _private_node(parameters: NodeParameters) -> Iterator[Replay]:
         arguments = ['--ros-args', '-r', f'__ns:={namespace}', '--params-file', str(config),
                      '-r', '/diagnostics:=diagnostics']  # fmt: skip
         with (
+            _environment(private),
             log.open('w', encoding='utf-8') as stream,
             running_node(
                 arguments,
@@ -305,6 +313,21 @@ def _private_node(parameters: NodeParameters) -> Iterator[Replay]:
             except ReplayError as error:
                 words = log.read_text(encoding='utf-8').splitlines()[-1:]
                 raise ReplayError(': '.join([str(error), *words])) from error
+
+
+@contextmanager
+def _environment(values: Mapping[str, str]) -> Iterator[None]:
+    """Set variables of the environment, and restore it at the end."""
+    before = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
 
 
 def outputs_of(parameters: NodeParameters) -> Collection[str]:

@@ -174,8 +174,7 @@ class GearStatePublisher(PublishingNode):
         if isinstance(self._gear, Mechanism):
             self._loads = Loads(self._settings)
         if changed:
-            # Discards earlier errors.
-            self._encoder = OutputEncoder(self._settings, self._reference)
+            self._encoder.configure(self._settings)  # discards earlier errors
         if self._corrector:
             self._corrector.reset()
             self._corrector.max_acceleration = self._settings.max_rotor_acceleration

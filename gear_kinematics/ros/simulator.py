@@ -128,10 +128,13 @@ class GearSimulator(PublishingNode):
 
     def _on_command(self, message: JointState) -> None:
         """Follow a command; values that are absent or not finite are not commanded."""
-        joint = self._joint or next(iter(message.name), '')
-        if joint not in message.name:
-            there = among(joint, message.name)
-            self._warn(f'{topics.ROTOR_COMMAND} rejected: no joint {joint!r} in it{there}')
+        only = len(message.name) == 1
+        joint = self._joint or (message.name[0] if only else '')
+        if joint not in message.name or not (self._joint or only):
+            fault = f'no joint {joint!r} in it{among(joint, message.name)}'
+            if not self._joint:
+                fault = f'{len(message.name)} joints in it: set rotor_joint to one of them'
+            self._warn(f'{topics.ROTOR_COMMAND} rejected: {fault}')
             return
         index = message.name.index(joint)
         arrays = message.position, message.velocity, message.effort

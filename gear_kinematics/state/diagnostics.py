@@ -10,7 +10,6 @@ from typing import NamedTuple, Self
 from gear_kinematics.correction.error_window import ErrorStatistics
 from gear_kinematics.correction.reversals import Reversals
 from gear_kinematics.correction.uncertainty import Estimate
-from gear_kinematics.kinematics import Mechanism, loop_closure, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.output_encoder import OutputEncoder
@@ -164,7 +163,6 @@ class InputMonitor(DriverMonitor):
             'referenced': str(rotor_input.referenced).lower(),
             'rotor zero (rad)': f'{TURN * rotor_input.zero.turns + rotor_input.zero.angle:.9g}',
             'home file': self.zero_kept,
-            'loop-closure residual (m)': _residual(rotor_input),
         }
         notes: list[str] = []
         if reference:
@@ -279,15 +277,3 @@ def _number(value: float | None) -> str:
 
 def _percent(share: float | None) -> str:
     return 'none' if share is None else f'{100.0 * share:.1f}'
-
-
-def _residual(rotor_input: RotorInput) -> str:
-    """The residual of the closed loops at the last sample of a mechanism."""
-    gear = rotor_input.parameters.gear
-    if rotor_input.last is None or not isinstance(gear, Mechanism):
-        return 'none'
-    turns, angle = rotor_input.last.position
-    # Poses repeat after as many rotor turns as the numerator; the rest is a small, exact angle.
-    rotor_angle = TURN * (turns % gear.gear_ratio.numerator) + angle
-    state = solve(gear, rotor_angle)
-    return f'{loop_closure.residual(gear, rotor_angle, state).max():.3g}'

@@ -31,17 +31,20 @@ class OutputEncoder:
     def __init__(self, parameters: NodeParameters, reference: TurnReference | None = None) -> None:
         self.received = 0
         self.rejected: Counter[str] = Counter()
+        self.comparison = TransmissionError(**_bounds(parameters))
+        """Counts the measured angles that were compared, and those that were not by cause."""
+        self._turn_reference = reference
+        self.configure(parameters)
+
+    def configure(self, parameters: NodeParameters) -> None:
+        """Compare anew, after a change of parameters or homing; all counts go on."""
         self.window = ErrorWindow(round(parameters.transmission_error_window * SECOND))
         self._parameters = parameters
         self._reader = JointReader(parameters.output_encoder_joint)
         self._ratio = parameters.gear.gear_ratio
-        self.comparison = TransmissionError(
-            max_gap=round(parameters.transmission_error_max_gap * SECOND),
-            travel=parameters.transmission_error_travel,
-        )
-        """Counts the measured angles that were compared, and those that were not by cause."""
+        self.comparison.configure(**_bounds(parameters))
         self.slip_watch = SlipWatch(parameters)
-        self.reference = reference if parameters.absolute else None
+        self.reference = self._turn_reference if parameters.absolute else None
         self._segment: int | None = None
 
     def accept(self, data: bytes, now: Callable[[], int]) -> Sequence[ErrorSample]:
@@ -92,3 +95,11 @@ class OutputEncoder:
             self.window.clear()
             self.slip_watch.restart()
             self.reference.restart()
+
+
+def _bounds(parameters: NodeParameters) -> dict[str, Any]:
+    """Return the arguments of `TransmissionError`."""
+    return {
+        'max_gap': round(parameters.transmission_error_max_gap * SECOND),
+        'travel': parameters.transmission_error_travel,
+    }

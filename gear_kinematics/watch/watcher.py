@@ -80,6 +80,9 @@ class Watcher:
                     self._do(command, answer)
                 except ValueError as error:
                     answer.set_result(Answer(str(error), done=False))
+                except Exception as error:  # noqa: BLE001, no command ends the watching
+                    text = f'That failed: {type(error).__name__}: {error}'
+                    answer.set_result(Answer(text, done=False))
             messages = self._drivers.poll()
             if end >= next_look:
                 next_look = end + _LOOK

@@ -366,3 +366,29 @@ def test_live_messages_name_an_unusable_topic(topic, words):
     with pytest.raises(BagError) as caught:
         next(live_messages(Scripted([]), config(), rotor_topic=topic))
     assert all(word in str(caught.value) for word in words)
+
+
+def test_environment_is_as_before_after_a_validation_of_a_live_node(monkeypatch):
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'SUBNET')
+    monkeypatch.delenv('SKIP_DEFAULT_XML_FILE', raising=False)
+    seen, before = [], dict(os.environ)
+
+    @contextmanager
+    def refused(_arguments, **options):
+        seen.append(options['env'])
+        raise ReplayError('no')
+        yield
+
+    monkeypatch.setattr(live, 'running_node', refused)
+    with pytest.raises(ReplayError, match='no'), live._private_node(config()):
+        pass
+    assert seen[0]['ROS_AUTOMATIC_DISCOVERY_RANGE'] == 'LOCALHOST'
+    assert seen[0]['SKIP_DEFAULT_XML_FILE'] == '1'
+    assert dict(os.environ) == before
+
+
+def test_node_that_does_not_end_is_killed(monkeypatch):
+    monkeypatch.setattr(live, '_STOP_TIMEOUT', 0.2)
+    with live.running_node(['--ros-args', '-r', '__ns:=/stopped']) as process:
+        process.send_signal(signal.SIGSTOP)
+    assert process.returncode == -signal.SIGKILL

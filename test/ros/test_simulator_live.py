@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from itertools import pairwise
+from types import SimpleNamespace
 
 import pytest
 from live import Participant, rotor_state, stamp_of
@@ -246,3 +247,24 @@ def test_parameters_that_cannot_be_are_refused(context, tmp_path):
     file.write_text('/other: {ros__parameters: {preload: 1.0}}', 'utf-8')
     with pytest.raises(ConfigError, match='no parameters of /gear_simulator in it'):
         GearSimulator(context=context, parameter_files=[file])
+
+
+@pytest.mark.parametrize(
+    ('names', 'followed', 'said'),
+    [
+        (['m1'], [1.0], ''),
+        (
+            ['m1', 'm2'],
+            [],
+            'rotor_command rejected: 2 joints in it: set rotor_joint to one of them',
+        ),
+        ([], [], 'rotor_command rejected: 0 joints in it: set rotor_joint to one of them'),
+    ],
+)
+def test_without_a_name_the_only_joint_of_a_command_is_followed(names, followed, said):
+    positions, warnings = [], []
+    driver = SimpleNamespace(follow=lambda command: positions.append(command.position))
+    node = SimpleNamespace(_joint='', _driver=driver, _warn=warnings.append)
+    command = JointState(name=names, position=[1.0, 2.0][: len(names)])
+    GearSimulator._on_command(node, command)
+    assert (positions, ''.join(warnings)) == (followed, said)

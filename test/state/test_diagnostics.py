@@ -11,9 +11,7 @@ import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
 from live import SECOND, rotor_bytes
 
-from gear_kinematics.kinematics import solve
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state import diagnostics
 from gear_kinematics.state.diagnostics import ERROR, OK, WARN, Fault, GraphFaults, InputMonitor
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.joint_reader import RejectedInputError
@@ -190,7 +188,6 @@ def test_values_count_what_happened(bench):
         'referenced': 'true',
         'rotor zero (rad)': '0',
         'home file': '',
-        'loop-closure residual (m)': values['loop-closure residual (m)'],
         'advice': 'docs/diagnostics.md explains why messages are rejected.',
     }
 
@@ -202,23 +199,3 @@ def test_rate_is_that_since_the_last_report(bench):
     assert bench.report(START + 3.0).values['rate (Hz)'] == '5.0'
     for _ in range(2):  # the second time without any time in between
         assert bench.report(START + 4.0).values['rate (Hz)'] == '0.0'
-
-
-@pytest.mark.parametrize('position', [0.0, 1.0, -3e5, 1e9, 1e16])
-def test_residual_is_that_of_a_closed_loop(mechanism, position):
-    ring, satellite, size = mechanism.ring_teeth, mechanism.satellite_teeth, mechanism.eccentricity
-    teeth = replace(SETTINGS, ring_teeth=ring, satellite_teeth=satellite, eccentricity=size)
-    bench = Bench(replace(teeth, branches=mechanism.branches))
-    assert bench.report(START + 0.5).values['loop-closure residual (m)'] == 'none'
-    bench.feed(START + 0.5, good(1, position))
-    residual = float(bench.report(START + 1.0).values['loop-closure residual (m)'])
-    # A few roundings of lengths of a millimetre.
-    assert 0.0 <= residual < 1e-15
-
-
-def test_residual_shows_a_loop_that_does_not_close(bench, monkeypatch):
-    monkeypatch.setattr(
-        diagnostics, 'solve', lambda mechanism, rotor_angle: solve(mechanism, rotor_angle + 0.1)
-    )
-    bench.feed(START + 0.5, good())
-    assert float(bench.report(START + 1.0).values['loop-closure residual (m)']) > 1e-5

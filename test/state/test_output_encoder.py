@@ -169,6 +169,24 @@ def test_calibration_that_no_longer_fits_is_a_warning(bench, monkeypatch, explai
     assert report.values['outside the interval (%)'] == '25.0'
 
 
+def test_change_of_a_parameter_loses_no_count(bench):
+    swing(bench, 0.001)
+    with pytest.raises(RejectedInputError):
+        bench.measure(START + 399 * MS, math.nan)
+    assert bench.report().message == 'rejected: position not finite 1'
+    bench.settings = replace(SETTINGS, transmission_error_window=5.0)
+    bench.encoder.configure(bench.settings)
+    with pytest.raises(RejectedInputError):
+        bench.measure(START + 399 * MS, math.nan)
+    for k in range(400, 800):  # as many as before
+        bench.measure(START + k * MS, 0.0)
+        bench.turn(START + k * MS, 0.0)
+    report = bench.report()
+    assert report.message == 'rejected: position not finite 1'
+    assert report.values['compared'] == '800'
+    assert report.values['rejected: position not finite'] == '2'
+
+
 # Slips.
 
 

@@ -43,7 +43,7 @@ class Bench:
     def set(self, **changes) -> None:
         """Change parameters as the node does."""
         self.settings = self.rotor.parameters = replace(self.settings, **changes)
-        self.encoder = OutputEncoder(self.settings, self.reference)
+        self.encoder.configure(self.settings)
 
     def turn(self, *outputs, error=0.0, step=MS, correction=None, measured=True):
         """Send the messages at output angles, rad, and return the last one of the node."""

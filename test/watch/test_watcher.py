@@ -340,6 +340,18 @@ def test_what_cannot_be_done_is_answered(running, command, answer):
     assert (text[: len(answer)], done) == (answer, False)
 
 
+@pytest.mark.live
+def test_command_that_fails_in_an_unexpected_way_ends_nothing(running, monkeypatch):
+    def broken(*_):
+        raise TypeError('no such thing')
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Watcher, '_do', broken)
+        answer = running.ask({'do': 'home'}).result(20.0)
+    assert answer == ('That failed: TypeError: no such thing', False)
+    assert running.ask({'do': 'home'}).result(20.0)[0] == 'There is no node that is ready.'
+
+
 # gearkin init
 
 
