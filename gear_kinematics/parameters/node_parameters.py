@@ -79,6 +79,10 @@ class NodeParameters:
         1e-3,
         1e9,
     )
+    unreferenced_outputs: str = _parameter(
+        "Whether outputs are published while the rotor's turns are not known",
+        choices=('publish', 'withhold'),
+    )
     input_timeout: float = _parameter('Time without input that is an ERROR, s', 1e-3, 1e6)
     output_joint: str = _parameter('Name of the output shaft in output_state and the URDF')
     output_encoder_joint: str = _parameter(
@@ -269,6 +273,11 @@ class NodeParameters:
     def single_turn(self) -> bool:
         """Whether the position of the rotor wraps once a turn."""
         return self.rotor_encoder == 'single_turn'
+
+    @property
+    def withholds(self) -> bool:
+        """Whether there is no output while the turns of the rotor are not known."""
+        return self.unreferenced_outputs == 'withhold'
 
     @property
     def absolute(self) -> bool:

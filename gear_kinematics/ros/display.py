@@ -6,14 +6,13 @@ import time
 from rclpy.clock import Clock, ClockType
 from rclpy.event_handler import QoSPublisherMatchedInfo
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.serialization import serialize_message
 from std_msgs.msg import String
 from visualization_msgs.msg import MarkerArray
 
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.ros.markers import Markers
-from gear_kinematics.ros.outputs import Outputs
+from gear_kinematics.ros.outputs import Outputs, latched
 from gear_kinematics.wire import topics
 
 
@@ -23,13 +22,13 @@ class Display:
     def __init__(self, node: Node, parameters: NodeParameters, outputs: Outputs) -> None:
         self._outputs = outputs
         self._description = ''
-        outputs.create(topics.ROBOT_DESCRIPTION, String, _latched())
+        outputs.create(topics.ROBOT_DESCRIPTION, String, latched())
         if rate := parameters.markers_rate:
             steady = Clock(clock_type=ClockType.STEADY_TIME)
             self._timer = node.create_timer(
                 1.0 / rate, self._publish_markers, clock=steady, autostart=False
             )
-            outputs.create(topics.MARKERS, MarkerArray, _latched(), self._on_viewers)
+            outputs.create(topics.MARKERS, MarkerArray, latched(), self._on_viewers)
 
     def update(self, parameters: NodeParameters) -> None:
         """Use names of joints and links; publishes the URDF if it has changed."""
@@ -55,8 +54,3 @@ class Display:
     def _publish_markers(self) -> None:
         if message := self._markers.due(time.monotonic()):
             self._outputs.send([(topics.MARKERS, message)])
-
-
-def _latched() -> QoSProfile:
-    """Create a new profile for each topic, since QoS overrides change it."""
-    return QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)

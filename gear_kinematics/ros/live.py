@@ -289,7 +289,8 @@ def _private_node(parameters: NodeParameters) -> Iterator[Replay]:
         config, log = Path(folder, 'parameters.yaml'), Path(folder, 'log')
         if path := parameters.calibration:  # a relative one would be relative to `config`
             parameters = replace(parameters, calibration=str(Path(path).absolute()))
-        parameters = replace(parameters, home_file='')  # the zero is that of the parameters
+        # The zero is that of the parameters, and every input is to be answered.
+        parameters = replace(parameters, home_file='', unreferenced_outputs='publish')
         config.write_text(parameters.as_file(), 'utf-8')
         # The topic of diagnostics has an absolute name.
         arguments = ['--ros-args', '-r', f'__ns:={namespace}', '--params-file', str(config),

@@ -17,6 +17,7 @@ from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState, MultiDOFJointState
+from std_msgs.msg import Bool
 
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.corrector import Corrector
@@ -30,7 +31,7 @@ from gear_kinematics.ros.drivers import DEPTH, DriverInput
 from gear_kinematics.ros.homing import Homing, restored
 from gear_kinematics.ros.missing_publisher import MissingPublisher
 from gear_kinematics.ros.node_parameters import declared, fault_of
-from gear_kinematics.ros.outputs import Outputs, PublishingNode
+from gear_kinematics.ros.outputs import Outputs, PublishingNode, latched
 from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
 from gear_kinematics.state.loads import Loads, PreloadMonitor
 from gear_kinematics.state.output_encoder import OutputEncoder
@@ -90,6 +91,8 @@ class GearStatePublisher(PublishingNode):
             message_type = _MESSAGE_TYPES[topics.TOPICS[topic].type]
             self._outputs.create(topic, message_type, QoSProfile(depth=DEPTH))
         self._note_subscribers()
+        self._outputs.create(topics.REFERENCED, Bool, latched())
+        self._referenced: bool | None = None  # as it was published last
         self._outputs.create(topics.DIAGNOSTICS, DiagnosticArray, QoSProfile(depth=10))
         if isinstance(self._gear, Mechanism):
             self._display = Display(self, parameters, self._outputs)
@@ -191,27 +194,43 @@ class GearStatePublisher(PublishingNode):
             self._warn_of(topics.ROTOR_STATE, rejection)
             return
         self._homing.note(sample)
-        self._outputs.send(self._messages.encode(sample, self._subscribed_states))
+        if (referenced := self._input.referenced) is not self._referenced:
+            self._publish_referenced()
+        if not referenced:
+            self._monitor.unreferenced += 1
+        published = referenced or not self._settings.withholds
+        if published:
+            self._outputs.send(self._messages.encode(sample, self._subscribed_states))
         correction = None
         if self._corrector:  # also without a listener, to follow the motion
             correction = self._corrector.correct(
-                sample, segment=self._input.segment, referenced=self._input.referenced
+                sample, segment=self._input.segment, referenced=referenced
             )
-            wanted = self._subscribed_corrections
+            wanted = self._subscribed_corrections if published else ()
             self._outputs.send(self._messages.encode_corrected(sample, correction, wanted))
         if self._preload:
             self._preload.follow(sample, self._input.segment)
-        if self._loads and self._subscribed_loads:
+        if self._loads and self._subscribed_loads and published:
             loads = self._loads.follow(sample, self._input.segment)
             self._outputs.send(self._loads.encode(sample.stamp, loads, self._subscribed_loads))
-        self._monitor.published += 1
-        if self._encoder.received and (self._input.referenced or self._settings.absolute):
+        self._monitor.published += published
+        if self._encoder.received and (referenced or self._settings.absolute):
             self._publish_errors(self._encoder.follow(sample, correction))
+            if self._input.referenced is not referenced:
+                self._publish_referenced()
+
+    def _publish_referenced(self) -> None:
+        """Publish at once that the turns have become known or unknown."""
+        self._referenced = self._input.referenced
+        message = serialize_message(Bool(data=self._referenced))
+        self._outputs.send([(topics.REFERENCED, message)])
 
     def _on_output_encoder(self, data: bytes) -> None:
         self._encoder_monitor.last_input = time.monotonic()
         try:
             self._publish_errors(self._encoder.accept(data, self._now))
+            if self._referenced not in (None, self._input.referenced):
+                self._publish_referenced()
         except RejectedInputError as rejection:
             self._warn_of(topics.OUTPUT_ENCODER, rejection)
 

@@ -22,6 +22,7 @@ OK, WARN, ERROR = 0, 1, 2
 
 _NO_INPUT = 'Check that the driver is running, and that its topic is remapped.'
 _NOT_REFERENCED = 'Move the output to its home angle, then call ~/home.'
+_WAS_UNREFERENCED = 'Do not use the outputs of that time.'
 _UNEXPLAINED = 'Check gear_ratio, the directions and zeros of both encoders, and the gear.'
 _AMBIGUOUS = 'Stop the output; or calibrate the gear, or lower transmission_error_limit.'
 _DISAGREES = 'Check whether an encoder has slipped; then call ~/home, or restart the node.'
@@ -111,6 +112,8 @@ class InputMonitor(DriverMonitor):
     published: int = 0
     unsent: int = 0
     """Messages that the middleware failed to send."""
+    unreferenced: int = 0
+    """Valid inputs while the turns were not known."""
     zero_kept: str = ''
     """Where `rotor_zero` is kept until the next start, or why it is not."""
     graph: GraphFaults = field(default_factory=GraphFaults)
@@ -118,6 +121,7 @@ class InputMonitor(DriverMonitor):
     _reported: float = 0.0
     _received: int = 0
     _unsent: int = 0
+    _unreferenced: int = 0
 
     def report(
         self, rotor_input: RotorInput, now: float, reference: TurnReference | None = None
@@ -126,6 +130,8 @@ class InputMonitor(DriverMonitor):
         elapsed = now - max(self._reported, self.started)
         received = rotor_input.received - self._received
         newly_unsent = self.unsent - self._unsent
+        newly_unreferenced = self.unreferenced - self._unreferenced
+        self._unreferenced = self.unreferenced
         self._reported, self._received = now, rotor_input.received
         self._unsent = self.unsent
         rate = received / elapsed if elapsed > 0.0 else 0.0
@@ -144,6 +150,9 @@ class InputMonitor(DriverMonitor):
         if newly_unsent:
             advice = 'Look for a listener that is stuck.'
             warnings.append(Fault(f'not sent {newly_unsent}', advice))
+        if newly_unreferenced and rotor_input.referenced:
+            text = f'was not referenced for {newly_unreferenced} inputs'
+            warnings.append(Fault(text, _WAS_UNREFERENCED))
         if self.drivers > 1:
             warnings.append(Fault(f'{self.drivers} drivers', 'Stop all drivers but one.'))
         warnings += self.graph.warnings
@@ -154,6 +163,7 @@ class InputMonitor(DriverMonitor):
             **_by_cause('rejected', rotor_input.rejected),
             'lost messages': str(self.lost),
             'not sent': str(self.unsent),
+            'not referenced': str(self.unreferenced),
             'drivers': str(self.drivers),
             'duplicate stamps': str(rotor_input.duplicates),
             'zero stamps': str(rotor_input.zero_stamps),

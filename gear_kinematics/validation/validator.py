@@ -88,6 +88,9 @@ class Validator:
             self._references = TurnReferences(parameters, task.calibration)
         self._expectation = Expectation(gear, task.tolerances, solver, self._changes)
         self._samples = 0
+        unseen = parameters.single_turn or parameters.absolute
+        self._given_segment = None if unseen else self._input.segment
+        """The latest segment with an output."""
         self._groups: list[tuple[Completeness, Sequence[OutputTopic]]] = []
         joint = parameters.frame_prefix + parameters.output_joint
         self.output = OutputState(topics.output, joint, self._expectation)
@@ -242,8 +245,10 @@ class Validator:
     def _drop(self, count: int) -> None:
         """Drop the oldest samples, whose outputs are there or count as missing."""
         oldest = self._window[:count]
+        withheld = self._withheld(oldest)
         for group, outputs in self._groups:
             answered = np.column_stack([output.answered(oldest) for output in outputs])
+            answered |= withheld[:, np.newaxis]
             group.update(oldest['received'], oldest['stamp'], answered, self._begun)
         if self._references and self._encoder:
             counted = oldest.copy()
@@ -252,6 +257,23 @@ class Validator:
         for output in self._outputs:
             output.matcher.drop(count)
         self._window = self._window[count:]
+
+    def _withheld(self, samples: Array) -> Array:
+        """Whether a node that withholds outputs of unknown turns has given none yet, (n,).
+
+        Outputs begin somewhere in a segment, which a recording of the rotor does not show.
+        """
+        withheld = np.zeros(len(samples), bool)
+        if self._parameters.withholds:
+            given = self.output.answered(samples)
+            for segment in np.unique(samples['segment']).tolist():
+                rows = np.flatnonzero(samples['segment'] == segment)
+                if segment != self._given_segment:
+                    none = ~np.logical_or.accumulate(given[rows])
+                    withheld[rows] = none
+                    if not none.all():
+                        self._given_segment = segment
+        return withheld
 
     def _find_prefix(self, batch: _Batch) -> None:
         """Adopt the frame prefix of the first output, if any."""

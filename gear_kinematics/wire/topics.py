@@ -21,6 +21,7 @@ CORRECTED_INTERVAL = 'corrected_interval'
 TRANSMISSION_ERROR = 'transmission_error'
 BRANCH_LOADS = 'branch_loads'
 JOINT_LOADS = 'joint_loads'
+REFERENCED = 'referenced'
 ROBOT_DESCRIPTION = 'robot_description'
 MARKERS = 'markers'
 DIAGNOSTICS = '/diagnostics'
@@ -53,6 +54,7 @@ TOPICS: Mapping[str, NodeTopic] = {
     JOINT_LOADS: NodeTopic(WRENCHES, 'load', 'node'),
     ROBOT_DESCRIPTION: NodeTopic('std_msgs/msg/String', 'display', 'node'),
     MARKERS: NodeTopic('visualization_msgs/msg/MarkerArray', 'display', 'node'),
+    REFERENCED: NodeTopic('std_msgs/msg/Bool', 'health', 'node'),
     DIAGNOSTICS: NodeTopic('diagnostic_msgs/msg/DiagnosticArray', 'health', 'node'),
 }
 """All topics of gear_state_publisher by name."""

@@ -41,6 +41,7 @@ CONTRACT = {
     'rotor_encoder': 'multi_turn',
     'max_rotor_speed': 650.0,
     'input_timeout': 1.0,
+    'unreferenced_outputs': 'publish',
     'frame_prefix': '',
     'preload': 0.0,
     'branch_stiffness': [0.0],

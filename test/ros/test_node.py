@@ -16,7 +16,7 @@ from calibrations import AMPLITUDE, single_order
 from diagnostic_msgs.msg import DiagnosticArray
 from expected_outputs import Settings, all_right
 from geometry_msgs.msg import PoseArray
-from live import DEADLINE, STATES, rotor_bytes
+from live import DEADLINE, SECOND, STATES, rotor_bytes
 from rclpy.exceptions import ParameterException
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.parameter import Parameter
@@ -25,7 +25,7 @@ from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 from rclpy.subscription import Subscription
 from sensor_msgs.msg import JointState
-from std_msgs.msg import String
+from std_msgs.msg import Bool, String
 from std_srvs.srv import Trigger
 from visualization_msgs.msg import MarkerArray
 
@@ -163,7 +163,9 @@ def test_parameters_set_together_take_effect_with_the_next_message_or_not_at_all
         published.clear()  # of robot_description
         position = 0.03 * turn
         node._on_rotor_state(rotor_bytes(1 + turn, position=[position]))
-        outputs = [deserialize_message(data, TYPES[topic]) for topic, data in published]
+        outputs = [
+            deserialize_message(data, TYPES[topic]) for topic, data in published if topic in TYPES
+        ]
         assert all_right(outputs, position, settings)
     assert len(seen) > 12  # of the 24 that there are
 
@@ -421,7 +423,11 @@ def test_of_a_gear_with_only_a_ratio_the_output_alone_is_published(make, monkeyp
     node._on_rotor_state(rotor_bytes(1, position=[1457.0]))
     assert node._homing.answer(None, SimpleNamespace()).success
     node._on_rotor_state(rotor_bytes(2, position=[1457.0]))
-    positions = [deserialize_message(data, JointState).position[0] for _, data in published]
+    positions = [
+        deserialize_message(data, JointState).position[0]
+        for topic, data in published
+        if topic != 'referenced'
+    ]
     error = AMPLITUDE * math.cos(1457.0)
     assert positions[:3] == pytest.approx([26.0, 26.0 + error, 0.5], abs=1e-12)
 
@@ -438,6 +444,30 @@ def test_nothing_is_compared_before_there_is_an_encoder_or_a_reference(make, mon
     assert node._homing.answer(None, SimpleNamespace()).success
     node._on_rotor_state(rotor_bytes(3, position=[1.0]))
     assert [sample.stamp for sample in followed] == [3]
+
+
+@pytest.mark.parametrize('outputs', ['publish', 'withhold'])
+def test_outputs_of_unknown_turns_are_marked_or_withheld(make, monkeypatch, outputs):
+    node = make('marked', rotor_encoder='single_turn', unreferenced_outputs=outputs)
+    published = []
+    monkeypatch.setattr(node._outputs, 'send', published.extend)
+    node._subscribed_states = ['output_state']
+
+    def topics_after(stamp, position=1.0):
+        published.clear()
+        node._on_rotor_state(rotor_bytes(stamp, position=[position]))
+        return [
+            deserialize_message(data, Bool).data if topic == 'referenced' else topic
+            for topic, data in published
+        ]
+
+    given = ['output_state'] if outputs == 'publish' else []
+    assert topics_after(1) == [False, *given]
+    assert topics_after(2) == given
+    assert node._homing.answer(None, SimpleNamespace()).success
+    assert topics_after(3) == [True, 'output_state']
+    assert topics_after(SECOND) == [False, *given]  # in a second it may have turned unseen
+    assert node._monitor.unreferenced == 3
 
 
 @pytest.mark.parametrize(

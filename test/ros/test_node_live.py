@@ -79,6 +79,7 @@ def test_topics_services_and_types_are_those_of_the_contract(shared):
         f'{namespace}/transmission_error': joint_state,
         f'{namespace}/branch_loads': joint_state,
         f'{namespace}/joint_loads': ['sensor_msgs/msg/MultiDOFJointState'],
+        f'{namespace}/referenced': ['std_msgs/msg/Bool'],
         '/diagnostics': ['diagnostic_msgs/msg/DiagnosticArray'],
     }
     subscribed = {
@@ -106,7 +107,7 @@ def test_topics_services_and_types_are_those_of_the_contract(shared):
     for topic in published.keys() - {'/diagnostics'}:
         [qos] = shared.peer.endpoints(node.get_publishers_info_by_topic, topic)
         assert qos.reliability == ReliabilityPolicy.RELIABLE
-        latched = topic.endswith(('/robot_description', '/markers'))
+        latched = topic.endswith(('/robot_description', '/markers', '/referenced'))
         assert (qos.durability == DurabilityPolicy.TRANSIENT_LOCAL) == latched
 
 

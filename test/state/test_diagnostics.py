@@ -120,6 +120,14 @@ def test_unreferenced_encoder_is_an_error_until_home():
     assert report.values['referenced'] == 'true'
 
 
+def test_time_without_a_reference_is_told_once_with_a_count(bench):
+    bench.feed(START + 0.5, good())
+    bench.monitor.unreferenced += 77
+    report = bench.report(START + 1.0)
+    assert (report.level, report.message) == (WARN, 'was not referenced for 77 inputs')
+    assert bench.report(START + 1.5).message == 'ok'
+
+
 @pytest.mark.parametrize(
     ('faults', 'level', 'message', 'advice'),
     [
@@ -149,7 +157,7 @@ def test_every_fault_is_documented_with_its_level():
     bench.monitor.drivers, bench.monitor.lost, bench.monitor.unsent = 2, 3, 1
     report = bench.report(START + 4.0)
     assert report.message.split('; ') == [
-        message for message, _ in documented if not re.search('QoS|/', message)
+        message for message, _ in documented if not re.search('QoS|/|was not referenced', message)
     ]
     assert len(re.findall(r'\.(?: |$)', report.values['advice'])) == 6
 
@@ -179,6 +187,7 @@ def test_values_count_what_happened(bench):
         'rejected: position too large': '1',
         'lost messages': '0',
         'not sent': '0',
+        'not referenced': '0',
         'drivers': '0',
         'duplicate stamps': '1',
         'zero stamps': '1',

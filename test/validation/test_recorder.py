@@ -4,6 +4,7 @@
 import math
 import random
 import struct
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -281,6 +282,22 @@ def test_turns_are_taken_again_after_holes_that_hide_some(single_turn, seed):
     report = validate([m for k, m in enumerate(messages) if k not in lost], config)
     assert report.verdict == Verdict.PASS
     assert [t.left_out for t in report.topics] == [{NO_INPUT: len(lost)}] * 2
+
+
+@pytest.mark.parametrize('lost', [0, 1])
+@pytest.mark.parametrize('outputs', ['publish', 'withhold'])
+def test_outputs_that_a_node_withholds_are_not_missing(single_turn, outputs, lost):
+    config, messages = single_turn
+    homed = 2000  # of 2500 inputs
+    inputs = [k for k, m in enumerate(messages) if m.topic == ROTOR]
+    left_out = {k for k, m in enumerate(messages) if m.topic != ROTOR and k < inputs[homed]}
+    left_out |= {k for k in range(inputs[-100], inputs[-100 + lost]) if k not in inputs}
+    config = replace(config, unreferenced_outputs=outputs)
+    recorded = [m for k, m in enumerate(messages) if k not in left_out]
+    report = validate(recorded, config, strict=True)
+    missing = (0 if outputs == 'withhold' else homed) + lost
+    assert [topic.missing for topic in report.topics] == [missing, missing]
+    assert report.verdict == (Verdict.FAIL if missing else Verdict.PASS)
 
 
 def test_turns_are_taken_from_poses_that_are_recorded_alone(single_turn):
