@@ -35,7 +35,7 @@ def find_bags(patterns: Iterable[str]) -> Found:
     bags: dict[Path, None] = {}
     faults: dict[Path, str] = {}
     for pattern in patterns:
-        path, found = Path(pattern), list[Path]()
+        path, found = _recording(Path(pattern)), list[Path]()
         known = len(faults)
         try:
             found += _bags_below(path, faults) if path.exists() else _glob(pattern, faults)
@@ -45,6 +45,11 @@ def find_bags(patterns: Iterable[str]) -> Found:
             faults[path] = f'{pattern}: no bag there'
         bags |= dict.fromkeys(found)
     return Found(list(bags), faults)
+
+
+def _recording(path: Path) -> Path:
+    """The folder of a recording that is given by its metadata.yaml; else the path itself."""
+    return path.parent if path.name == _METADATA and path.is_file() else path
 
 
 def is_recording(path: Path) -> bool:
@@ -109,6 +114,7 @@ def find_contents(path: Path) -> Contents:
     Raises:
         ValueError: or other exceptions, if this is not a recording.
     """
+    path = _recording(path)
     if path.is_file():
         return Contents([path], {}, None)
     if not path.is_dir():

@@ -2,7 +2,8 @@
 """Parameter files of ROS: which of their parameters apply to a node."""
 
 import re
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,12 @@ from gear_kinematics.wire.nearest import nearest
 
 _NODE_PATTERN = re.compile(r'(/(\*\*?|[A-Za-z_]\w*))+', re.ASCII)
 """A node's name in a parameter file, as in rcl; `*` is any token, `**` any number of tokens."""
+
+_GEAR = frozenset(
+    ('gear_ratio', 'ring_teeth', 'satellite_teeth', 'rotor_joint', 'rotor_direction')
+    + ('rotor_zero', 'rotor_encoder', 'output_joint', 'calibration', 'home_file')
+)
+"""Parameters that describe a gear, and hardly any other node has."""
 
 FILES = 'calibration', 'home_file'
 """Parameters that name files, relative to the parameter file."""
@@ -64,11 +71,42 @@ def given_parameters(path: Path, node: str) -> dict[str, Any]:
         patterns = [pattern for pattern, _ in blocks]
         there = f'{", ".join(patterns)}{nearest(name, patterns)}'
         raise _OtherNodesError(f'{path}: no parameters of {name} in it, only of {there}')
+    _check_strays(path, name, blocks)
     return {key: value for parameters in applying for key, value in parameters.items()}
 
 
 default_values = cache(given_parameters)
 """The same, of an installed file, which does not change."""
+
+
+def _check_strays(path: Path, name: str, blocks: Sequence[tuple[str, dict[str, Any]]]) -> None:
+    """Refuse parameters that were meant for a node to which only wildcards apply.
+
+    They are below a name that is nearly its own, or they describe a gear where no wildcard does.
+    """
+    strays, common = [], False
+    for pattern, parameters in blocks:
+        of_gear = not _GEAR.isdisjoint(parameters)
+        if not _applies(pattern, name):
+            if '*' not in pattern and (of_gear or _mistyped(pattern, name)):
+                strays.append(pattern)
+        elif '*' not in pattern:
+            return
+        else:
+            common |= of_gear
+    if strays := [each for each in strays if not common or _mistyped(each, name)]:
+        raise ConfigError(
+            f'{path}: the parameters of {", ".join(strays)} do not apply to {name}, to which only '
+            'a wildcard does: correct one of the two names'
+        )
+
+
+def _mistyped(pattern: str, name: str) -> bool:
+    """Whether a node's name is nearly that of another one, without its namespace."""
+    given, own = (each.rpartition('/')[2] for each in (pattern, name))
+    shorter, longer = sorted((given, own), key=len)
+    numbered = re.fullmatch(r'_?\d+|_\w+', longer.removeprefix(shorter))
+    return given != own and not numbered and bool(get_close_matches(given, [own], cutoff=0.8))
 
 
 def _full_name(path: Path, node: str, blocks: Iterable[tuple[str, object]]) -> str:

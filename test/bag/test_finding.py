@@ -4,7 +4,9 @@
 from pathlib import Path
 
 import pytest
+from shipped_bags import BAGS
 
+from gear_kinematics.bag import Bag
 from gear_kinematics.bag.finding import find_bags
 
 
@@ -91,3 +93,10 @@ def test_an_unreadable_folder_does_not_stop_the_others(patterns, monkeypatch):
     bags, faults = find_bags(patterns)
     assert bags == [Path('fleet/one')]
     assert faults == {Path('fleet/deep'): 'fleet/deep: Permission denied'}
+
+
+def test_metadata_stands_for_its_folder():
+    folder = BAGS / 'servo_point_to_point'
+    assert find_bags([str(folder / 'metadata.yaml')]) == find_bags([str(folder)])
+    with Bag(folder / 'metadata.yaml') as given, Bag(folder) as expected:
+        assert given.topics == expected.topics

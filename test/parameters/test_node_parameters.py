@@ -329,3 +329,33 @@ def test_path_of_a_calibration_is_relative_to_the_file_that_names_it(tmp_path, p
     file = config(tmp_path, calibration=path)
     assert load(file).calibration == str(tmp_path / path)
     assert require_any([file], '/gear_state_publisher') == {path: tmp_path / path}
+
+
+@pytest.mark.parametrize(
+    ('names', 'refused'),
+    [
+        (['/**', 'gear_state_publsher'], '/gear_state_publsher'),
+        (['/**', '/left/gear_state_publisherr'], '/left/gear_state_publisherr'),
+        (['/**', 'gear_state_publisher_2'], ''),  # another gear with the same common part
+        (['/**', LEFT, RIGHT], ''),
+        (['/**', 'gear_state_publsher', '/gear_state_publisher'], ''),
+    ],
+)
+def test_block_of_a_mistyped_node_beside_a_wildcard_is_refused(tmp_path, names, refused):
+    path = blocks(tmp_path, *names)
+    if not refused:
+        assert load(path, '/gear_state_publisher').ring_teeth in {81, 83}
+        return
+    message = f'{refused} do not apply to /gear_state_publisher, to which only a wildcard does'
+    with pytest.raises(ConfigError, match=message):
+        load(path, '/gear_state_publisher')
+
+
+@pytest.mark.parametrize('node', ['motor', '/left/gear_state_publisher'])
+def test_gear_of_another_node_beside_a_wildcard_without_one_is_refused(tmp_path, node):
+    text = f"'/**': {{ros__parameters: {{use_sim_time: false}}}}\n{node}: "
+    gear = write(tmp_path, text + "{ros__parameters: {gear_ratio: '-30'}}")
+    with pytest.raises(ConfigError, match=f'{node} do not apply to /gear_state_publisher'):
+        load(gear, '/gear_state_publisher')
+    other = write(tmp_path, text + '{ros__parameters: {update_rate: 100}}')
+    assert load(other, '/gear_state_publisher').ring_teeth == 80
