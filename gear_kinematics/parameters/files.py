@@ -14,10 +14,8 @@ from gear_kinematics.wire.nearest import nearest
 _NODE_PATTERN = re.compile(r'(/(\*\*?|[A-Za-z_]\w*))+', re.ASCII)
 """A node's name in a parameter file, as in rcl; `*` is any token, `**` any number of tokens."""
 
-_GEAR = frozenset(
-    ('gear_ratio', 'ring_teeth', 'satellite_teeth', 'rotor_joint', 'rotor_direction')
-    + ('rotor_zero', 'rotor_encoder', 'output_joint', 'calibration', 'home_file')
-)
+_GEAR = {'gear_ratio', 'ring_teeth', 'satellite_teeth', 'rotor_joint', 'rotor_direction',
+         'rotor_zero', 'rotor_encoder', 'output_joint', 'calibration', 'home_file'}  # fmt: skip
 """Parameters that describe a gear, and hardly any other node has."""
 
 FILES = 'calibration', 'home_file'
@@ -86,7 +84,7 @@ def _check_strays(path: Path, name: str, blocks: Sequence[tuple[str, dict[str, A
     """
     strays, common = [], False
     for pattern, parameters in blocks:
-        of_gear = not _GEAR.isdisjoint(parameters)
+        of_gear = bool(_GEAR & parameters.keys())
         if not _applies(pattern, name):
             if '*' not in pattern and (of_gear or _mistyped(pattern, name)):
                 strays.append(pattern)
