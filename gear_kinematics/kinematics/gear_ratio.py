@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The gear ratio as an exact fraction, and what needs no more of a gear than that."""
+"""The gear ratio as an exact fraction, and the conversions that need the ratio alone."""
 
 import math
 import re
@@ -13,17 +13,17 @@ from gear_kinematics.kinematics.rotor_turns import TURN, largest, nearest_turn
 
 _TEXT = re.compile(r'[-+]?\d{1,16}(/\d{1,16}|\.\d{1,16})?', re.ASCII)
 _LARGEST_PRODUCT = 2**53
-"""Numerator × denominator up to which the turns below are exact in float64."""
+"""Greatest numerator × denominator for which the turns computed below are exact in float64."""
 
 
 class GearRatio(Fraction):
-    """i = rotor speed / output speed, signed and exact; negative: the output turns backwards.
+    """Signed, exact ratio i = rotor speed / output speed; negative if the output turns backwards.
 
     Its methods take plain floats and numpy arrays alike, with the same results to the bit; `xp` is
     `math` for floats, else numpy.
 
     Raises:
-        ValueError: if it is 0, or its numerator × denominator exceeds 2^53.
+        ValueError: if the ratio is 0, or its numerator × denominator exceeds 2^53.
     """
 
     __slots__ = ('_cycle', '_inverse', '_p', '_q')
@@ -34,7 +34,7 @@ class GearRatio(Fraction):
     _cycle: int  # turns, a multiple of q; p times fewer turns is exact in float64
 
     def __new__(cls, numerator: int | Fraction, denominator: int | None = None) -> Self:
-        """Create it like a Fraction."""
+        """Create the ratio with the arguments of Fraction."""
         self = super().__new__(cls, numerator, denominator)
         if not self:
             raise ValueError('a gear ratio must not be 0')
@@ -52,7 +52,7 @@ class GearRatio(Fraction):
         """Read a ratio such as `-19`, `1457/26` or `28.8`.
 
         Raises:
-            ValueError: if it is something else, or no gear has this ratio.
+            ValueError: if the text is no number, or no gear has this ratio.
         """
         if not _TEXT.fullmatch(text):
             raise ValueError(
@@ -69,13 +69,14 @@ class GearRatio(Fraction):
 
     @property
     def gear_ratio(self) -> Self:
-        """The ratio itself: it describes a gear as a `Mechanism` does, only less of it."""
+        """The ratio itself, so that a ratio can stand for a gear wherever a `Mechanism` can."""
         return self
 
     def output_angle(self, turns: Any, angle: Any, xp: ModuleType) -> tuple[Any, Any]:
-        """φ5 = φ2/i (eq. 5) as whole turns and a rest in [-π, π], for φ2 = 2π turns + angle.
+        """Output angle φ5 = φ2/i (eq. 5) as whole turns and a remainder in [-π, π], rad.
 
-        The rest depends on the whole turns modulo q only, so nothing cancels.
+        The rotor angle is φ2 = 2π turns + angle. The remainder depends on the whole turns only
+        modulo q, so no digits cancel.
         """
         p, q, cycle = self._p, self._q, self._cycle
         few = (abs(turns) if xp is math else largest(turns)) < cycle
@@ -90,18 +91,18 @@ class GearRatio(Fraction):
         return whole, rest
 
     def output_rate(self, rotor_rate: Any) -> Any:
-        """ω5 = ω2/i (eq. 3), and likewise for the acceleration."""
+        """Output rate ω5 = ω2/i (eq. 3); accelerations are converted in the same way."""
         return self._p * rotor_rate / self._q
 
     def rotor_angle(self, output_angle: float) -> float:
-        """φ2 = i φ5 (eq. 5), rad."""
+        """Rotor angle φ2 = i φ5 (eq. 5), rad."""
         return output_angle * self.numerator / self.denominator
 
 
 def simplest_fraction(low: Fraction, high: Fraction) -> Fraction:
-    """Return the fraction in [low, high] of the least denominator, by continued fractions.
+    """Return the fraction in [low, high] with the least denominator, by continued fractions.
 
-    Of several integers, the one nearest to 0.
+    If the interval contains several integers, the result is the one nearest to 0.
 
     Raises:
         ValueError: if the interval is empty.
@@ -122,8 +123,8 @@ def tooth_pairs(low: Fraction, high: Fraction, most_teeth: int) -> Iterator[tupl
     """Yield the tooth numbers (zk, zs) whose ratio -zs/(zk - zs) is in [low, high], by rising zk.
 
     Args:
-        low: of the interval.
-        high: of the interval, less than 0.
+        low: lower bound of the ratio.
+        high: upper bound of the ratio, less than 0.
         most_teeth: greatest zk.
     """
     # zs/zk = i/(i - 1) falls from 1 to 0 while i rises from -∞ to 0.

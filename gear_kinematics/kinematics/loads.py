@@ -42,7 +42,7 @@ from gear_kinematics.kinematics.preload import Pair, Preload, braced
 
 @dataclass(frozen=True, slots=True)
 class Bodies:
-    """What the loads need to know of the bodies; those of the same kind are alike.
+    """Masses, inertias and pressure angle of the bodies; bodies of one kind are identical.
 
     Raises:
         MechanismError: listing every value that is not finite or negative, and a pressure angle
@@ -50,17 +50,20 @@ class Bodies:
     """
 
     satellite_mass: float = 0.0
-    """m3, kg; the centre of mass is O3."""
+    """Mass m3 of a satellite, kg; its centre of mass is O3."""
     satellite_inertia: float = 0.0
-    """J3, kg·m², about O3."""
+    """Moment of inertia J3 of a satellite about O3, kg·m²."""
     coupling_mass: float = 0.0
-    """m4, kg; the centre of mass is O4."""
+    """Mass m4 of an Oldham coupling, kg; its centre of mass is O4."""
     coupling_inertia: float = 0.0
-    """J4, kg·m², about O4."""
+    """Moment of inertia J4 of an Oldham coupling about O4, kg·m²."""
     rotor_inertia: float = 0.0
-    """J2, kg·m², about the motor's axis, on which the rotor with its cams is balanced."""
+    """Moment of inertia J2 of the rotor, kg·m², about the motor's axis.
+
+    The rotor with its cams is balanced on this axis.
+    """
     pressure_angle: float = 0.0
-    """αw, rad: the working pressure angle, cos αw = cos α m (zk - zs)/(2 e)."""
+    """Working pressure angle αw, rad, with cos αw = cos α m (zk - zs)/(2 e)."""
 
     def __post_init__(self) -> None:
         """List all faults."""
@@ -77,7 +80,7 @@ class Bodies:
 
     @property
     def without_mass(self) -> bool:
-        """Whether the loads are those at rest at any acceleration."""
+        """Whether all masses and inertias are 0, so that accelerations cause no loads."""
         return not any(getattr(self, field.name) for field in fields(self)[:-1])
 
 
@@ -89,21 +92,21 @@ class Loads:
     """
 
     mesh_tangential: Array
-    """F_t, (..., B): ring on satellite at the pitch point, along u'(θ)."""
+    """Force F_t of the ring on the satellite at the pitch point, along u'(θ), (..., B)."""
     mesh_force: Array
-    """F, (..., B, 2): the whole force of the ring on the satellite; its length is F_n."""
+    """Total force F of the ring on the satellite, (..., B, 2); its magnitude is F_n."""
     cam_force: Array
-    """F_cam, (..., B, 2): cam on satellite, at O3."""
+    """Force F_cam of the cam on the satellite at O3, (..., B, 2)."""
     satellite_slot_force: Array
-    """N3 u(φ5), (..., B, 2): satellite on coupling, at O4."""
+    """Force N3 u(φ5) of the satellite on the coupling at O4, (..., B, 2)."""
     arm_slot_force: Array
-    """N5 u'(φ5), (..., B, 2): arm on coupling, at O4."""
+    """Force N5 u'(φ5) of the arm on the coupling at O4, (..., B, 2)."""
     satellite_couple: Array
-    """C3, (..., B): satellite on coupling, about O4."""
+    """Couple C3 of the satellite on the coupling about O4, (..., B)."""
     arm_couple: Array
-    """C5, (..., B): arm on coupling, about O4."""
+    """Couple C5 of the arm on the coupling about O4, (..., B)."""
     rotor_torque: Array
-    """τ2, (...): what the motor has to give, N·m."""
+    """Torque τ2 that the motor has to supply, N·m, (...)."""
 
     def __post_init__(self) -> None:
         """Convert the fields to read-only arrays."""
@@ -113,7 +116,7 @@ class Loads:
 BranchLoads = tuple[Any, Pair, Pair, Pair, Pair, Any, Any]
 """The loads of one branch, floats or arrays, in the order of the fields of `Loads`."""
 Inertia = tuple[Pair, Pair, Pair, Any, Any, Any, Any]
-"""What masses add to a branch: N3 u, N5 u', F + F_cam, C3, C5, F_t rs and O3 × F_cam."""
+"""Inertial parts of the loads of a branch: N3 u, N5 u', F + F_cam, C3, C5, F_t rs, O3 × F_cam."""
 AT_REST: Inertia = (0.0, 0.0), (0.0, 0.0), (0.0, 0.0), 0.0, 0.0, 0.0, 0.0
 
 
@@ -134,7 +137,7 @@ class LoadEquations:
     def inertia(
         self, position: BranchPosition, arm: Pair, output_acceleration: Any, a3: Pair, a4: Pair
     ) -> Inertia:
-        """What the masses of a branch add: arm u(φ5), φ5'' in rad/s², a3 and a4 in m/s²."""
+        """Inertial loads of a branch, from the arm u(φ5), φ5'' in rad/s², a3 and a4 in m/s²."""
         if self._massless:
             return AT_REST
         bodies, e, (_, _, x, y) = self._bodies, self._eccentricity, position
@@ -162,7 +165,7 @@ class LoadEquations:
         torques: Iterable[Any],
         inertias: Iterable[Inertia],
     ) -> list[BranchLoads]:
-        """Loads of the branches that give the output shaft the torques T, N·m."""
+        """Compute the loads of the branches that exert the torques T, N·m, on the output shaft."""
         e, radius, tangent, found = self._eccentricity, self._radius, self._tangent, []
         for position, T, inertia in zip(positions, torques, inertias, strict=True):
             (x, y), _, _, _ = position
@@ -178,7 +181,7 @@ class LoadEquations:
     def rotor_torque(
         self, shares: Iterable[Any], output_acceleration: Any, torque: Any = 0.0
     ) -> Any:
-        """τ2, N·m: of O3 × F_cam of the masses of each branch, the rotor's inertia, and Σ T."""
+        """Compute τ2, N·m, from O3 × F_cam of each branch's masses, the rotor's inertia and Σ T."""
         own = self._bodies.rotor_inertia * self._ratio * output_acceleration
         return sum(shares, own) + torque / self._ratio
 
@@ -195,8 +198,8 @@ def solve(
     Args:
         mechanism: the mechanism.
         state: its motion, of shape (...), with accelerations if the bodies have mass.
-        branch_torques: T, N·m, that each branch gives the output shaft, (..., B); broadcast with
-            the state.
+        branch_torques: torque T that each branch exerts on the output shaft, N·m, (..., B);
+            broadcast with the state.
         bodies: masses, inertias and pressure angle.
 
     Raises:
@@ -235,13 +238,13 @@ def solve(
 class TorqueSharing:
     """How the branches share the torque of the output.
 
-    Two branches with a preload have T_A and -T_B of `preload` for the external torque -Σ T, also
-    beyond the thresholds; any branches without one have equal shares. Floats and arrays give the
-    same results to the bit.
+    Two branches with a preload carry T_A and -T_B, as `preload` splits the external torque -Σ T,
+    also beyond the thresholds. Branches without a preload carry equal shares. Floats and arrays
+    give the same results to the bit.
 
     Args:
-        mechanism: for the number of branches.
-        preload: of two branches.
+        mechanism: determines the number of branches.
+        preload: the preload of two branches; None for equal shares.
         direction: 1 if ring gear A is turned against ring gear B in the positive direction, so
             that branch A pushes the output in the positive direction; -1 if in the negative one.
 
@@ -261,11 +264,11 @@ class TorqueSharing:
         self._direction = float(direction)
 
     def branches(self, torque: Any) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-        """Share Σ T, N·m, of all branches on the output shaft: i × τ2 at rest.
+        """Divide the total torque Σ T on the output shaft, N·m, which is i × τ2 at rest.
 
         Returns:
-            T of each branch, N·m, and how far it stands off its flank: rad at the output, at
-            least 0; 0 in mesh. Each is of the shape of Σ T.
+            The torque T of each branch, N·m, and the angle between its flanks, rad at the
+            output, which is 0 in mesh. Each has the shape of Σ T.
         """
         if self._preload is None:
             return (torque / self._count,) * self._count, (0.0,) * self._count
@@ -274,7 +277,7 @@ class TorqueSharing:
         return (sign * torque_a + 0.0, 0.0 - sign * torque_b), stand_offs  # no -0.0
 
     def margin(self, torque: Any) -> Any:
-        """As of `Preload`, for the torque of the output; NaN without a preload."""
+        """Remaining preload as in `Preload.margin`, N·m, at an output torque; NaN without one."""
         if self._preload is None:
             return torque * math.nan
         return self._preload.margin(-self._direction * torque)

@@ -23,7 +23,7 @@ from gear_kinematics.kinematics.transforms import (
 
 
 def residual(mechanism: Mechanism, rotor_angle: ArrayLike, state: MotionState) -> Array:
-    """Closure error of the vector loops of a state, per branch, (..., B), m.
+    """Compute the closure error of the vector loops of a state for each branch, (..., B), m.
 
     The greatest of three distances: between the centre of the Oldham coupling by eq. (11) and by
     eq. (14), at the slides of the state; between the former and `state.oldham_centre`; between
@@ -51,7 +51,7 @@ def residual(mechanism: Mechanism, rotor_angle: ArrayLike, state: MotionState) -
 
 
 def mobility_by_counting(mechanism: Mechanism) -> int:
-    """Degrees of freedom by eq. (2), 3(n - 1) - 2(r + p) - o, for the whole mechanism.
+    """Count the degrees of freedom of the mechanism by eq. (2), 3(n - 1) - 2(r + p) - o.
 
     n bodies including the stator, r rotary joints, p sliding joints, o general pairs (gear
     meshes). One branch gives 3(5 - 1) - 2(3 + 2) - 1 = 1. Two branches give 0 although they move:

@@ -49,7 +49,7 @@ class _Jet(NamedTuple):
         return _Jet(*(matrix[..., :2, index, np.newaxis] for matrix in self))
 
     def row(self, index: int) -> '_Jet':
-        """One row, (..., 1, n)."""
+        """Row with an index, (..., 1, n)."""
         return _Jet(*(matrix[..., index, np.newaxis, :] for matrix in self))
 
     def vectors(self) -> Array:

@@ -21,13 +21,13 @@ class Branch:
     name: str
     """A letter, then letters, digits or underscores, as it becomes part of frame names."""
     cam_phase: float = 0.0
-    """α_k, rad: the angle of the eccentric cam on the rotor; 0 points along the rotor's y axis."""
+    """Angle α_k of the eccentric cam on the rotor, rad; 0 points along the rotor's y axis."""
     axial_position: float = 0.0
-    """m, along the motor axis; the planar motion leaves it unchanged."""
+    """Position along the motor axis, m; the planar motion leaves it unchanged."""
 
     @property
     def cam_direction(self) -> tuple[float, float]:
-        """u(α_k) in the frame of the rotor: from its axis to the centre of the cam."""
+        """Unit vector u(α_k) in the frame of the rotor, from its axis to the centre of the cam."""
         return -math.sin(self.cam_phase), math.cos(self.cam_phase)
 
 
@@ -40,11 +40,11 @@ class Mechanism:
     """
 
     ring_teeth: int
-    """zk, teeth of the ring gears on the stator."""
+    """Number of teeth zk of the ring gears on the stator."""
     satellite_teeth: int
-    """zs, teeth of the satellites; fewer than `ring_teeth`."""
+    """Number of teeth zs of the satellites; less than `ring_teeth`."""
     eccentricity: float
-    """e, m: the radius of the circle on which the centres of the satellites move."""
+    """Eccentricity e, m: the radius of the circle on which the satellites' centres move."""
     branches: tuple[Branch, ...]
 
     def __post_init__(self) -> None:
@@ -70,7 +70,7 @@ class Mechanism:
 
     @property
     def gear_ratio(self) -> GearRatio:
-        """i = ω2/ω5 = -zs/(zk - zs), signed and exact (eq. 3): the output turns backwards."""
+        """Signed, exact ratio i = ω2/ω5 = -zs/(zk - zs) (eq. 3): the output turns backwards."""
         return GearRatio(-self.satellite_teeth, self.ring_teeth - self.satellite_teeth)
 
     @property
@@ -100,7 +100,7 @@ class Mechanism:
 
 
 Gear = Mechanism | GearRatio
-"""A gear: a mechanism, or one of which only the ratio is known; both have a `gear_ratio`."""
+"""A gear: a full mechanism or only its ratio; both have a `gear_ratio`."""
 
 
 def _teeth(name: str, value: object, faults: list[str]) -> int | None:

@@ -39,33 +39,33 @@ class MotionState:
     """
 
     output_angle: Array
-    """φ5, (...): the angle of the output shaft, satellites and couplings; counts turns (eq. 5)."""
+    """Angle φ5 of output shaft, satellites and couplings with its whole turns, (...), eq. (5)."""
     output_velocity: Array
-    """(...), rad/s."""
+    """First time derivative of `output_angle`, (...), rad/s."""
     output_acceleration: Array
-    """(...), rad/s²."""
+    """Second time derivative of `output_angle`, (...), rad/s²."""
     output_turn_angle: Array
-    """(...): `output_angle` minus whole turns, in [-π, π]; as precise at any number of them."""
+    """Angle φ5 within a turn, in [-π, π], (...); its precision does not depend on the turns."""
     satellite_centre: Array
-    """O3, (..., B, 2), eqs. (9), (10)."""
+    """Centre O3 of each satellite, (..., B, 2), eqs. (9), (10)."""
     satellite_velocity: Array
-    """(..., B, 2), m/s."""
+    """Velocity of O3, (..., B, 2), m/s."""
     satellite_acceleration: Array
-    """(..., B, 2), m/s²."""
+    """Acceleration of O3, (..., B, 2), m/s²."""
     oldham_centre: Array
-    """O4, (..., B, 2), eqs. (21), (22)."""
+    """Centre O4 of each Oldham coupling, (..., B, 2), eqs. (21), (22)."""
     oldham_velocity: Array
-    """(..., B, 2), m/s."""
+    """Velocity of O4, (..., B, 2), m/s."""
     oldham_acceleration: Array
-    """(..., B, 2), m/s²."""
+    """Acceleration of O4, (..., B, 2), m/s²."""
     satellite_slide: Array
-    """x_k, (..., B): slide of the coupling along x of the satellite's frame, eq. (19)."""
+    """Slide x_k of the coupling along x of the satellite's frame, (..., B), eq. (19)."""
     satellite_slide_velocity: Array
-    """(..., B), m/s."""
+    """Sliding speed of the coupling in the satellite, (..., B), m/s."""
     arm_slide: Array
-    """y_k, (..., B): slide of the coupling along y of the output shaft's frame, eq. (20)."""
+    """Slide y_k of the coupling along y of the output shaft's frame, (..., B), eq. (20)."""
     arm_slide_velocity: Array
-    """(..., B), m/s."""
+    """Sliding speed of the coupling in the arm, (..., B), m/s."""
 
     def __post_init__(self) -> None:
         """Convert the fields to read-only arrays."""

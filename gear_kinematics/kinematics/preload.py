@@ -45,12 +45,12 @@ STEEL_SHEAR_MODULUS = 79.3e9
 def shaft_stiffness(
     diameter: float, length: float, shear_modulus: float = STEEL_SHEAR_MODULUS
 ) -> float:
-    """ks = G J/L with J = π d⁴/32: the torsional stiffness of a solid round shaft, N·m/rad.
+    """Compute the torsional stiffness of a solid round shaft, ks = G J/L, J = π d⁴/32, N·m/rad.
 
     Args:
-        diameter: d, m.
-        length: L, m, between the arms.
-        shear_modulus: G, Pa.
+        diameter: diameter d, m.
+        length: length L between the arms, m.
+        shear_modulus: shear modulus G, Pa.
 
     Raises:
         MechanismError: if an argument is not finite or not greater than 0.
@@ -93,7 +93,7 @@ def ring_phase(mechanism: Mechanism) -> float:
 
 
 def ring_turn_between(mechanism: Mechanism, cam_phase_a: float, cam_phase_b: float) -> float:
-    """The same as `ring_phase`, for two given cam phases α, rad."""
+    """Compute `ring_phase` for two given cam phases α, rad."""
     cam_a, cam_b = turns(cam_phase_a), turns(cam_phase_b)
     teeth = mechanism.ring_teeth - mechanism.satellite_teeth
     return angle_between(teeth * cam_a, teeth * cam_b) / mechanism.ring_teeth
@@ -108,11 +108,11 @@ class Stiffness:
     """
 
     branch_a: float
-    """kA, of branch A: from the stator to arm A while the rotor is locked."""
+    """Stiffness kA of branch A, from the stator to arm A while the rotor is locked."""
     branch_b: float
-    """kB, of branch B: likewise to arm B, which is the output."""
+    """Stiffness kB of branch B, from the stator to arm B, which is the output."""
     shaft: float
-    """ks, of the shaft between the arms."""
+    """Stiffness ks of the shaft between the arms."""
 
     def __post_init__(self) -> None:
         """List all faults."""
@@ -129,42 +129,42 @@ class Stiffness:
 
     @property
     def compliance_a(self) -> float:
-        """cA = 1/kAe = 1/kA + 1/ks: of branch A and the shaft as seen from arm B, rad/(N·m)."""
+        """Compliance cA = 1/kA + 1/ks of branch A and the shaft, seen from arm B, rad/(N·m)."""
         return 1.0 / self.branch_a + 1.0 / self.shaft
 
     @property
     def compliance_b(self) -> float:
-        """cB = 1/kB, rad/(N·m)."""
+        """Compliance cB = 1/kB of branch B, rad/(N·m)."""
         return 1.0 / self.branch_b
 
     @property
     def compliance(self) -> float:
-        """1/kA + 1/kB + 1/ks: of the whole loop that the preload twists, rad/(N·m)."""
+        """Compliance 1/kA + 1/kB + 1/ks of the loop that the preload twists, rad/(N·m)."""
         return self.compliance_a + self.compliance_b
 
     @property
     def both_in_mesh(self) -> float:
-        """kAe + kB: at the output while both branches are in mesh, N·m/rad."""
+        """Output stiffness kAe + kB while both branches are in mesh, N·m/rad."""
         return self.branch_b_alone + self.branch_a_alone
 
     @property
     def branch_b_alone(self) -> float:
-        """kB: at the output when branch A is out of mesh, N·m/rad."""
+        """Output stiffness kB while branch A is out of mesh, N·m/rad."""
         return self.branch_b
 
     @property
     def branch_a_alone(self) -> float:
-        """kAe: at the output when branch B is out of mesh, N·m/rad."""
+        """Output stiffness kAe while branch B is out of mesh, N·m/rad."""
         return 1.0 / self.compliance_a if self.compliance_a else math.inf
 
 
 class TorqueSplit(NamedTuple):
-    """Response to an external torque; arrays of its shape."""
+    """Response to an external torque, in arrays of the torque's shape."""
 
     branch_a: NDArray[np.float64]
-    """T_A, N·m, at least 0; 0 when the branch is out of mesh."""
+    """Torque T_A of branch A, N·m, at least 0; 0 when the branch is out of mesh."""
     branch_b: NDArray[np.float64]
-    """T_B, N·m, at least 0."""
+    """Torque T_B of branch B, N·m, at least 0; 0 when the branch is out of mesh."""
     output_turn: NDArray[np.float64]
     """Turn of arm B from its unloaded position, or from the middle of its play, rad."""
 
@@ -188,21 +188,21 @@ class Preload:
             raise MechanismError([f'an interference must be finite, not {self.interference!r}'])
         cA, cB = self.stiffness.compliance_a, self.stiffness.compliance_b
         both = self.stiffness.compliance
-        # Of M, A is relieved by the first share, and B loaded by the second one.
+        # M relieves branch A by the first share and loads branch B by the second one.
         object.__setattr__(self, '_constants', (cA, cB, cB / both, cA / both, self.torque))
 
     @classmethod
     def from_ring_turn(
         cls, mechanism: Mechanism, stiffness: Stiffness, ring_turn: float, backlash: float = 0.0
     ) -> Self:
-        """The preload that results from turning the rings against each other.
+        """Compute the preload that results from turning the rings against each other.
 
         dψ_net = abs(dψ) - (zs/zk) backlash.
 
         Args:
-            mechanism: for zk/zs.
-            stiffness: of branches and shaft.
-            ring_turn: dψ, rad, of one ring gear against the other, in either direction.
+            mechanism: determines zk/zs.
+            stiffness: stiffnesses of the branches and the shaft.
+            ring_turn: turn dψ of one ring gear against the other, rad, in either direction.
             backlash: play of the output at a ring turn of 0, rad.
         """
         ratio = mechanism.ring_teeth / mechanism.satellite_teeth
@@ -210,23 +210,23 @@ class Preload:
 
     @classmethod
     def from_torque(cls, stiffness: Stiffness, torque: float) -> Self:
-        """The preload with the torque T0, N·m, ≥ 0."""
+        """Create the preload with the torque T0, N·m, ≥ 0."""
         return cls(stiffness, _not_negative('preload', torque) * stiffness.compliance)
 
     @classmethod
     def from_limit(cls, stiffness: Stiffness, limit: float) -> Self:
-        """The least preload that keeps both branches in mesh while abs(M) < `limit`, N·m, ≥ 0."""
+        """Compute the least preload that keeps both branches in mesh while abs(M) < `limit`, N·m."""
         softer = max(stiffness.compliance_a, stiffness.compliance_b)
         return cls(stiffness, _not_negative('threshold', limit) * softer)
 
     def ring_turn(self, mechanism: Mechanism, backlash: float = 0.0) -> float:
-        """Dψ = (zs/zk)(interference + backlash), rad: the inverse of `from_ring_turn`."""
+        """Compute dψ = (zs/zk)(interference + backlash), rad: the inverse of `from_ring_turn`."""
         ratio = mechanism.satellite_teeth / mechanism.ring_teeth
         return ratio * (self.interference + _not_negative('backlash', backlash))
 
     @property
     def torque(self) -> float:
-        """T0, N·m, in both branches without load; 0 if there is play."""
+        """Torque T0 in both branches without load, N·m; 0 if there is play."""
         return self._twist / self.stiffness.compliance
 
     @property
@@ -236,24 +236,24 @@ class Preload:
 
     @property
     def threshold_a(self) -> float:
-        """M at which branch A leaves mesh, N·m: T0 (1 + kB/kAe) = T0 (cA + cB)/cB."""
+        """Load M at which branch A leaves mesh, N·m: T0 (1 + kB/kAe) = T0 (cA + cB)/cB."""
         return self._load_at(self.stiffness.compliance_b)
 
     @property
     def threshold_b(self) -> float:
-        """M at which branch B leaves mesh, N·m: -T0 (1 + kAe/kB) = -T0 (cA + cB)/cA."""
+        """Load M at which branch B leaves mesh, N·m: -T0 (1 + kAe/kB) = -T0 (cA + cB)/cA."""
         return -self._load_at(self.stiffness.compliance_a)
 
     @property
     def limit(self) -> float:
-        """Both branches are in mesh while abs(M) < this, N·m: T0 (kAe + kB)/max(kAe, kB)."""
+        """Least abs(M) at which a branch leaves mesh, N·m: T0 (kAe + kB)/max(kAe, kB)."""
         return min(self.threshold_a, -self.threshold_b)
 
     def split(self, load: ArrayLike) -> TorqueSplit:
         """Split an external torque between the branches.
 
         Args:
-            load: M at arm B, N·m; any shape.
+            load: external torque M at arm B, N·m, of any shape.
         """
         M = np.asarray(load, dtype=np.float64)
         cA, cB = self.stiffness.compliance_a, self.stiffness.compliance_b
@@ -265,10 +265,11 @@ class Preload:
         return TorqueSplit(branch_a, branch_b, elastic + free + 0.0)  # no -0.0
 
     def contacts(self, M: Any) -> tuple[Pair, Pair]:
-        """Torques of A and B, N·m, and angles between their flanks, rad at the output; all ≥ 0.
+        """Compute torques of A and B, N·m, and angles between their flanks, rad at the output.
 
-        A torque is the greatest of its values with both branches in mesh, with one and with the
-        other. Without load, play is halved. Floats and arrays give the same to the bit.
+        All are at least 0. Each torque is the greatest of its values with both branches in mesh,
+        with A alone and with B alone. Without load, each branch has half of the play. Floats and
+        arrays give the same results to the bit.
         """
         cA, cB, share_a, share_b, T0 = self._constants
         larger, interference = _larger(M), self.interference
@@ -280,7 +281,7 @@ class Preload:
         return (torque_a, torque_b), (apart_a, apart_b)
 
     def margin(self, M: Any) -> Any:
-        """What a load leaves of T0 in one branch, N·m: below 0 out of mesh."""
+        """Preload that a load leaves in the branch it relieves, N·m; below 0 out of mesh."""
         _, _, share_a, share_b, T0 = self._constants
         return T0 - _larger(M)(share_a * M, -share_b * M)
 
@@ -289,7 +290,7 @@ class Preload:
         return max(self.interference, 0.0)
 
     def _load_at(self, compliance: float) -> float:
-        """The load that twists a part of this compliance by the interference."""
+        """Compute the load that twists a part of this compliance by the interference."""
         if self._twist == 0.0:
             return 0.0
         return self._twist / compliance if compliance else math.inf

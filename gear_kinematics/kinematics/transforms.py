@@ -34,7 +34,7 @@ def translation(x: ArrayLike, y: ArrayLike, z: ArrayLike = 0.0) -> Array:
 
 
 def cam_translation(mechanism: Mechanism) -> Array:
-    """Trans(e u(α_k)): from the rotor's axis to the centres of its cams, (B, 4, 4)."""
+    """Translation e u(α_k) from the rotor's axis to the centres of its cams, (B, 4, 4)."""
     phase = np.array([branch.cam_phase for branch in mechanism.branches])
     position = np.array([branch.axial_position for branch in mechanism.branches])
     e = mechanism.eccentricity
@@ -42,13 +42,13 @@ def cam_translation(mechanism: Mechanism) -> Array:
 
 
 def satellite_turn(mechanism: Mechanism, rotor_angle: ArrayLike) -> Array:
-    """φ3_2 = φ5 - φ2: the turn of the satellites on their cams (eqs. 5 and 6), (...), rad."""
+    """Turn φ3_2 = φ5 - φ2 of the satellites on their cams (eqs. 5 and 6), (...), rad."""
     angle: Array = np.asarray(rotor_angle, dtype=np.float64)
     return output_turn(mechanism, angle) - angle
 
 
 def output_turn(mechanism: Mechanism, rotor_angle: ArrayLike) -> Array:
-    """φ5 = φ2/i (eq. 5), (...), rad."""
+    """Output angle φ5 = φ2/i (eq. 5), (...), rad."""
     ratio = mechanism.gear_ratio
     angle: Array = np.asarray(rotor_angle, dtype=np.float64)
     turn: Array = angle * ratio.denominator / ratio.numerator

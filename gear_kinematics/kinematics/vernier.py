@@ -25,15 +25,15 @@ class PinSetting:
     """A tooth, the two holes that share the pin, and the resulting turn of the tooth profile."""
 
     tooth: int
-    """0 ... zk - 1."""
+    """Tooth number, 0 ... zk - 1."""
     ring_hole: int
-    """0 ... zk."""
+    """Number of the hole in the ring gear, 0 ... zk."""
     chassis_hole: int
-    """0 ... zk + 1."""
+    """Number of the hole in the chassis, 0 ... zk + 1."""
     body_turn: Fraction
-    """The turn of the ring gear's body, in whole turns, [0, 1): that of the two holes."""
+    """Turn of the ring gear's body as given by the two holes, in whole turns, [0, 1)."""
     turn: Fraction
-    """The turn of its tooth profile, in whole turns, [0, 1): `body_turn` + tooth/zk."""
+    """Turn of the tooth profile, `body_turn` + tooth/zk, in whole turns, [0, 1)."""
 
     def __str__(self) -> str:
         holes = f'ring hole {self.ring_hole} in chassis hole {self.chassis_hole}'
@@ -41,7 +41,7 @@ class PinSetting:
 
     @property
     def angle(self) -> float:
-        """`turn` in rad."""
+        """Angle of `turn`, rad."""
         return TURN * self.turn.numerator / self.turn.denominator
 
 
@@ -51,28 +51,28 @@ class Choice(NamedTuple):
     steps: int
     """Signed number of positions from the nearest one."""
     settings: tuple[PinSetting, ...]
-    """The settings of this position: for even zk two, with bodies half a turn apart, else one.
+    """Settings of this position: two with bodies half a turn apart if zk is even, else one.
 
     The one that turns the ring's body less comes first.
     """
     ring_turn: float
     """Turn of the tooth profile, rad."""
     error: float
-    """`ring_turn` minus the wanted turn, rad."""
+    """Error of `ring_turn`, rad: `ring_turn` minus the wanted turn."""
 
 
 def combinations(ring_teeth: int) -> int:
-    """n = zk (zk + 1)(zk + 2): combinations of tooth, ring hole and chassis hole (eq. 1)."""
+    """Count the combinations of tooth, ring hole and chassis hole: zk (zk + 1)(zk + 2) (eq. 1)."""
     return ring_teeth * (ring_teeth + 1) * (ring_teeth + 2)
 
 
 def distinct_positions(ring_teeth: int) -> int:
-    """lcm(zk, zk + 1, zk + 2): distinct tooth positions; n/2 for even zk, n for odd."""
+    """Count the distinct tooth positions, lcm(zk, zk + 1, zk + 2): half of n if zk is even."""
     return math.lcm(ring_teeth, ring_teeth + 1, ring_teeth + 2)
 
 
 def step(ring_teeth: int) -> float:
-    """2π / lcm(zk, zk + 1, zk + 2), rad: from one position to the next."""
+    """Angle from one position to the next, rad: 2π / lcm(zk, zk + 1, zk + 2)."""
     return TURN / distinct_positions(ring_teeth)
 
 
@@ -94,7 +94,7 @@ def angle_between(start: Fraction, end: Fraction) -> float:
 
 
 def pin_setting(ring_teeth: int, tooth: int, ring_hole: int, chassis_hole: int) -> PinSetting:
-    """The setting of a tooth and two holes.
+    """Create the setting of a tooth and two holes.
 
     Raises:
         ValueError: if there is no such tooth or hole.
@@ -157,17 +157,17 @@ def _settings_at(ring_teeth: int, position: int) -> tuple[PinSetting, ...]:
     ring_hole = position * pow(lcm // holes_ring, -1, holes_ring) % holes_ring
     rest = (position - ring_hole * (lcm // holes_ring)) // holes_ring
     if ring_teeth % 2:
-        ways = 1
+        half_turns = 1
         tooth = rest * pow(2, -1, ring_teeth)
         chassis_hole = -rest * pow(2, -1, holes_chassis)
     else:
-        ways, tooth, chassis_hole = 2, rest, -rest
+        half_turns, tooth, chassis_hole = 2, rest, -rest
     return tuple(
         pin_setting(
             ring_teeth,
-            (tooth + way * ring_teeth // 2) % ring_teeth,
+            (tooth + half_turn * ring_teeth // 2) % ring_teeth,
             ring_hole,
-            (chassis_hole + way * holes_chassis // 2) % holes_chassis,
+            (chassis_hole + half_turn * holes_chassis // 2) % holes_chassis,
         )
-        for way in range(ways)
+        for half_turn in range(half_turns)
     )
