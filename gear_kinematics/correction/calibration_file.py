@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The file of a calibration: what corrects the output of one gear, and what it was made from."""
+"""Calibration file: the correction of the output of one gear, and the recordings it came from."""
 
 import math
 from collections.abc import Mapping
@@ -16,10 +16,10 @@ from gear_kinematics.kinematics import Gear, GearRatio, Mechanism
 from gear_kinematics.parameters.yaml_file import Dumper, read_yaml
 
 SCHEMA = 'gear_kinematics/calibration/1'
-"""Identifies the files and their version."""
+"""Value that identifies calibration files and their version."""
 UNITS = {'angle': 'rad', 'torque': 'N·m', 'speed': 'rad/s', 'time': 's'}
 """The units of all numbers in a file."""
-_GREATEST = 1e30  # no number of a real gear is near it
+_GREATEST = 1e30  # far above any number of a real gear
 _LONGEST_PERIOD = 2**26  # rotor turns; products of two such numbers are exact in float64
 
 
@@ -40,16 +40,16 @@ class CalibrationError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class UsedRecording:
-    """A recording that a calibration was made from."""
+    """A recording from which a calibration was made."""
 
     name: str
-    """Of the file."""
+    """Name of the file."""
     sha256: str
     samples: int
     duration: float
     """s."""
     zero: float
-    """rad: what was added to the deviation in this recording, by the zero of its encoder."""
+    """Offset of the deviation in this recording, from the zero of its encoder, rad."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ class Order:
 
     name: str
     cycles: Fraction
-    """n: cycles per turn of the rotor."""
+    """Order n: cycles per turn of the rotor."""
     cos: float
     """rad."""
     sin: float
@@ -77,7 +77,7 @@ class Stop:
 
 @dataclass(frozen=True, slots=True)
 class Compliance:
-    """Wind-up by the output torque M: coefficient · (M - torque)."""
+    """Wind-up caused by the output torque M: coefficient · (M - torque)."""
 
     coefficient: float
     """rad/(N·m)."""
@@ -87,33 +87,33 @@ class Compliance:
 
 @dataclass(frozen=True, slots=True)
 class Spans:
-    """What the recordings covered, each from its least to its greatest value, of the output."""
+    """Ranges of the output that the recordings covered, each as its least and greatest value."""
 
     speed: tuple[float, float] | None
-    """rad/s; None if time was not recorded."""
+    """Range of the speed, rad/s; None if time was not recorded."""
     torque: tuple[float, float] | None
-    """N·m; None if no effort was recorded."""
+    """Range of the torque, N·m; None if no effort was recorded."""
     angle: tuple[float, float]
-    """rad, ideal output angle."""
+    """Range of the ideal output angle, rad."""
     time: float
-    """s, in all."""
+    """Total duration, s."""
 
 
 @dataclass(frozen=True, slots=True)
 class Prediction:
-    """How well blocks that were left out of the fit were predicted."""
+    """Quality of the prediction on held-out blocks of the data."""
 
     rms_before: float
-    """rad, without the correction."""
+    """Root mean square error without the correction, rad."""
     rms_after: float
-    """rad, with it."""
+    """Root mean square error with the correction, rad."""
     coverage: float
     """Share of samples within the 95 % interval."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Calibration:
-    """Deviation of the real from the ideal output angle x = φ2/i of one gear.
+    """Model of the deviation of one gear's real output angle from the ideal one, x = φ2/i.
 
     The deviation at the rotor angle φ2 and the output torque M is
 
@@ -124,12 +124,12 @@ class Calibration:
     """
 
     made_by: str
-    """Program and version."""
+    """Program that wrote the file, and its version."""
     created: str
-    """Date and time, ISO 8601."""
+    """Date and time of the calibration, ISO 8601."""
     recordings: tuple[UsedRecording, ...]
     gear_ratio: Fraction
-    """i, signed and exact."""
+    """Signed, exact gear ratio i."""
     ring_teeth: int | None
     """None if only the ratio is known."""
     satellite_teeth: int | None
@@ -140,11 +140,11 @@ class Calibration:
     hysteresis: tuple[Stop, ...]
     compliance: Compliance | None
     covariance: tuple[tuple[float, ...], ...]
-    """Of the coefficients: cos and sin of each order, of each stop, of the compliance."""
+    """Covariance of the coefficients: cos and sin of each order, each stop, the compliance."""
     half_width: float
-    """rad, of the 95 % interval within `spans`."""
+    """Half width of the 95 % interval within `spans`, rad."""
     outside_half_width: float
-    """rad, of the 95 % interval elsewhere; not less than `half_width`."""
+    """Half width of the 95 % interval outside `spans`, rad; at least `half_width`."""
     spans: Spans
     validation: Prediction
 
@@ -179,8 +179,8 @@ class Calibration:
         """Read a file.
 
         Args:
-            path: of the file.
-            gear: to correct; None checks no gear.
+            path: path of the file.
+            gear: the gear to correct; None skips the check of the gear.
 
         Raises:
             CalibrationError: if the file cannot be used, or is of another gear; the text names it.
@@ -195,12 +195,12 @@ class Calibration:
             if gear is not None:
                 calibration._check(gear)
         except CalibrationError as error:
-            # A value in it may be as long as the file.
+            # A value in the message may be as long as the file.
             raise CalibrationError(f'{path}: {error!s:.1000}') from error
         return calibration
 
     def text(self) -> str:
-        """The content of the file."""
+        """Write the content of the file."""
         fields = asdict(self, dict_factory=_with_ratios_as_texts)
         return yaml.dump(
             {'schema': SCHEMA, 'units': UNITS} | fields,

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""How well a calibration fits a measured transmission error."""
+"""Assessment of how well a calibration fits a measured transmission error."""
 
 import math
 from typing import Any, NamedTuple, Self
@@ -17,33 +17,33 @@ _UNLIKELY_ONCE, _UNLIKELY = 2.326, 3.090
 
 
 class CalibrationFit(NamedTuple):
-    """How the measured transmission error compares with the calibration."""
+    """Comparison of the measured transmission error with the calibration."""
 
     samples: int
     explained: float | None
-    """Share of the variance of the error; None if the error is constant."""
+    """Share of the error's variance that the calibration explains; None if it is constant."""
     outside: float
-    """Share of samples outside of the 95 % interval, apart from the encoder's zero."""
+    """Share of samples outside the 95 % interval once the encoder's zero is removed."""
     fits: bool
-    """Whether that many would be outside of a true interval by chance, or hardly more are."""
+    """Whether chance explains the share outside, or it hardly exceeds what chance explains."""
     independent: float
-    """Number of independent samples, of whether they are outside."""
+    """Number of independent samples on which `outside` is based."""
 
     @property
     def outside_uncertainty(self) -> float:
-        """Expanded uncertainty (95 %) of the share that would be outside in the long run."""
+        """Expanded uncertainty (95 %) of the long-run share outside the interval."""
         # Agresti and Coull's estimate, which is not 0 where no sample is outside.
         share = (self.outside * self.independent + 2.0) / (self.independent + 4.0)
         return 2.0 * math.sqrt(share * (1.0 - share) / (self.independent + 4.0))
 
     @classmethod
     def of(cls, error: Array, residual: Array, half_width: Array, *, once: bool = False) -> Self:
-        """Judge samples, (n,) each, rad; the zero of the encoder, the mean, is taken out.
+        """Judge samples, (n,) each, rad, after subtracting their mean, the encoder's zero.
 
         Args:
             error: measured minus ideal output angle.
             residual: measured minus corrected output angle.
-            half_width: of the interval.
+            half_width: half width of the interval.
             once: whether this is the only judgement, not one of many.
         """
         error, residual = (column - column[0] for column in (error, residual))  # rounds less

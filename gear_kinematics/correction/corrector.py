@@ -16,25 +16,28 @@ from gear_kinematics.wire.cdr import SECOND
 Array = NDArray[Any]
 
 MAX_GAP = SECOND
-"""ns between samples beyond which the hysteresis is unknown again, as motion was missed."""
+"""Gap between samples, ns, after which the hysteresis is unknown, as motion was missed."""
 _SAMPLING = SECOND // 10
-"""ns between samples beyond which the motion is not followed, whatever their usual period is; not
-beyond three periods either, since then messages were lost."""
+"""Gap between samples, ns, beyond which the motion is not followed, whatever their usual period.
+
+A gap of more than three periods is not followed either, since messages were lost."""
 _CHUNK = 4096  # samples of a batch that are lists at a time, which take much memory
 
 
 class Correction(NamedTuple):
-    """What to add to the ideal output angle; floats, or arrays (n,)."""
+    """Correction of the ideal output angle, as floats or arrays (n,)."""
 
     deviation: Any
     """rad."""
     slope: Any
     """Derivative of the deviation with respect to the ideal output angle."""
     half_width: Any
-    """rad: the real output angle is within ± this of the corrected one with 95 %."""
+    """Half width of the 95 % interval of the real about the corrected output angle, rad."""
     unknown_history: Any
-    """rad: the part of `half_width` that another history before the first sample would change; as
-    much of the deviation would change."""
+    """Part of `half_width` due to the unknown history before the first sample, rad.
+
+    Another history would change the deviation by at most this much.
+    """
 
 
 class Corrector:
@@ -74,7 +77,7 @@ class Corrector:
 
     def reset(self) -> None:
         """Forget the motion so far, as after homing: the states are unknown."""
-        # Of each operator radius, coefficient, and the least and the greatest possible state.
+        # Radius and coefficient of each operator, and its least and greatest possible state.
         self._stops = [
             (stop.radius, stop.coefficient, [-math.inf, math.inf])
             for stop in self._calibration.hysteresis
@@ -86,7 +89,7 @@ class Corrector:
         """Compute the correction at the next sample.
 
         Args:
-            sample: of the rotor.
+            sample: sample of the rotor.
             segment: as in `RotorSamples`; the states are unknown after it has changed.
             referenced: whether the rotor's turns are known; the states are unknown after homing.
         """
@@ -111,10 +114,10 @@ class Corrector:
 
         Args:
             stamp: ns.
-            turns: of the rotor.
-            angle: rad.
-            velocity: rad/s; NaN where there is none.
-            effort: N·m; NaN where there is none.
+            turns: whole turns of the rotor.
+            angle: angle of the rotor within the turn, rad.
+            velocity: velocity of the rotor, rad/s; NaN where it is unknown.
+            effort: torque of the rotor, N·m; NaN where it is unknown.
             segment: the states are unknown after it has changed.
             referenced: whether the rotor's turns are known.
         """
@@ -138,8 +141,8 @@ class Corrector:
         """Follow the stop operators to the next sample.
 
         Returns:
-            What they add to the deviation, rad, halfway between its extremes over all possible
-            histories; its slope; and half the distance of the extremes, rad.
+            Their contribution to the deviation, rad, as the middle of its range over all
+            possible histories; its slope; and half of that range, rad.
         """
         first, second, third, last = self._stamps
         gap, (turns_before, angle_before) = stamp - last, self._last
@@ -170,9 +173,10 @@ class Corrector:
         return deviation, slope, unknown
 
     def _widen(self, gap: int, step: float) -> None:
-        """Let the output have moved unseen in a gap, ns, before a step, rad.
+        """Widen the states by the unseen motion of the output in a gap, ns, before a step, rad.
 
-        Its acceleration takes it from the straight way between both samples by a t²/8 at most.
+        Its acceleration makes it deviate from a uniform motion between the samples by at most
+        a t²/8.
         """
         beyond = abs(self.max_acceleration * self._per_rotor) * (gap / SECOND) ** 2 / 8.0
         back, ahead = min(step, 0.0) - beyond, max(step, 0.0) + beyond
@@ -220,7 +224,7 @@ class Corrector:
         if spans.torque is not None:
             inside = inside & (no_torque | _contains(spans.torque, torque))
         if referenced and self._period > 1:
-            # How far the output is beyond the begin of its calibrated span, within a period.
+            # Distance of the output from the start of its calibrated span, within a period.
             beyond = (TURN * turn + angle) * self._per_rotor - spans.angle[0]
             inside = inside & (beyond % self._period_angle <= spans.angle[1] - spans.angle[0])
         half_width = where(inside, file.half_width, file.outside_half_width) + unknown

@@ -12,7 +12,7 @@ from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
 
 _MOST = 2**20
-"""Samples that are kept at most: 60 s, the longest window, at 17 kHz."""
+"""Greatest number of samples kept: 60 s, the longest window, at 17 kHz."""
 _BINS = 720
 """Bins of output angles in a turn, in which both directions are compared."""
 
@@ -28,7 +28,7 @@ class ErrorStatistics(NamedTuple):
     reversals: Reversals | None = None
     """Lost motion and delay; None unless both directions cover the same angles."""
     calibration: CalibrationFit | None = None
-    """How well the calibration fits; None without one."""
+    """Fit of the calibration; None without one."""
 
 
 class ErrorWindow:

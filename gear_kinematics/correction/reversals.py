@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Lost motion on reversals, told apart from a delay between the stamps of the encoders.
+"""Separation of lost motion on reversals from a delay between the stamps of the encoders.
 
 Both make the error of backward motion exceed that of forward motion at the same output angle. Lost
 motion does so by a constant, a delay τ in proportion to the speed: an output angle that is stamped
@@ -24,34 +24,34 @@ Array = NDArray[np.float64]
 _BLOCKS = 20
 """Blocks of a pair of runs. Errors within a block may be correlated, those of blocks are not."""
 _PAIRS = 4
-"""Pairs of runs from which on they are the repeats, and not their blocks."""
+"""Least number of pairs of runs that serve as the repeats instead of blocks of angles."""
 _LEAST = 3
-"""Blocks that a straight line and its scatter need, at least."""
+"""Least number of blocks that a straight line and its scatter need."""
 _SPREAD = 0.01
-"""Least standard deviation of the speed, relative to its mean, that tells a delay."""
+"""Least standard deviation of the speed, relative to its mean, that makes a delay measurable."""
 _STEADY = 0.02
 """Greatest share of the speed's variance that may be noise; it makes the delay too small."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reversals:
-    """What differs between both directions of motion."""
+    """Differences between both directions of motion."""
 
     difference: Estimate
     """Mean error of backward minus forward motion, rad: lost motion, and delay times speed."""
     lost_motion: Estimate | None
-    """rad, at no speed; None where the speed varies too little to tell it from a delay."""
+    """Lost motion, rad; None if the speed varies too little to separate it from a delay."""
     delay: Estimate | None
-    """s by which the stamps of the measured angles are late; None as above."""
+    """Delay of the stamps of the measured angles, s; None in the same case."""
 
 
 class Pair(NamedTuple):
     """A run and the next one back, at angles that both cover, in the order of the angles."""
 
     difference: Array
-    """(n,), rad: error of backward minus forward motion."""
+    """Error of backward minus forward motion, (n,), rad."""
     speed: Array
-    """(n,), rad/s: speed of forward minus that of backward motion."""
+    """Speed of forward minus that of backward motion, (n,), rad/s."""
 
 
 def separate(pairs: Sequence[Pair], *others: Component) -> Reversals | None:
@@ -61,8 +61,8 @@ def separate(pairs: Sequence[Pair], *others: Component) -> Reversals | None:
     angles where there are few pairs.
 
     Args:
-        pairs: of runs; those without angles are ignored.
-        others: components of the uncertainty that are the same in all pairs, rad.
+        pairs: pairs of runs; those without angles are ignored.
+        others: components of the uncertainty that all pairs have in common, rad.
 
     Returns:
         None without common angles.

@@ -14,7 +14,7 @@ from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
 _DEPTH = 8192
-"""Samples of each kind that are kept."""
+"""Number of samples of each kind that are kept."""
 
 
 class ErrorSample(NamedTuple):
@@ -23,18 +23,18 @@ class ErrorSample(NamedTuple):
     stamp: int
     """ns."""
     error: float
-    """Measured minus ideal, rad."""
+    """Measured minus ideal output angle, rad."""
     turns: int
     ideal: float
-    """rad: the ideal output angle is 2π `turns` + `ideal`."""
+    """Remainder of the ideal output angle 2π `turns` + `ideal`, rad."""
     direction: int
-    """Of the output: 1, -1, or 0 until it has moved far enough after a reversal."""
+    """Direction of the output: 1, -1, or 0 until it has moved far enough after a reversal."""
     speed: float
-    """Of the ideal output angle, rad/s."""
+    """Rate of the ideal output angle, rad/s."""
     deviation: float = 0.0
-    """Of the calibrated from the ideal output angle, rad."""
+    """Deviation of the calibrated from the ideal output angle, rad."""
     half_width: float = math.nan
-    """Of the calibration's interval, rad; NaN without a calibration."""
+    """Half width of the calibration's interval, rad; NaN without a calibration."""
 
 
 class Direction:
@@ -48,7 +48,7 @@ class Direction:
         """Start without a direction.
 
         Args:
-            travel: rad after a reversal until the new direction counts.
+            travel: angle after a reversal until the new direction counts, rad.
         """
         self._travel = travel
         self.reset()

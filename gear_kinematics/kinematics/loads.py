@@ -181,7 +181,7 @@ class LoadEquations:
     def rotor_torque(
         self, shares: Iterable[Any], output_acceleration: Any, torque: Any = 0.0
     ) -> Any:
-        """Compute τ2, N·m, from O3 × F_cam of each branch's masses, the rotor's inertia and Σ T."""
+        """Compute τ2, N·m, from O3 × F_cam of each branch's masses, rotor inertia and Σ T."""
         own = self._bodies.rotor_inertia * self._ratio * output_acceleration
         return sum(shares, own) + torque / self._ratio
 

@@ -215,7 +215,7 @@ class Preload:
 
     @classmethod
     def from_limit(cls, stiffness: Stiffness, limit: float) -> Self:
-        """Compute the least preload that keeps both branches in mesh while abs(M) < `limit`, N·m."""
+        """Compute the least preload that keeps both branches in mesh while abs(M) < `limit`."""
         softer = max(stiffness.compliance_a, stiffness.compliance_b)
         return cls(stiffness, _not_negative('threshold', limit) * softer)
 

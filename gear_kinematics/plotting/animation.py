@@ -11,7 +11,7 @@ import numpy as np
 from gear_kinematics.bag.trajectory import Trajectory
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import RotorPosition
-from gear_kinematics.plotting.mechanism import FACES, Bodies, Centres
+from gear_kinematics.plotting.mechanism import FACES, BodyDrawing, CentreDrawing
 from gear_kinematics.plotting.motion import rose
 from gear_kinematics.report.image import FAINT, INK, canvas
 from gear_kinematics.report.mark import MARK
@@ -73,12 +73,12 @@ def _moving(
     ):
         figure.text(middle, height, text, ha='center', **style)
     moments = [figure.text(0.735, height, '', **style) for height in (0.88, 0.82, 0.76)]
-    bodies = Bodies(left, mechanism, module, 0, force)
+    bodies = BodyDrawing(left, mechanism, module, 0, force)
     names = [NAMES[body] for body in bodies.patches]
     handles = list(bodies.patches.values())
     style = {'fontsize': 7, 'handlelength': 0.8, 'labelspacing': 0.3}
     figure.legend(handles, names, loc=(0.72, 0.02), **style)
-    artists = bodies, Centres(right, mechanism, 0)
+    artists = bodies, CentreDrawing(right, mechanism, 0)
     output = frames.state(mechanism).output_angle
     for number, (time, turns, angle, turned) in enumerate(
         zip(frames.time, frames.turns, frames.angle, output, strict=True), start=1

@@ -39,8 +39,8 @@ _MM = 1e3  # in a metre
 _CIRCLE = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 121))
 
 
-class Bodies:
-    """The bodies of a branch drawn to scale; `show` moves them."""
+class BodyDrawing:
+    """Drawing of the bodies of a branch to scale; `show` moves them."""
 
     def __init__(
         self, axes: Any, mechanism: Mechanism, module: float, branch: int, force: float = 0.0
@@ -69,8 +69,8 @@ class Bodies:
             patch.set_path(_path(placed[body].place(part) for part in self._outlines[body]))
 
 
-class Centres:
-    """The centres of a branch's bodies, in units of e; `show` moves them.
+class CentreDrawing:
+    """Drawing of the centres of a branch's bodies, in units of e; `show` moves them.
 
     O4 is where the slot of the satellite (the x axis of its frame) intersects that of the arm (the
     y axis of the output shaft's frame).
@@ -138,17 +138,17 @@ def scheme(
     """Draw the kinematic scheme: the bodies of a branch to scale, and their centres magnified.
 
     Args:
-        mechanism: of which the first branch is drawn.
-        module: of the teeth, m.
-        path: of the image file, whose suffix is its format.
-        rotor: the position φ2.
+        mechanism: the mechanism, whose first branch is drawn.
+        module: module of the teeth, m.
+        path: path of the image file, whose suffix is its format.
+        rotor: rotor angle φ2.
         force: F_t, N, to draw the forces on the satellite, too.
     """
     with canvas((7.4, 4.7)) as figure:
         left, right = figure.subplots(1, 2)
-        drawn = Bodies(left, mechanism, module, 0, force)
+        drawn = BodyDrawing(left, mechanism, module, 0, force)
         drawn.show(rotor)
-        Centres(right, mechanism, 0).show(rotor)
+        CentreDrawing(right, mechanism, 0).show(rotor)
         placed = poses(mechanism, rotor.angle, rotor_turns=rotor.turns)
         _label_centres(right, mechanism, placed)
         add_legend(figure, list(drawn.patches.values()), [NAMES[body] for body in drawn.patches])
@@ -204,7 +204,7 @@ def _square(axes: Any, half: float) -> None:
 
 
 def _path(outlines: Iterable[Array]) -> Any:
-    """One path of closed polygons (n, 2)."""
+    """Make one path of closed polygons (n, 2)."""
     from matplotlib.path import Path as Polygons  # noqa: PLC0415, an extra
 
     return Polygons.make_compound_path(

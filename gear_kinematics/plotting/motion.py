@@ -11,7 +11,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.report.document import PENS, Array, Figure, Line, Panel, Pen
 
 MOST_PETALS = 1000
-"""With more, a rose looks like a disc."""
+"""Greatest number of petals; with more, a rose looks like a disc."""
 _PETAL_POINTS = 48
 _MM = 1e3  # in a metre
 _SAMPLES = 361  # of a turn
@@ -33,7 +33,7 @@ def roses(mechanism: Mechanism) -> Figure:
 
 
 def rose(mechanism: Mechanism) -> Array:
-    """The complete paths of the centres of the couplings, O4, (n, B, 2), m (eqs. 21, 22).
+    """Compute the complete paths of the couplings' centres O4, (n, B, 2), m (eqs. 21, 22).
 
     Raises:
         ValueError: if there are more petals than `MOST_PETALS`.

@@ -38,16 +38,16 @@ BODIES = tuple(NAMES)[:-1]
 _ARC = math.radians(3.0)  # between points of a circle, approximately
 _RING_BORDER = 1.07  # of the ring gear, in root radii
 _LEAST_ROOM = 0.3
-"""Share of the satellite's root radius that coupling and arm need beside their slides."""
+"""Share of the satellite's root radius that coupling and arm need in addition to their slides."""
 
 
 class Pose(NamedTuple):
     """Pose of a body in the frame of the stator; `...` is the shape of the rotor angles."""
 
     centre: Array
-    """(..., 2), m."""
+    """Position of the body's origin, (..., 2), m."""
     angle: Array
-    """(...), rad, within a turn."""
+    """Orientation of the body within a turn, (...), rad."""
 
     def place(self, outline: Array) -> Array:
         """Transform points (n, 2) of the body to the frame of the stator, (..., n, 2)."""
@@ -58,7 +58,7 @@ class Pose(NamedTuple):
 
 
 def bodies(mechanism: Mechanism, module: float, branch: int = 0) -> dict[str, Polygons]:
-    """Compute the outlines of `BODIES`, in this order, of the branch with an index.
+    """Compute the outlines of the branch with an index, in the order of `BODIES`.
 
     The module of the teeth is in m.
     """
@@ -102,8 +102,8 @@ def bodies(mechanism: Mechanism, module: float, branch: int = 0) -> dict[str, Po
 def arrows(mechanism: Mechanism, length: float) -> Polygons:
     """Outline the forces on a satellite, in a frame whose y axis is u(θ).
 
-    An arrow of a length, m, at the pitch point along u'(θ), and one against it at O3; for a
-    negative length the other way round.
+    One arrow of the given length, m, points along u'(θ) at the pitch point, and the opposite one
+    acts at O3. A negative length reverses both.
     """
     e, half = mechanism.eccentricity, 0.03 * length
     pitch = e * mechanism.ring_teeth / (mechanism.ring_teeth - mechanism.satellite_teeth)
@@ -124,12 +124,12 @@ def poses(
 
     Args:
         mechanism: the mechanism.
-        rotor_angle: φ2, rad, of any shape `(...)`.
+        rotor_angle: rotor angle φ2, rad, of any shape `(...)`.
         branch: index of the branch.
         rotor_turns: whole turns added to it, as for `solve`.
 
     Returns:
-        The pose of each of `BODIES`, in this order, and of `arrows`.
+        The poses of the `BODIES`, in this order, followed by that of `arrows`.
     """
     state = solve(mechanism, rotor_angle, rotor_turns=rotor_turns)
     shape = state.output_angle.shape
@@ -151,7 +151,7 @@ def turned(outline: Array, angle: float) -> Array:
 
 
 def _tabbed_circle(radius: float, tab: Sequence[tuple[float, float]], count: int) -> Array:
-    """A circle with equal tabs, evenly spaced; `tab` is the one on the x axis."""
+    """Make a circle with equal, evenly spaced tabs; `tab` is the one on the x axis."""
     half_width = abs(tab[0][1])
     start = math.asin(half_width / radius)
     foot = radius * math.cos(start)

@@ -16,11 +16,11 @@ from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.shape.outlines import Polygons, bodies
 
 FACE_WIDTH = 0.01
-"""Of the gears, m."""
+"""Face width of the gears, m."""
 PLATE = 0.2 * FACE_WIDTH
 """Thickness of coupling and arm, m."""
 STL_HEADER = b'gear_kinematics, m'
-"""How the files begin. Readers take a file that begins with "solid" for text."""
+"""Header of the files. Readers take a file that begins with "solid" for text."""
 
 _SOLIDS = {
     'ring_gear': ('stator', FACE_WIDTH),
@@ -29,11 +29,11 @@ _SOLIDS = {
     'coupling': ('oldham', PLATE),
     'arm': ('output_shaft', PLATE),
 }
-"""For each solid, the body of which it has the outline, and its height, m."""
+"""Body whose outline each solid has, and the height of the solid, m."""
 _STL = np.dtype([('normal', '<f4', 3), ('corners', '<f4', (3, 3)), ('attribute', '<u2')])
 
 Triangles = NDArray[np.float32]
-"""(n, 3, 3): corner, coordinate; m, counterclockwise from outside."""
+"""Triangles (n, 3, 3) by corner and coordinate, m; counterclockwise as seen from outside."""
 
 
 class Solid(NamedTuple):
@@ -41,7 +41,7 @@ class Solid(NamedTuple):
 
     outlines: Polygons
     height: float
-    """m."""
+    """Height along the axis, m."""
 
     @property
     def reach(self) -> float:
@@ -55,7 +55,7 @@ class Solid(NamedTuple):
 
 
 def solids(mechanism: Mechanism, module: float) -> dict[str, Solid]:
-    """The solids by the names of their files, without coupling and arm where these are not drawn.
+    """Make the solids by the names of their files, without coupling and arm if they do not fit.
 
     Ring gear and cam are those of a branch with cam phase 0: the ring gear of another one is
     turned by its `ring_phase`, the cam by its cam phase. The module is in m.
@@ -86,9 +86,9 @@ def to_stl(solid: Solid) -> bytes:
 
 
 def triangles(solid: Solid) -> Triangles:
-    """The surface: the face at either end, and walls on those edges that a face has only once.
+    """Triangulate the surface: a face at either end, and walls on edges that a face has once.
 
-    So the surface is closed however the faces were divided.
+    The surface is therefore closed, however the faces were divided.
     """
     # What is divided is what is written, or rounding could turn a triangle over.
     points = np.concatenate(solid.outlines).astype(np.float32)

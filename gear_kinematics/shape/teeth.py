@@ -48,20 +48,23 @@ _MOST_TEETH = 1000  # more are too fine for any picture
 
 
 class InterferenceError(ValueError):
-    """Involute teeth of a module cannot mesh at an eccentricity; the text gives the numbers."""
+    """Involute teeth cannot mesh at an eccentricity; the text gives the numbers."""
 
 
 class Outlines(NamedTuple):
     """Closed counterclockwise polygons, m, without repeating the first point."""
 
     ring: Array
-    """(n, 2), in the stator's frame, before a turn by `ring_phase`; the material is outside."""
+    """Outline of the ring gear in the stator's frame, (n, 2); the material is outside.
+
+    It still has to be turned by `ring_phase`.
+    """
     satellite: Array
-    """(m, 2), in frame 3: about the satellite's centre, at the angle φ5."""
+    """Outline of the satellite in frame 3, (m, 2): about its centre, at the angle φ5."""
 
 
 def outlines(mechanism: Mechanism, module: float) -> Outlines:
-    """The outlines of ring gear and satellite, which mesh at every rotor angle.
+    """Compute the outlines of ring gear and satellite, which mesh at every rotor angle.
 
     Draw the satellite at `satellite_centre`, turned by `output_angle`, and the ring gear of a
     branch turned by its `ring_phase`. If the teeth cannot mesh (see `tooth_pair`), or are too many
@@ -82,7 +85,7 @@ def outlines(mechanism: Mechanism, module: float) -> Outlines:
 
 
 def ring_phase(mechanism: Mechanism, branch: Branch) -> float:
-    """ψ_k: the turn of a branch's ring gear for its cam phase, rad, within half a tooth pitch."""
+    """Turn ψ_k of a branch's ring gear for its cam phase, rad, within half a tooth pitch."""
     return ring_turn_between(mechanism, 0.0, branch.cam_phase)
 
 
@@ -116,7 +119,7 @@ class ToothPair:
 
     mechanism: Mechanism
     module: float
-    """Of the teeth, m."""
+    """Module of the teeth, m."""
     addendum: float
     """Height of the teeth above their reference circle, modules: 1, or less if shortened."""
 
@@ -129,14 +132,14 @@ class ToothPair:
 
     @property
     def working_pressure_angle(self) -> float:
-        """αw, between the line of action and the common tangent of the rolling circles."""
+        """Angle αw between the line of action and the common tangent of the rolling circles."""
         teeth = self.mechanism.ring_teeth - self.mechanism.satellite_teeth
         reference = 0.5 * self.module * teeth
         return math.acos(reference * math.cos(PRESSURE_ANGLE) / self.mechanism.eccentricity)
 
     @property
     def ring_profile_shift(self) -> float:
-        """xk, in modules; that of the satellite is 0."""
+        """Profile shift xk of the ring gear, modules; that of the satellite is 0."""
         teeth = self.mechanism.ring_teeth - self.mechanism.satellite_teeth
         involute = _inv(self.working_pressure_angle) - _inv(PRESSURE_ANGLE)
         return 0.5 * teeth * involute / math.tan(PRESSURE_ANGLE)
@@ -153,12 +156,12 @@ class ToothPair:
 
     @property
     def satellite_tip_radius(self) -> float:
-        """rs, m."""
+        """Tip radius rs of the satellite, m."""
         return self.module * (0.5 * self.mechanism.satellite_teeth + self.addendum)
 
     @cached_property
     def ring_tip_radius(self) -> float:
-        """rk, m; greater where involute interference requires it."""
+        """Tip radius rk of the ring gear, m; greater if involute interference requires it."""
         teeth = 0.5 * self.mechanism.ring_teeth
         ratio = self.mechanism.satellite_teeth / self.mechanism.ring_teeth
         flank = (1.0 - ratio) * math.tan(self.working_pressure_angle)
@@ -207,7 +210,7 @@ class ToothPair:
 
     @property
     def outlines(self) -> Outlines:
-        """Outlines of both gears, whether they mesh or not."""
+        """Compute the outlines of both gears, whether they mesh or not."""
         return Outlines(
             self.ring.outline(self.ring_tip_radius, self.ring_root_radius),
             self.satellite.outline(self.satellite_root_radius, self.satellite_tip_radius),
@@ -231,13 +234,13 @@ class Involute(NamedTuple):
 
     teeth: int
     base_radius: float
-    """m."""
+    """Radius of the base circle, m."""
     base_half_angle: float
     """Half the angular thickness of a tooth on the base circle, rad."""
 
     @classmethod
     def of(cls, teeth: int, module: float, profile_shift: float, backlash: float) -> Self:
-        """Teeth of the basic rack, thinner by the backlash; shift and backlash are in modules."""
+        """Make teeth of the basic rack, thinned by the backlash; shift and backlash in modules."""
         base_radius = 0.5 * module * teeth * math.cos(PRESSURE_ANGLE)
         half_angle = (0.5 * math.pi + 2.0 * profile_shift * math.tan(PRESSURE_ANGLE)) / teeth
         # Turning an involute by an angle moves it by base radius × angle along its normal.
@@ -252,7 +255,7 @@ class Involute(NamedTuple):
         return math.acos(min(1.0, self.base_radius / radius))
 
     def roll(self, radius: float) -> float:
-        """The radius of curvature of the involute at a radius, m."""
+        """Radius of curvature of the involute at a radius, m."""
         return self.base_radius * math.tan(self.pressure_angle(radius))
 
     def half_angle(self, radius: float) -> float:
@@ -268,7 +271,7 @@ class Involute(NamedTuple):
         return 2.0 * radius * (math.pi / self.teeth - self.half_angle(radius))
 
     def outline(self, root_radius: float, tip_radius: float) -> Array:
-        """The closed outline, with the middle of a tooth on the y axis, (n, 2), m."""
+        """Compute the closed outline with the middle of a tooth on the y axis, (n, 2), m."""
         start = max(root_radius, self.base_radius)
         rolls = np.linspace(self.roll(start), self.roll(tip_radius), _FLANK_POINTS)
         radii = np.hypot(self.base_radius, rolls)
@@ -283,12 +286,12 @@ class Involute(NamedTuple):
 
 
 def _inv(angle: float) -> float:
-    """The involute function, tan α - α."""
+    """Compute the involute function, tan α - α."""
     return math.tan(angle) - angle
 
 
 def circle(radius: float, x: float = 0.0, y: float = 0.0) -> Array:
-    """A circle about a point, counterclockwise, (n, 2)."""
+    """Make a circle about a point, counterclockwise, (n, 2)."""
     angle = np.linspace(0.0, TURN, _CIRCLE_POINTS, endpoint=False)
     return np.column_stack([x + radius * np.cos(angle), y + radius * np.sin(angle)])
 

@@ -38,9 +38,9 @@ _STEEL = 7850.0  # kg/m³
 
 
 def joint_names(gear: Gear, *, output_joint: str, frame_prefix: str) -> list[str]:
-    """Names of all joints of the URDF: rotor, satellites, Oldham couplings, output shaft.
+    """List the joints of the URDF: rotor, satellites, Oldham couplings, output shaft.
 
-    Of a gear of which only the ratio is known, that of the output shaft alone.
+    If only the ratio of the gear is known, the output shaft's joint is the only one.
 
     Raises:
         ValueError: if `output_joint` is empty or the name of another joint, or a name is not
@@ -66,9 +66,9 @@ def urdf(
 
     Args:
         mechanism: the mechanism.
-        module: of the teeth, m; together with the tooth numbers, it determines the sizes.
-        output_joint: the output shaft's joint, without the prefix.
-        frame_prefix: put before every link and joint name.
+        module: module of the teeth, m; with the tooth numbers it determines the sizes.
+        output_joint: name of the output shaft's joint, without the prefix.
+        frame_prefix: prefix of every link and joint name.
         meshes: the URI below which viewers find the `solids` as STL; '' shows simple shapes. The
             inertias are those of the simple shapes.
 
@@ -111,7 +111,7 @@ def as_macro(urdf: str) -> str:
     """Wrap a URDF in the xacro macro `gear_actuator`, which fixes the stator to a link of a robot.
 
     Args:
-        urdf: with the `frame_prefix` `MACRO_PREFIX`.
+        urdf: a URDF written with the `frame_prefix` `MACRO_PREFIX`.
     """
     _, _, *elements, end = urdf.splitlines(keepends=True)
     # Nobody edits these lines: inertials and visuals have one each.

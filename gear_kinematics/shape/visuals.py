@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What the links of the URDF look like: cylinders and boxes, or meshes with teeth."""
+"""Appearance of the links of the URDF: cylinders and boxes, or meshes with teeth."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -36,21 +36,21 @@ class Visual(NamedTuple):
     """A shape on a link."""
 
     link: str
-    """Without the prefix."""
+    """Name of the link, without the prefix."""
     shape: str
-    """The name of the element in the URDF."""
+    """Name of the geometry element in the URDF."""
     size: Mapping[str, str]
-    """Its attributes."""
+    """Attributes of the geometry element."""
     xyz: Point = (0.0, 0.0, 0.0)
-    """Where its centre is, m."""
+    """Position of the shape's centre, m."""
     yaw: float = 0.0
-    """Its turn about the z axis, rad."""
+    """Turn of the shape about the z axis, rad."""
     opaque: bool = False
-    """Whether its colour is opaque, whatever `COLOURS` says."""
+    """Whether the colour is opaque, whatever `COLOURS` says."""
 
     @classmethod
     def cylinder(cls, link: str, cylinder: Cylinder, xyz: Point = (0.0, 0.0, 0.0)) -> Self:
-        """A cylinder with its centre at a point."""
+        """Make a cylinder with its centre at a point."""
         radius, length = map(repr, cylinder)
         return cls(link, 'cylinder', {'radius': radius, 'length': length}, xyz)
 
@@ -62,7 +62,7 @@ class Visual(NamedTuple):
 
 
 def cylinders(mechanism: Mechanism, module: float) -> dict[str, Cylinder]:
-    """The cylinder that stands for each link, by its name without the prefix.
+    """Make the cylinder that represents each link, by the link's name without the prefix.
 
     The module is in m; together with the tooth numbers, it determines the sizes.
     """
@@ -97,8 +97,8 @@ def simple(mechanism: Mechanism, module: float) -> Iterator[Visual]:
 def meshed(mechanism: Mechanism, module: float, folder: str) -> Iterator[Visual]:
     """Yield the solids, as meshes below a URI, and the shafts and bars that join them.
 
-    Along the axis, the coupling is beside the satellite, on the face that points away from the
-    middle of the mechanism, and the bar of the arm is beside the coupling. The module is in m.
+    Along the axis, the coupling is next to the satellite, on the face that points away from the
+    middle of the mechanism, and the bar of the arm is next to the coupling. The module is in m.
     """
     shapes = solids(mechanism, module)
     axial = [branch.axial_position for branch in mechanism.branches]
@@ -120,24 +120,24 @@ def meshed(mechanism: Mechanism, module: float, folder: str) -> Iterator[Visual]
     for branch in mechanism.branches:
         z = branch.axial_position
         outwards = math.copysign(1.0, z - middle)
-        beside = outwards * 0.5 * (FACE_WIDTH + PLATE)
+        offset = outwards * 0.5 * (FACE_WIDTH + PLATE)
         yield mesh('stator', 'ring_gear', z, ring_phase(mechanism, branch))
         yield mesh('rotor', 'cam', z, branch.cam_phase)
         yield mesh(f'satellite_{branch.name}', 'satellite', 0.0)
         oldham = f'oldham_{branch.name}'
         if arm:
-            yield mesh(oldham, 'coupling', beside)
-            yield mesh('output_shaft', 'arm', z + beside)
+            yield mesh(oldham, 'coupling', offset)
+            yield mesh('output_shaft', 'arm', z + offset)
         else:  # the slides are too long for coupling and arm to be drawn
             disc = Cylinder(0.35 * satellite.reach, PLATE)
-            yield Visual.cylinder(oldham, disc, xyz=(0.0, 0.0, beside))
+            yield Visual.cylinder(oldham, disc, xyz=(0.0, 0.0, offset))
         # Across the keys of the coupling, so that they are seen.
         size = _BAR * satellite.reach, 2.0 * reach, PLATE
-        yield _box('output_shaft', size, z + beside + outwards * PLATE, 0.25 * math.pi)
+        yield _box('output_shaft', size, z + offset + outwards * PLATE, 0.25 * math.pi)
 
 
 def cam_centre(branch: Branch, eccentricity: float) -> Point:
-    """The centre of the cam of a branch in the frame of the rotor, m."""
+    """Compute the centre of the cam of a branch in the frame of the rotor, m."""
     x, y = branch.cam_direction
     return eccentricity * x, eccentricity * y, branch.axial_position
 

@@ -23,26 +23,27 @@ from gear_kinematics.twin.model import Model
 _PERIOD = 2e-4  # s, of the servo loop
 _BANDWIDTH = 30.0  # Hz, ω/2π; less if the inertia of the output needs it
 _FRESH = 0.02
-"""s, for which the velocity beside a position counts, and the position moves on with it: a stream
-of commands makes no steps, and a single one is held."""
+"""Time, s, for which a commanded position moves on with the velocity of the same command.
+
+A stream of commands thus causes no steps, and the position of a single command is held."""
 _SEED = 0
 _SHARE = 0.9
-"""Of the greatest speed: what is commanded, as it is exceeded a little on the way there."""
+"""Share of the greatest speed that is commanded, to leave room for overshoot."""
 
 
 class Command(NamedTuple):
-    """What a JointState asks of the motor, as the encoder counts; None: not commanded.
+    """Command of a JointState in the encoder's coordinates; None for a value not commanded.
 
     A position is held; with a velocity as well it moves on for a moment, until the next command
     comes. Without a position the velocity is held, and only without either the effort acts.
     """
 
     position: float | None
-    """rad."""
+    """Commanded position, rad."""
     velocity: float | None
-    """rad/s."""
+    """Commanded velocity, rad/s."""
     effort: float | None
-    """N·m."""
+    """Commanded torque, N·m."""
 
 
 class Driver:
@@ -61,9 +62,9 @@ class Driver:
 
         Args:
             model: the gear, whose parameters have directions, zeros and the greatest speed.
-            max_torque: of the motor, N·m.
-            rotor_counts: steps per turn of the encoder; 0: exact.
-            output_counts: the same of the output's encoder.
+            max_torque: greatest torque of the motor, N·m.
+            rotor_counts: steps per turn of the rotor's encoder; 0 for an exact one.
+            output_counts: steps per turn of the output's encoder; 0 for an exact one.
             dropout: share of the messages that are not sent.
         """
         self.model = model
@@ -75,7 +76,7 @@ class Driver:
         self._parameters = model.gear.parameters
         rotor, output = inertias(model.gear)
         self._inertia = rotor + output / model.gear.ratio**2
-        # On short notice the torque moves the rotor alone, by at most half of the error in speed.
+        # At first the torque accelerates the rotor alone, by at most half of the speed error.
         self._omega = min(TURN * _BANDWIDTH, 0.5 / _PERIOD * rotor / self._inertia)
         self._origin = self._parameters.rotor_zero
         """Position at rotor angle 0, rad."""
@@ -92,13 +93,13 @@ class Driver:
         self._command, self._age = command, 0.0
 
     def power_cycle(self) -> None:
-        """Switch off and on: the rotor is free, and one that counts turns counts from here on."""
+        """Switch off and on: the rotor is free, and a count of turns starts again from here."""
         self._release()
         if not self._parameters.single_turn:
             self._origin = -self._parameters.rotor_direction * self.model.rotor_angle
 
     def advance(self, duration: float, load_torque: float) -> None:
-        """Let time pass, s, with a torque on the output shaft from outside, N·m."""
+        """Advance the time, s, with an external torque on the output shaft, N·m."""
         model, self._load = self.model, load_torque
         steps = math.ceil(duration / _PERIOD - 1e-6)
         period = duration / steps
@@ -109,7 +110,7 @@ class Driver:
             self.torque = sum(model.branch_torques) / model.gear.ratio
 
     def rotor(self) -> tuple[float, float, float]:
-        """Position (rad), velocity (rad/s) and effort (N·m) of the rotor as they are published."""
+        """Read position (rad), velocity (rad/s) and effort (N·m) of the rotor as published."""
         direction, wraps = self._parameters.rotor_direction, self._parameters.single_turn
         position = self._origin + direction * self.model.rotor_angle
         return (
@@ -119,7 +120,7 @@ class Driver:
         )
 
     def output(self) -> tuple[float, float, float]:
-        """Position within a turn (rad), velocity (rad/s) and load torque (N·m) of the output."""
+        """Read the output: position within a turn, rad, velocity, rad/s, and load torque, N·m."""
         direction = self._parameters.output_encoder_direction
         position = self._parameters.output_encoder_zero + direction * self.model.output_angle
         return (
@@ -129,11 +130,11 @@ class Driver:
         )
 
     def drops(self) -> bool:
-        """Whether the next message is not sent; the same messages in each run."""
+        """Decide whether the next message is dropped; every run drops the same messages."""
         return self._random.random() < self._dropout
 
     def _servo(self, period: float) -> float:
-        """The torque of the motor, N·m, for the next period, s."""
+        """Compute the torque of the motor, N·m, for the next period, s."""
         if self._command is None:
             return 0.0
         model, omega, fastest = self.model, self._omega, _SHARE * self._parameters.max_rotor_speed
@@ -165,7 +166,7 @@ def _within(value: float, bound: float) -> float:
 
 
 def _counted(position: float, counts: int, *, wraps: bool) -> float:
-    """A position as an encoder with so many counts per turn reads it; exact with 0."""
+    """Round a position to the counts per turn of an encoder; 0 counts leave it exact."""
     if not counts:
         return position % TURN if wraps else position
     count = round(position * counts / TURN)

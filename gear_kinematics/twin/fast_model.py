@@ -37,7 +37,7 @@ class FastModel:
 
     @property
     def gear(self) -> TwinGear:
-        """The gear; one that replaces it has the same mechanism."""
+        """The simulated gear; a replacement must have the same mechanism."""
         return self._gear
 
     @gear.setter
@@ -59,7 +59,7 @@ class FastModel:
         self.branch_torques, self._friction = self._torques(self.rotor_angle, self.output_angle)
 
     def advance(self, duration: float, rotor_torque: float, load_torque: float) -> None:
-        """Let time pass; see `Model`."""
+        """Advance the time; see `Model`."""
         steps = math.ceil(duration / _STEP - 1e-6)
         h = duration / steps
         rotor_gain = 0.0 if self.rotor_locked else h / self._rotor_inertia
@@ -91,7 +91,7 @@ class FastModel:
 
 
 def inertias(gear: TwinGear) -> tuple[float, float]:
-    """J2 and J5, kg·m²: of what circles with the rotor, and of what turns with the output.
+    """Compute the inertias J2 of what circles with the rotor, J5 of what turns with the output.
 
     A coupling's centre moves by (e/2)[n(θ) + κ n(2 φ5 - θ)] φ2' with κ = 2/i - 1: the mean over a
     turn counts.

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What a simulated actuator is made of.
+"""The properties of a simulated actuator.
 
 The branches and the shaft between their arms are springs. Branch k winds up by
 
@@ -42,17 +42,17 @@ _BRACED = 2  # branches, which have a shaft between their arms
 
 @dataclass(frozen=True, slots=True)
 class LoadingCurve:
-    """Torque and friction of a gear by its wind-up: straight lines through points, and beyond."""
+    """Torque and friction of a gear over its wind-up, interpolated linearly and extrapolated."""
 
     wind_up: tuple[float, ...]
-    """rad, ascending, with 0."""
+    """Wind-up angles, rad, ascending; 0 is one of them."""
     torque: tuple[float, ...]
-    """N·m, non-decreasing; 0 at 0 rad."""
+    """Torques, N·m, non-decreasing; 0 at 0 rad."""
     friction: tuple[float, ...]
     """N·m."""
 
     def at(self, wind_up: float) -> tuple[float, float]:
-        """Torque and friction, N·m, at a wind-up, rad; beyond its ends, friction stays."""
+        """Torque and friction, N·m, at a wind-up, rad; friction is constant beyond the ends."""
         right = min(max(bisect(self.wind_up, wind_up), 1), len(self.wind_up) - 1)
         left = right - 1
         share = (wind_up - self.wind_up[left]) / (self.wind_up[right] - self.wind_up[left])
@@ -65,7 +65,7 @@ class LoadingCurve:
 
     @property
     def stiffness(self) -> tuple[float, ...]:
-        """N·m/rad, between the points."""
+        """Stiffness between neighbouring points, N·m/rad."""
         ways = zip(pairwise(self.torque), pairwise(self.wind_up), strict=True)
         return tuple((t1 - t0) / (x1 - x0) for (t0, t1), (x0, x1) in ways)
 
@@ -79,29 +79,29 @@ class TwinGear:
     """
 
     parameters: NodeParameters
-    """Of its mechanism, bodies and encoders."""
+    """Parameters of the mechanism, the bodies and the encoders."""
     stiffness: tuple[float, ...]
-    """N·m/rad, of each branch from its flanks on; the greatest of a curve."""
+    """Stiffness of each branch once its flanks touch, N·m/rad; the greatest of a curve."""
     shaft_stiffness: float
-    """N·m/rad, between both arms; infinite: rigid."""
+    """Stiffness of the shaft between both arms, N·m/rad; infinite for a rigid one."""
     interference: float
-    """rad: twist of the loop at the arms by the preload; if negative, the play that is left."""
+    """Twist of the loop at the arms by the preload, rad; the remaining play if negative."""
     play: float
-    """rad: between the flanks of a branch, at least the play that is left."""
+    """Angle between the flanks of a branch, rad; at least the remaining play."""
     friction: float = 0.0
-    """N·m; the mean of a curve."""
+    """Friction torque, N·m; the mean of a curve."""
     curve: LoadingCurve | None = None
-    """Of all branches from their flanks on; only without shaft and preload."""
+    """Curve of all branches together once their flanks touch; only without shaft and preload."""
     errors: tuple[Order, ...] = ()
-    """Of the output angle, by the rotor angle."""
+    """Periodic errors of the output angle over the rotor angle."""
     rotor_damping: float = 0.0
-    """N·m·s/rad."""
+    """Viscous damping of the rotor, N·m·s/rad."""
     output_inertia: float
     """kg·m²."""
     ratio: float = field(init=False)
-    """i, signed."""
+    """Signed gear ratio i."""
     preload: float = field(init=False)
-    """T0, N·m, of two branches; negative if branch A pushes in the negative direction."""
+    """Preload T0 of two branches, N·m; negative if branch A pushes in the negative direction."""
     dead_bands: tuple[tuple[float, float], ...] = field(init=False)
     """Least and greatest x_k without torque, for each branch, rad."""
 
@@ -127,9 +127,9 @@ class TwinGear:
         """Read a gear from a parameter file.
 
         Args:
-            config: of ROS, as config/simulated_actuator.yaml.
-            node: whose parameters are taken.
-            calibration: of the errors; None: the one that the file names, if any.
+            config: parameter file of ROS, such as config/simulated_actuator.yaml.
+            node: name of the node whose parameters are read.
+            calibration: calibration with the errors; None for the one named in the file, if any.
 
         Raises:
             ValueError: if a file cannot be used, or the gear cannot be simulated.
@@ -141,7 +141,7 @@ class TwinGear:
     def of(
         cls, parameters: NodeParameters, values: dict[str, Any], calibration: Path | None = None
     ) -> Self:
-        """Make a gear of valid parameters; `values` are those of `twin.parameters`."""
+        """Make a gear from valid parameters; `values` are those of `twin.parameters`."""
         gear, file = parameters.gear, calibration or parameters.calibration
         count = len(gear.branches) if isinstance(gear, Mechanism) else 1
         stiffness, preload = parameters.branch_stiffness, parameters.preload
@@ -165,7 +165,7 @@ class TwinGear:
 
     @property
     def loop(self) -> Stiffness:
-        """Of two branches and the shaft between their arms, which a preload twists."""
+        """Stiffnesses of the two branches and the shaft, which a preload twists as a loop."""
         branch_a, branch_b = self.stiffness
         return Stiffness(branch_a, branch_b, self.shaft_stiffness)
 
@@ -176,16 +176,16 @@ class TwinGear:
 
     @property
     def turning_inertia(self) -> float:
-        """J3 + J4, kg·m²: of what turns with each arm."""
+        """Inertia J3 + J4 of what turns with each arm, kg·m²."""
         return self.parameters.loads.satellite_inertia + self.parameters.loads.coupling_inertia
 
     @property
     def shaft_twist(self) -> float:
-        """By how much arm A leads the output without load, rad."""
+        """Angle by which arm A leads the output without load, rad."""
         return self.preload / self.shaft_stiffness
 
     def torques(self, wind_ups: Sequence[float]) -> tuple[tuple[float, ...], float]:
-        """T_k of all branches wound up by the angles x_k, rad, and the friction, N·m."""
+        """Compute T_k of all branches from their wind-ups x_k, rad, and the friction, N·m."""
         torques, friction = [], self.friction
         for x, (low, high), stiffness in zip(
             wind_ups, self.dead_bands, self.stiffness, strict=True
@@ -219,17 +219,17 @@ class TwinGear:
         ]
 
     def preloaded(self, torque: float) -> Self:
-        """The same gear with a preload of this magnitude, N·m; as it is if that is 0."""
+        """Copy the gear with a preload of this magnitude, N·m; 0 leaves it unchanged."""
         if not torque:
             return self
         return replace(self, interference=Preload.from_torque(self.loop, torque).interference)
 
     def worn(self, angle: float) -> Self:
-        """The same gear with flanks that wore off by an angle of the output, rad, together."""
+        """Copy the gear with flanks worn by a total angle of the output, rad."""
         return replace(self, interference=self.interference - angle, play=self.play + angle)
 
     def error(self, rotor_angle: float) -> float:
-        """The deviation of the output angle, rad."""
+        """Compute the deviation of the output angle, rad."""
         deviation = 0.0
         for order in self.errors:
             phase = float(order.cycles) * rotor_angle

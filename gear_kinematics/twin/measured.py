@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The figures of a real gear for a simulated one, from reports of gearkin as JSON.
+"""Transfer of a real gear's measured figures to a simulated gear, from reports of gearkin in JSON.
 
 A loop at the output shows all branches together. Its middle line is the curve of a gear without
 preload. Of a preloaded one, which has two branches of the same stiffness k, branch A acts through
@@ -25,17 +25,18 @@ Report = Mapping[str, Any]
 
 
 def measured(gear: TwinGear, reports: Iterable[Path]) -> tuple[TwinGear, list[str]]:
-    """Take the figures of reports for those of a gear; later reports replace earlier ones.
+    """Replace properties of a gear by measured figures; later reports replace earlier ones.
 
     Args:
-        gear: has all others, and the shaft between the arms, which a loop does not show.
+        gear: supplies all other properties, and the shaft between the arms, which a measured
+            loop does not show.
         reports: the JSON of `gearkin preload`, or of `gearkin lost-motion` on one recording.
 
     Returns:
-        The gear, and what the reports leave open, with what was taken for it.
+        The gear, and the assumptions about everything that the reports leave undetermined.
 
     Raises:
-        ValueError: if one cannot be used, naming it.
+        ValueError: if a report cannot be used; the text names it.
     """
     notes: list[str] = []
     for path in reports:
@@ -57,7 +58,7 @@ def measured(gear: TwinGear, reports: Iterable[Path]) -> tuple[TwinGear, list[st
 
 
 def _set(gear: TwinGear, data: Report) -> TwinGear:
-    """Take the stiffnesses, and the preload or the play at the pins."""
+    """Set the stiffnesses, and the preload or the play at the pins."""
     braced(gear.parameters.mechanism)
     # Infinity is null in JSON.
     branch_a, branch_b, shaft = (
@@ -78,14 +79,14 @@ def _set(gear: TwinGear, data: Report) -> TwinGear:
 
 
 def _loaded(gear: TwinGear, data: Report, notes: list[str]) -> TwinGear:
-    """Take the curve, or friction and stiffness at no load; note what the ramps leave open."""
+    """Set the curve, or friction and stiffness at no load; note what the ramps leave open."""
     line, count = data['middle_line'], len(gear.stiffness)
     mean_friction = float(np.mean(line['friction']))
     if not gear.preload:
         # A load winds up the locked gear by its rotor, or turns the output back.
-        way = -1 if data['measured'] else 1
+        sign = -1 if data['measured'] else 1
         rows = zip(line['angle'], line['load'], line['friction'], strict=True)
-        points = sorted((way * angle, way * load, held) for angle, load, held in rows)
+        points = sorted((sign * angle, sign * load, friction) for angle, load, friction in rows)
         curve = LoadingCurve(*zip(*points, strict=True))
         return replace(
             gear,

@@ -26,7 +26,7 @@ from gear_kinematics.wire import topics
 _MILLISECOND = 1e-3  # s
 _LONGEST_STEP = 1e-4  # s
 _PHASE = 0.7  # rad by which the fastest oscillation may advance in a step; beyond 2, it grows
-_FAR = 1e6  # rad, beyond all wind-ups
+_UNREACHED_WIND_UP = 1e6  # rad, greater than all wind-ups
 _ARM_DAMPING = 0.05  # of critical: the arm comes to rest in ms, slower motions hardly notice
 
 
@@ -34,12 +34,12 @@ def mjcf(gear: TwinGear, remarks: Sequence[str] = (), *, shown: bool = True) -> 
     """Write the model, at rest without load at a rotor angle of 0.
 
     Args:
-        gear: of a known mechanism, whose satellites and couplings have masses.
-        remarks: for its comment.
+        gear: a gear with a known mechanism, whose satellites and couplings have masses.
+        remarks: lines of the comment in the file.
         shown: whether to draw the bodies: with their teeth, unless the parameter `meshes` is none.
 
     Raises:
-        MechanismError: if it is of another gear.
+        MechanismError: if only the ratio of the gear is known, or such a mass is missing.
         ModuleNotFoundError: if the extra `mesh` is not installed, which teeth need.
     """
     mechanism, loads = gear.parameters.mechanism, gear.parameters.loads
@@ -125,7 +125,7 @@ def mjcf(gear: TwinGear, remarks: Sequence[str] = (), *, shown: bool = True) -> 
 
 
 def _time_step(gear: TwinGear) -> float:
-    """The time step, s: a whole number of them is a millisecond."""
+    """Choose the time step, s; a whole number of steps makes a millisecond."""
     stiffness = sum(gear.stiffness)
     reflected = stiffness / gear.ratio**2 / gear.parameters.loads.rotor_inertia
     lightest = gear.turning_inertia + gear.output_inertia
@@ -137,7 +137,7 @@ def _time_step(gear: TwinGear) -> float:
 
 
 def _add_branch(gear: TwinGear, number: int, parts: dict[str, str]) -> None:
-    """Add the bodies of a branch, and what acts on them.
+    """Add the bodies of a branch with their joints, springs and sensors.
 
     Coupling and slot are one body: each has half of its mass. They turn with the satellite: either
     side of the weld has half of the inertia of all, with which it yields least. The site in the
@@ -188,7 +188,12 @@ def _add_branch(gear: TwinGear, number: int, parts: dict[str, str]) -> None:
     joints = {'rotor': 1.0 / gear.ratio - 1.0, f'satellite_{name}': -1.0}
     for stage, (low, high, stiffness) in enumerate(gear.springs(number)):
         tendon = f'branch_{name}.{stage}' if stage else f'branch_{name}'
-        parts['tendon'] += _spring(tendon, stiffness, joints, (max(low, -_FAR), min(high, _FAR)))
+        parts['tendon'] += _spring(
+            tendon,
+            stiffness,
+            joints,
+            (max(low, -_UNREACHED_WIND_UP), min(high, _UNREACHED_WIND_UP)),
+        )
     parts['equality'] += f"""
 <weld name="oldham_{name}" body1="oldham_{name}" body2="slot_arm_{name}" torquescale="200"/>"""
     parts['sensor'] += f"""
@@ -196,7 +201,7 @@ def _add_branch(gear: TwinGear, number: int, parts: dict[str, str]) -> None:
 
 
 def _inertial(inertia: float = 1e-9, mass: float = 1e-9) -> str:
-    """The moment of inertia about z, kg·m², and the mass, kg; MuJoCo wants some of each."""
+    """Write moment of inertia about z, kg·m², and mass, kg; MuJoCo needs both to be positive."""
     moments = f'{inertia!r} {inertia!r} {inertia!r}'
     return f'<inertial pos="0 0 0" mass="{mass!r}" diaginertia="{moments}"/>'
 
@@ -208,7 +213,7 @@ def _spring(
     ends: tuple[float, float] = (0.0, 0.0),
     damping: float = 0.0,
 ) -> str:
-    """A tendon as long as a sum of joint angles by factors, and slack between two lengths."""
+    """Write a tendon whose length is a weighted sum of joint angles, slack between two lengths."""
     terms = ''.join(f'<joint joint="{each}" coef="{joints[each]!r}"/>' for each in joints)
     low, high = ends
     return f"""
@@ -233,7 +238,7 @@ def _add_shapes(parameters: NodeParameters, parts: dict[str, str]) -> None:
 
 
 def _shape(visual: Visual) -> str:
-    """Type and size of a geom; MuJoCo takes half of what URDF takes, but for radii."""
+    """Write type and size of a geom; except for radii, MuJoCo takes half of the size in a URDF."""
     size = visual.size
     if visual.shape == 'mesh':
         return f'type="mesh" mesh="{PurePath(size["filename"]).stem}"'
@@ -244,7 +249,7 @@ def _shape(visual: Visual) -> str:
 
 
 def _mesh(name: str, solid: Solid) -> str:
-    """A mesh with its corners, to 1 part in a million, each once."""
+    """Write a mesh with each of its corners once, to 1 part in a million."""
     corners, faces = np.unique(triangles(solid).reshape(-1, 3), axis=0, return_inverse=True)
     vertex = ' '.join(f'{value:.6g}' for value in corners.ravel().tolist())
     face = ' '.join(map(str, faces.ravel().tolist()))

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What both models of a simulated actuator do."""
+"""The interface of both models of a simulated actuator."""
 
 from typing import Protocol
 
@@ -10,27 +10,27 @@ class Model(Protocol):
     """Moves a gear through time; angles count turns, and are those of the kinematics."""
 
     gear: TwinGear
-    """It may be replaced at any time by one with the same mechanism."""
+    """The gear, which may be replaced at any time by one with the same mechanism."""
     rotor_angle: float
-    """φ2, rad."""
+    """Rotor angle φ2, rad."""
     rotor_velocity: float
     """rad/s."""
     output_angle: float
-    """φ5 of the output shaft, rad."""
+    """Angle φ5 of the output shaft, rad."""
     output_velocity: float
     """rad/s."""
     branch_torques: tuple[float, ...]
-    """T_k, N·m, that each branch gives the output shaft; 0 out of mesh."""
+    """Torque T_k that each branch exerts on the output shaft, N·m; 0 out of mesh."""
     output_locked: bool
-    """The output shaft stays where it is."""
+    """Whether the output shaft is locked."""
     rotor_locked: bool
-    """The rotor stays where it is."""
+    """Whether the rotor is locked."""
 
     def advance(self, duration: float, rotor_torque: float, load_torque: float) -> None:
-        """Let time pass.
+        """Advance the time.
 
         Args:
-            duration: s.
-            rotor_torque: of the motor, N·m.
-            load_torque: on the output shaft from outside, N·m.
+            duration: time to simulate, s.
+            rotor_torque: torque of the motor, N·m.
+            load_torque: external torque on the output shaft, N·m.
         """

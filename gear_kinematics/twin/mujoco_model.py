@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""A model that MuJoCo moves: every body, with its joints, springs and loops."""
+"""A model simulated by MuJoCo: every body, with its joints, springs and loops."""
 
 import mujoco
 
@@ -21,7 +21,7 @@ class MujocoModel:
 
     @property
     def gear(self) -> TwinGear:
-        """The gear; one that replaces it has the same mechanism."""
+        """The simulated gear; a replacement must have the same mechanism."""
         return self._gear
 
     @gear.setter
@@ -32,7 +32,7 @@ class MujocoModel:
         self._read()
 
     def advance(self, duration: float, rotor_torque: float, load_torque: float) -> None:
-        """Let time pass, to the nearest time step of MuJoCo; see `Model`."""
+        """Advance the time, to the nearest time step of MuJoCo; see `Model`."""
         self._lock(self._rotor, self._rotor_lock, self.rotor_locked)
         self._lock(self._output, self._output_lock, self.output_locked)
         self.data.qfrc_applied[self._rotor] = rotor_torque
@@ -69,7 +69,7 @@ class MujocoModel:
         self._read()
 
     def _lock(self, joint: int, equality: int, locked: bool) -> None:  # noqa: FBT001
-        """Hold a joint where it is, or let it go."""
+        """Lock a joint at its present angle, or release it."""
         if locked and not self.data.eq_active[equality]:
             self.model.eq_data[equality, 0] = self.data.qpos[joint] - self.model.qpos0[joint]
             self.data.qvel[joint] = 0.0
@@ -89,5 +89,5 @@ class MujocoModel:
 
 
 def check(text: str) -> None:
-    """Load a model; raises ValueError if MuJoCo refuses it."""
+    """Load a model to check it; raises ValueError if MuJoCo refuses it."""
     mujoco.MjModel.from_xml_string(text)

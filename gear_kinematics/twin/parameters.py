@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The parameters of a simulated actuator beside those of the node, and their file."""
+"""The additional parameters of a simulated actuator, and their file."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -50,7 +50,7 @@ PARAMETERS: Mapping[str, Parameter] = {
     'dropout': Parameter('Share of the messages that are not sent', 0.0, 1.0, read_only=True),
     'wear': Parameter('What ~/wear takes off the flanks, rad at the output', 0.0, 1.0),
 }
-"""Those that only a simulated actuator has, by their names in ROS."""
+"""Parameters that only a simulated actuator has, by their names in ROS."""
 
 
 def default_config() -> Path:
@@ -59,13 +59,13 @@ def default_config() -> Path:
 
 
 def default_value(name: str) -> Any:
-    """A default from config/simulated_actuator.yaml, else that of gear_state_publisher."""
+    """Default from config/simulated_actuator.yaml, or else that of gear_state_publisher."""
     values = default_values(default_config(), NODE)
     return values[name] if name in values else parameters.default_value(name)
 
 
 def own_values(path: Path, node: str) -> dict[str, Any]:
-    """What a file gives a node of `PARAMETERS`; raises ConfigError if a value is invalid."""
+    """Read the values of `PARAMETERS` for a node; raises ConfigError if a value is invalid."""
     given = given_parameters(path, node)
     values = {name: given.get(name, default_value(name)) for name in PARAMETERS}
     faults = (PARAMETERS[name].fault(name, value) for name, value in values.items())

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Commissions a gear live: takes what both encoders send, and says what it tells so far."""
+"""Commissions a gear live: analyses the messages of both encoders as they arrive."""
 
 import math
 import time
@@ -29,15 +29,15 @@ _MOST_STATES = 40_000
 """20 s of both encoders at 1 kHz, analysed in 0.2 s of a processor; of more, one of every two,
 four, ... is kept: after five minutes, at 62 Hz, a rotor's wraps still show."""
 _PAUSE = 1.0  # s between the begins of analyses
-_STROKE = TURN / 6.0  # rad, each way
+_STROKE = TURN / 6.0  # rad, in each direction
 GUIDE = 'Turn the output by hand, slowly, at least a sixth of a turn both ways.'
 
 
 class LiveCommissioning:
-    """What both encoders of a gear have sent, analysed beside the thread that takes it."""
+    """Messages of both encoders of a gear, analysed in a separate thread."""
 
     def __init__(self, request: Request) -> None:
-        """Begin with the joints of a request; its ratio can be replaced at any time."""
+        """Start with the joints of a request, whose ratio can be replaced at any time."""
         self.request, self.shown = request, Guide(GUIDE)
         self._topics = request.rotor.topic, request.output.topic
         rotor, output = request.rotor.joint, request.output.joint
@@ -49,7 +49,7 @@ class LiveCommissioning:
         self._analysis = self._pool.submit(self._guide)
 
     def take(self, messages: Sequence[Message]) -> None:
-        """Take messages, of any topics, and show what those before have told."""
+        """Add messages of any topics, and show the result of the last analysis."""
         self._taken.put([message for message in messages if message[0] in self._topics])
         if time.monotonic() >= self._due and self._analysis.done():
             before, self._analysis = self._analysis, self._pool.submit(self._guide)
@@ -57,7 +57,7 @@ class LiveCommissioning:
             self.shown = before.result()
 
     def result(self) -> Commissioning:
-        """Return what has been taken tells; raises ValueError if there is nothing to measure."""
+        """Analyse the messages so far; raises ValueError if there is nothing to measure."""
         return self._pool.submit(self._analyse).result()
 
     def _analyse(self) -> Commissioning:
@@ -78,17 +78,18 @@ class LiveCommissioning:
             The command that starts the node with it.
 
         Raises:
-            ValueError: if the ratio is open, or the file cannot be written.
+            ValueError: if the ratio is undetermined, or the file cannot be written.
         """
         name = default_config().name
         write_new(Path(name), actuator_file(self.result(), name))
         return start_command(self._topics[0], name, self._topics[1])
 
     def changes(self, gear: GearNode) -> dict[str, Any]:
-        """Return what a running node has to change.
+        """Return the parameters that a running node has to change.
 
         Raises:
-            ValueError: if the ratio is open, or the node is not of this gear or needs a restart.
+            ValueError: if the ratio is undetermined, the node belongs to another gear, or the
+                change needs a restart.
         """
         result, parameters = self.result(), gear.parameters
         if not result.between:
@@ -103,16 +104,17 @@ class LiveCommissioning:
         return changed
 
     def _guide(self) -> Guide:
-        """Show how much is known of what a parameter file needs, and what to do for the rest."""
+        """Show which values of a parameter file are known, and how to find the others."""
         try:
             result = self._analyse()
         except ValueError as error:  # there is nothing to measure yet
             return Guide(GUIDE, 0.0, (Entry('heard', f'{self._count} messages', str(error)),))
         angle = result.longest.encoders.measured
-        on, back = angle - np.minimum.accumulate(angle), np.maximum.accumulate(angle) - angle
-        ways = [float(way.max()) for way in (on, back)]
-        heard = 'the output turned {:.0f}° on and {:.0f}° back'.format(*map(math.degrees, ways))
-        moved = [min(way / _STROKE, 1.0) for way in ways]
+        forward = float((angle - np.minimum.accumulate(angle)).max())
+        backward = float((np.maximum.accumulate(angle) - angle).max())
+        strokes = math.degrees(forward), math.degrees(backward)
+        heard = 'the output turned {:.0f}° forward and {:.0f}° backward'.format(*strokes)
+        moved = [min(stroke / _STROKE, 1.0) for stroke in (forward, backward)]
         moved.append(any(v.name == 'rotor_encoder' and v.value is not None for v in result.values))
         entries = [Entry('heard', f'{self._count} messages', heard)]
         for found in result.values:

@@ -26,10 +26,10 @@ _PUBLISHED = {
 
 
 class Graph:
-    """The publishers of JointState topics, and the nodes of gears: they have ~/home, too."""
+    """The publishers of JointState topics, and the gear nodes, which have ~/home as well."""
 
     def __init__(self, node: Node) -> None:
-        """Look at the graph."""
+        """Query the graph."""
         self._publishers = {
             topic: node.get_publishers_info_by_topic(topic)
             for topic, types in node.get_topic_names_and_types()
@@ -45,7 +45,7 @@ class Graph:
     def outputs_of(self, gear: str) -> dict[str, str]:
         """Return the topics of a gear's node by the names that they have without remapping.
 
-        Where `output_state` has another name, it is the only unknown one beside a known one.
+        A remapped `output_state` is recognised as the only unknown topic among known ones.
         """
         outputs = {
             topics.base_name(topic): topic
@@ -64,7 +64,7 @@ class Graph:
         return {bytes(end.endpoint_gid) for end in ends if full_name(end) == gear}
 
     def drivers(self) -> list[str]:
-        """Find the topics that somebody else than the nodes of gears publishes."""
+        """Find the topics that nodes other than those of gears publish."""
         return sorted(
             topic
             for topic, publishers in self._publishers.items()
@@ -73,8 +73,8 @@ class Graph:
 
 
 @dataclass(frozen=True, slots=True)
-class Driver:
-    """A topic of type JointState that is not of a gear's node."""
+class DriverTopic:
+    """A topic of type JointState that no gear node publishes."""
 
     topic: str
     joints: tuple[str, ...]  # as `rotor_joint` selects them; empty before the first message
@@ -89,7 +89,7 @@ class Listener:
         self.heard: dict[str, Polled] = {}
 
     def look(self, found: Iterable[str]) -> None:
-        """Listen to the topics that there are now."""
+        """Subscribe to the topics that exist now."""
         found = set(found)
         for topic in self.heard.keys() - found:
             self.heard.pop(topic).close()
@@ -97,17 +97,17 @@ class Listener:
             self.heard[topic] = Polled(self._node, topic)
 
     def poll(self) -> list[Message]:
-        """Take what has come."""
+        """Take the messages that have arrived."""
         return [
             (topic, received, data)
             for topic, heard in self.heard.items()
             for data, received in heard.take()
         ]
 
-    def drivers(self) -> list[Driver]:
+    def drivers(self) -> list[DriverTopic]:
         """List the topics by name."""
         return [
-            Driver(topic, _joints(heard), heard.rate)
+            DriverTopic(topic, _joints(heard), heard.rate)
             for topic, heard in sorted(self.heard.items())
         ]
 
@@ -119,11 +119,11 @@ def _joints(heard: Polled) -> tuple[str, ...]:
     return ()
 
 
-def listen(seconds: float = _WAIT) -> list[Driver]:
-    """Find the drivers in a time of some seconds, and hear each in as many more."""
+def listen(seconds: float = _WAIT) -> list[DriverTopic]:
+    """Search for drivers for a number of seconds, and listen to them for as long again."""
     with replay_node('') as node:
         listener = Listener(node)
-        found: list[Driver] = []
+        found: list[DriverTopic] = []
         end = time.monotonic() + seconds
         while (now := time.monotonic()) < end or (
             now < end + seconds and not all(driver.joints for driver in found)

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""A node of a gear, as its topics and services show it."""
+"""The observed state of a gear node, from its topics and services."""
 
 import math
 import time
@@ -28,8 +28,8 @@ _ZERO = 'rotor zero (rad)'  # in diagnostics
 _SHOWN = topics.OUTPUT_STATE, *topics.CORRECTED_TOPICS, topics.TRANSMISSION_ERROR
 
 
-class Joint(NamedTuple):
-    """The only joint of the latest message of a topic."""
+class JointValue(NamedTuple):
+    """The single joint in the latest message of a topic."""
 
     position: float  # rad
     velocity: float | None  # rad/s
@@ -38,7 +38,7 @@ class Joint(NamedTuple):
 
 
 class Status(NamedTuple):
-    """One status of the diagnostics."""
+    """A status in the diagnostics."""
 
     subject: str
     level: int
@@ -48,22 +48,24 @@ class Status(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """What came of a command."""
+    """The result of a command."""
 
     text: str
     done: bool
 
 
 class GearNode:
-    """Follows a node, by its full name, that may end and start again."""
+    """Follows the node with a full name, which may end and start again."""
 
     def __init__(self, node: Node, name: str) -> None:
         self._node = node  # subscribes and calls services
         self.name = name
         self.seen = False  # whether it has ever run
         self.running = False
-        self.parameters: NodeParameters | None = None  # None until it has told them since a start
-        self.fault = ''  # why those that it has told cannot be used
+        self.parameters: NodeParameters | None = (
+            None  # None until the node has reported them since its start
+        )
+        self.fault = ''  # why the reported parameters cannot be used
         self.earlier: dict[str, Any] = {}  # parameters before their last change that was seen
         self.homed_zero: float | None = None  # rotor_zero after its last change that was seen
         self.statuses: dict[str, Status] = {}  # diagnostics by subject
@@ -77,7 +79,7 @@ class GearNode:
         self._publishers: set[bytes] = set()
 
     def look(self, graph: Graph) -> None:
-        """See in the graph whether it runs, and which topics it has."""
+        """Find in the graph whether the node runs, and which topics it has."""
         self.running = self.name in graph.gears
         if not self.running:
             return
@@ -93,7 +95,7 @@ class GearNode:
         self._publishers = publishers
 
     def poll(self) -> None:
-        """Take what has come."""
+        """Take the messages that have arrived."""
         self._outputs.poll()
         for data, _ in self._diagnostics.take():
             for status in deserialize_message(data, DiagnosticArray).status:
@@ -111,8 +113,8 @@ class GearNode:
             self._due = time.monotonic() + _PATIENCE
             self._client.list_parameters([], 0, self._ask)
 
-    def joint(self, topic: str) -> Joint | None:
-        """The latest value of one of the topics of `JointState`; None before there is one."""
+    def joint(self, topic: str) -> JointValue | None:
+        """Return the latest value of a topic of type `JointState`; None before there is one."""
         output = self._outputs.heard.get(self._topics.get(topic, ''))
         if output is None or output.last is None:
             return None
@@ -121,7 +123,7 @@ class GearNode:
         except RejectedInputError:
             return None
         age = (time.time_ns() - output.last.received) / SECOND
-        return Joint(position, velocity, age, output.rate)
+        return JointValue(position, velocity, age, output.rate)
 
     def hears(self, topic: str) -> bool:
         """Whether the node subscribes to a topic."""
@@ -129,7 +131,7 @@ class GearNode:
         return any(full_name(end) == self.name for end in ends)
 
     def home(self, answer: 'futures.Future[Answer]') -> None:
-        """Call `~/home`, and answer what it says."""
+        """Call `~/home`, and answer with its response."""
 
         def take(answered: Future) -> None:
             said = answered.result()
@@ -139,7 +141,7 @@ class GearNode:
         self.homing.call_async(Trigger.Request()).add_done_callback(take)
 
     def set(self, values: Mapping[str, Any], done: str, answer: 'futures.Future[Answer]') -> None:
-        """Set all of some parameters, or none of them; answer that it is done, or why not."""
+        """Set parameters, all or none of them; answer with success or the reason of failure."""
 
         def take(answered: Future) -> None:
             result = answered.result().result
@@ -166,7 +168,7 @@ class GearNode:
         self._client.get_parameters(names, take)
 
     def _take_parameters(self, given: Mapping[str, Any]) -> None:
-        """Take the parameters, and see what has changed while the node ran."""
+        """Take the parameters, and note what has changed while the node ran."""
         try:
             for name, value in given.items():
                 known = PARAMETERS.get(name) or BRANCH_PARAMETERS[name.rpartition('.')[2]]

@@ -15,7 +15,7 @@ _SPAN = 1.0  # s, over which rates are measured
 
 
 class NeverExecuted(CallbackGroup):  # type: ignore[misc]  # rclpy has no types
-    """A group whose subscriptions wake no executor."""
+    """A callback group whose subscriptions never wake an executor."""
 
     def can_execute(self, _entity: Any) -> bool:
         """Leave the messages in the queue of the middleware."""
@@ -23,14 +23,14 @@ class NeverExecuted(CallbackGroup):  # type: ignore[misc]  # rclpy has no types
 
 
 class Taken(NamedTuple):
-    """A message as it came."""
+    """A message as received."""
 
     data: bytes  # CDR
     received: int  # ns
 
 
 class Polled:
-    """A subscription from which messages are taken when someone asks for them.
+    """A subscription from which messages are taken only on request.
 
     Best effort is compatible with every publisher, and asks for no acknowledgements.
     """
@@ -52,7 +52,7 @@ class Polled:
         self._before = time.monotonic(), 0  # s, and the count then
 
     def take(self) -> list[Taken]:
-        """Take what has come since the last time, at most one full queue."""
+        """Take the messages since the last call, at most one full queue."""
         new: list[Taken] = []
         source = self._subscription
         with source.handle:

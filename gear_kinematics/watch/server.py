@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Serves the page of `gearkin watch` on this machine, to those who have its address."""
+"""Serves the page of `gearkin watch` on this machine, to browsers that have its address."""
 
 import asyncio
 import hmac
@@ -67,10 +67,10 @@ class Server:
 class _Guarded(RequestHandler):
     """Refuses whoever does not know the token, and pages of other origins."""
 
-    _origins: tuple[str | None, ...] = (None,)  # beside its own
+    _origins: tuple[str | None, ...] = (None,)  # in addition to its own
 
     def initialize(self, watcher: Watcher, token: str) -> None:
-        """Take what all requests have in common."""
+        """Take the watcher and the token, which all requests have in common."""
         self._watcher, self._token = watcher, token
 
     def prepare(self) -> None:
@@ -84,7 +84,7 @@ class _Guarded(RequestHandler):
             raise HTTPError(403)
 
     def set_default_headers(self) -> None:
-        """Let nobody keep the page, frame it, or learn its address."""
+        """Forbid caching and framing of the page, and sending its address to others."""
         self.clear_header('Server')
         self.set_header('Cache-Control', 'no-store')
         self.set_header('Content-Security-Policy', "frame-ancestors 'none'")
@@ -93,7 +93,7 @@ class _Guarded(RequestHandler):
         self.set_header('X-Content-Type-Options', 'nosniff')
 
     def log_exception(self, kind: Any, error: Any, trace: Any) -> None:
-        """Say what went wrong, without the address, which has the token."""
+        """Log the error without the address, which contains the token."""
         if not isinstance(error, HTTPError | WebSocketClosedError | asyncio.CancelledError):
             logging.getLogger(__name__).error('', exc_info=(kind, error, trace))
 

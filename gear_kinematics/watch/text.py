@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What there is to see, as a table on a terminal and as lines in a pipe."""
+"""Renderings of a view: a table on a terminal, lines in a pipe."""
 
 import os
 import select
@@ -20,7 +20,7 @@ from rich.text import Text
 from gear_kinematics.report.document import printable
 from gear_kinematics.ros.live import replay_node
 from gear_kinematics.watch.commissioning import LiveCommissioning
-from gear_kinematics.watch.drivers import Driver, Listener
+from gear_kinematics.watch.drivers import DriverTopic, Listener
 from gear_kinematics.watch.gear import Answer
 from gear_kinematics.watch.view import Entry, View
 from gear_kinematics.watch.watcher import Watcher
@@ -32,19 +32,19 @@ _STYLES = {'': 'bold', 'stale': 'dim', 'notable': 'yellow', 'pass': 'green', 'un
 _BAD = 'bold red'  # the style of all other tones
 
 
-def list_drivers(drivers: Sequence[Driver], console: Console) -> None:
+def list_drivers(drivers: Sequence[DriverTopic], console: Console) -> None:
     """Print the topics of drivers with their joints and rates; ValueError if there are none."""
     if not drivers:
         raise ValueError(
             'no topic of type JointState: is the driver running, with the same ROS_DOMAIN_ID?'
         )
     for driver in drivers:
-        told = f'{driver.topic}: {", ".join(driver.joints)} at {driver.rate:.0f} Hz'
-        console.print(Text(printable(told)), soft_wrap=True)
+        line = f'{driver.topic}: {", ".join(driver.joints)} at {driver.rate:.0f} Hz'
+        console.print(Text(printable(line)), soft_wrap=True)
 
 
 def show(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> None:
-    """Show a node and its drivers until stopped; on a terminal, keys home it."""
+    """Show a node and its drivers until stopped; on a terminal, the node can be homed by keys."""
     asked: Future[Answer] | None = None
     asking = False  # whether to home
 
@@ -74,13 +74,13 @@ def show(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> Non
 
 
 def rows_of(view: View) -> list[Entry]:
-    """Put a view into rows."""
+    """Convert a view to rows."""
     state = Entry(view.node or 'gearkin watch', view.state, view.message, view.tone)
     return [state, *view.values, *view.diagnostics]
 
 
 def guide(live: LiveCommissioning, console: Console, stopped: Callable[[], bool]) -> None:
-    """Guide through commissioning until nothing is open, or a key or a signal ends it."""
+    """Guide through commissioning until everything is known, or a key or a signal ends it."""
 
     def frame(pressed: str) -> tuple[list[Entry], bool]:
         live.take(listener.poll())
@@ -121,13 +121,13 @@ def _show(
 
 
 def line(rows: Sequence[Entry]) -> str:
-    """Put rows into one line."""
+    """Join rows in one line."""
     parts = ((row.name, row.value, f'({row.detail})' * bool(row.detail)) for row in rows)
     return printable('; '.join(' '.join(filter(None, part)) for part in parts))
 
 
 def table(rows: Sequence[Entry]) -> Table:
-    """Put rows into a table without lines."""
+    """Arrange rows in a table without lines."""
     grid = Table.grid(padding=(0, 2))
     grid.add_column(style='dim', overflow='fold')
     grid.add_column(overflow='fold')

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What there is to see at a moment, in the words and numbers that people read."""
+"""The view of a gear at a moment, in the words and numbers that users read."""
 
 import math
 import time
@@ -12,8 +12,8 @@ from gear_kinematics.measurement.wording import shown
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.shape.angles import arc
 from gear_kinematics.state.diagnostics import ERROR, OK, WARN
-from gear_kinematics.watch.drivers import Driver
-from gear_kinematics.watch.gear import GearNode, Joint, Status
+from gear_kinematics.watch.drivers import DriverTopic
+from gear_kinematics.watch.gear import GearNode, JointValue, Status
 from gear_kinematics.wire import topics
 
 Tone = Literal['', 'stale', 'notable', 'bad', 'pass', 'fail', 'unusable']
@@ -37,7 +37,7 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class Guide:
-    """What two encoders have told of a gear so far."""
+    """Progress of commissioning from the messages of two encoders so far."""
 
     advice: str  # what to do now
     known: float = 0.0  # share of what a parameter file needs
@@ -46,7 +46,7 @@ class Guide:
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """What there is to see."""
+    """Everything that is shown at a moment."""
 
     node: str = ''  # full name of the node; '' as long as there was none
     state: str = 'no node'  # or connecting, connected, no output, ended, or fault
@@ -54,7 +54,7 @@ class View:
     message: str = ''  # on the state, in sentences
     values: tuple[Entry, ...] = ()
     diagnostics: tuple[Entry, ...] = ()
-    drivers: tuple[Driver, ...] = ()
+    drivers: tuple[DriverTopic, ...] = ()
     rotor: float | None = None  # angle, degrees; None while it is unknown or out of date
     output: float | None = None
     margin: float | None = None  # what is left of the preload, as a share of it
@@ -64,13 +64,13 @@ class View:
 
 
 def view_of(gear: GearNode | None) -> View:
-    """Show the node that was found or asked for."""
+    """Compose the view of the node that was found or asked for."""
     state, message = _state_of(gear)
     view = View(gear.name if gear else '', state, _TONES.get(state, 'fail'), message)
     if not gear:
         return view
     statuses = tuple(status_entry(s, time.monotonic()) for s in gear.statuses.values())
-    percent = _told(gear, 'preload', 'margin (% of the preload)')
+    percent = _diagnostic(gear, 'preload', 'margin (% of the preload)')
     margin = float(percent) / 100.0 if percent else None
     view = replace(view, values=tuple(values_of(gear)), diagnostics=statuses, margin=margin)
     output, parameters = gear.joint(topics.OUTPUT_STATE), gear.parameters
@@ -124,12 +124,12 @@ def values_of(gear: GearNode) -> Iterator[Entry]:
             yield Entry('output speed', f'{speed:z.2f} rpm', detail, tone)
         yield Entry('output rate', f'{output.rate:.0f} Hz')
     zero, homed = parameters.rotor_zero, gear.homed_zero
-    kept = _told(gear, 'rotor input', 'home file')
+    kept = _diagnostic(gear, 'rotor input', 'home file')
     if lost := homed not in (None, zero):
         kept = f'homed before; the zero is lost: it was {homed:.3f} rad; {kept}'
     yield Entry('zero', f'{zero:.3f} rad', kept, 'notable' if lost else '')
-    if left := _told(gear, 'preload', 'margin (N·m)'):
-        least = _told(gear, 'preload', 'least margin (N·m)')
+    if left := _diagnostic(gear, 'preload', 'margin (N·m)'):
+        least = _diagnostic(gear, 'preload', 'least margin (N·m)')
         detail = f'least {least} N·m in the last second'
         yield Entry('preload left', f'{left} N·m', detail, 'bad' if float(left) <= 0.0 else '')
     if corrected := gear.joint(topics.CORRECTED_STATE):
@@ -138,7 +138,7 @@ def values_of(gear: GearNode) -> Iterator[Entry]:
         tone = _freshness(corrected, parameters)
         yield Entry('corrected angle', _degrees(corrected.position), detail, tone)
     if error := gear.joint(topics.TRANSMISSION_ERROR):
-        peak = _told(gear, 'transmission error', 'peak to peak (rad)')
+        peak = _diagnostic(gear, 'transmission error', 'peak to peak (rad)')
         detail = f'peak to peak {peak} rad' if peak else ''
         tone = _freshness(error, parameters)
         yield Entry('transmission error', arc(error.position), detail, tone)
@@ -156,14 +156,14 @@ def status_entry(status: Status, now: float) -> Entry:
     return Entry(status.subject, f'{level}: {status.message}', advice, tone)
 
 
-def _told(gear: GearNode, subject: str, key: str) -> str:
-    """A value of the diagnostics; '' where there is none, or it is out of date."""
+def _diagnostic(gear: GearNode, subject: str, key: str) -> str:
+    """Look up a value of the diagnostics; '' if it is absent or out of date."""
     status = gear.statuses.get(subject)
     known = status and time.monotonic() - status.at <= _MAX_STATUS_AGE
     return status.values.get(key, '') if status and known else ''
 
 
-def _freshness(joint: Joint, parameters: NodeParameters) -> Tone:
+def _freshness(joint: JointValue, parameters: NodeParameters) -> Tone:
     return 'stale' if joint.age > parameters.input_timeout else ''
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Watches the node of a gear and the drivers beside it, in a thread of its own."""
+"""Watches a gear node and the drivers, in a separate thread."""
 
 import time
 from collections.abc import Mapping
@@ -21,12 +21,12 @@ from gear_kinematics.watch.gear import Answer, GearNode
 from gear_kinematics.watch.view import View, view_of
 
 PERIOD = 1.0 / 30.0
-"""s between two looks at the messages."""
+"""Period at which messages are taken, s."""
 _LOOK = 0.5  # s between two looks at the graph
 
 
 class Watcher:
-    """A context manager that watches a node, or the first that runs, in a thread of its own."""
+    """A context manager that watches a node, or the first that runs, in a separate thread."""
 
     def __init__(self, node: str = '') -> None:
         self.view = View()
@@ -39,7 +39,7 @@ class Watcher:
         self._live: LiveCommissioning | None = None
 
     def __enter__(self) -> Self:
-        """Join ROS; raises whatever prevents that."""
+        """Connect to ROS; raises the error that prevents it."""
         with ExitStack() as resources:
             self._node = resources.enter_context(replay_node(''))
             executor = SingleThreadedExecutor(context=self._node.context)
@@ -51,18 +51,18 @@ class Watcher:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Leave ROS; raises whatever has ended it before."""
+        """Disconnect from ROS; raises the error that ended the thread, if any."""
         self._ending.set()
         with self._resources:
             self._running.result()
 
     @property
     def ended(self) -> bool:
-        """Whether it watches no more."""
+        """Whether watching has ended."""
         return self._running.done()
 
     def ask(self, command: Any) -> 'Future[Answer]':
-        """Do what `do` in a command names: home, undo, commission, write, take or end."""
+        """Execute the action `do` of a command: home, undo, commission, write, take or end."""
         answer: Future[Answer] = Future()
         answer.set_running_or_notify_cancel()  # whoever waits cannot cancel it
         self._asked.put((command, answer))
@@ -111,13 +111,13 @@ class Watcher:
             self._gear.look(graph)
 
     def _ready_gear(self) -> GearNode:
-        """The node; raises ValueError if none is ready."""
+        """Return the node; raises ValueError if none is ready."""
         if not (self._gear and self._gear.running and self._gear.homing.service_is_ready()):
             raise ValueError('There is no node that is ready.')
         return self._gear
 
     def _do(self, command: Any, answer: 'Future[Answer]') -> None:
-        """Do what is asked for, and answer now or when the node has; else raise ValueError."""
+        """Execute a command, and answer now or once the node has; ValueError if it is refused."""
         live, undo = self._live, self.view.undo
         match command:
             case {'do': 'home'}:
@@ -142,7 +142,7 @@ class Watcher:
                 raise ValueError('There is no such command now.')
 
     def _commission(self, rotor: Channel, output: Channel, asked: Mapping[str, Any]) -> None:
-        """Hear two joints, if they are not heard yet, with what is asked for of them."""
+        """Subscribe to the two joints of a request unless they are subscribed to already."""
         if rotor == output:
             raise ValueError('Choose two joints: that of the rotor and that of the output.')
         given = str(asked.get('ratio', '')).strip()

@@ -21,7 +21,7 @@ figure_module = pytest.importorskip('matplotlib.figure', reason='matplotlib is n
 
 from PIL import Image  # noqa: E402, comes with matplotlib
 
-from gear_kinematics.plotting.mechanism import Bodies, Centres  # noqa: E402
+from gear_kinematics.plotting.mechanism import BodyDrawing, CentreDrawing  # noqa: E402
 
 MODULE = 0.0005  # m
 PNG = Path('figure.png')
@@ -43,7 +43,7 @@ def test_bodies_and_centres_are_drawn_where_the_motion_says(actuator, rotor_angl
     expected = oracle.expected_motion(numbers_of(actuator), oracle.rotor_angle_of(rotor_angle))
     for k, motion in enumerate(expected.branches):
         axes = figure_module.Figure().add_subplot()
-        drawn, centres = Bodies(axes, actuator, MODULE, k), Centres(axes, actuator, k)
+        drawn, centres = BodyDrawing(axes, actuator, MODULE, k), CentreDrawing(axes, actuator, k)
         drawn.show(split_turns(rotor_angle))
         centres.show(split_turns(rotor_angle))
         o3, o4 = (
@@ -75,7 +75,7 @@ def test_bodies_and_centres_are_drawn_where_the_motion_says(actuator, rotor_angl
 def test_forces_on_the_satellite_are_drawn_where_they_act(actuator, force):
     """At the pitch point across the radius, and against it at the centre of the satellite."""
     axes = figure_module.Figure().add_subplot()
-    drawn = Bodies(axes, actuator, MODULE, 0, force)
+    drawn = BodyDrawing(axes, actuator, MODULE, 0, force)
     drawn.show(split_turns(0.7))
     u = np.array([-math.sin(0.7), math.cos(0.7)])
     mesh, cam = corners(drawn.patches['force'])

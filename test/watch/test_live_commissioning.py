@@ -71,7 +71,7 @@ def test_advice_and_bar_follow_what_is_known(monkeypatch, degrees, ratio, advice
     shown = hear(monkeypatch, degrees, ratio).shown
     assert re.fullmatch(advice, shown.advice)
     assert shown.known == pytest.approx(known, abs=0.01)
-    turned = f'the output turned {degrees:.0f}° on and {degrees:.0f}° back'
+    turned = f'the output turned {degrees:.0f}° forward and {degrees:.0f}° backward'
     assert shown.entries[0] == Entry('heard', '8000 messages', turned)
 
 

@@ -21,7 +21,7 @@ from watching import (
     node,
 )
 
-from gear_kinematics.watch.drivers import Driver
+from gear_kinematics.watch.drivers import DriverTopic
 from gear_kinematics.watch.view import Entry, Guide, View
 
 pytestmark = [pytest.mark.live, pytest.mark.slow]
@@ -246,7 +246,7 @@ def test_names_are_text_on_the_page(connected, browser):
         message=hostile,
         values=(Entry(hostile, hostile, hostile),),
         diagnostics=(Entry(hostile, hostile),),
-        drivers=(Driver(hostile, (hostile, 'b'), 1.0),),
+        drivers=(DriverTopic(hostile, (hostile, 'b'), 1.0),),
         guide=Guide(hostile, 0.5, (Entry(hostile, hostile, hostile),)),
     )
     from gear_kinematics.watch.server import Server  # noqa: PLC0415, needs an extra

@@ -21,8 +21,8 @@ from watching import WatcherStandIn
 from gear_kinematics.commands.cli import main
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.watch import drivers
-from gear_kinematics.watch.drivers import Driver, Graph
-from gear_kinematics.watch.gear import Answer, GearNode, Joint, Status
+from gear_kinematics.watch.drivers import DriverTopic, Graph
+from gear_kinematics.watch.gear import Answer, GearNode, JointValue, Status
 from gear_kinematics.watch.page import drawing
 from gear_kinematics.watch.text import line, list_drivers, rows_of, table
 from gear_kinematics.watch.view import Entry, View, status_entry, values_of, view_of
@@ -38,7 +38,10 @@ from gear_kinematics.watch.server import Server  # noqa: E402, needs it
 ROOT = Path(__file__).resolve().parents[2]
 JOINT_STATE = 'sensor_msgs/msg/JointState'
 HOSTILE = 'm\x1b[2J<img src=x onerror=alert(1)>'
-DRIVERS = (Driver('/motor/joint_states', ('brake', 'm1'), 999.6), Driver('/odd', (), 0.0))
+DRIVERS = (
+    DriverTopic('/motor/joint_states', ('brake', 'm1'), 999.6),
+    DriverTopic('/odd', (), 0.0),
+)
 
 
 # Which topic is which
@@ -79,10 +82,10 @@ def test_node_of_a_gear_is_known_by_its_topics(own, output):
 def gear_node(**changes):
     """Stand in for a node that has told everything."""
     joints = {
-        topics.OUTPUT_STATE: Joint(math.radians(-370.0), -1.0, 0.001, 999.6),
-        topics.CORRECTED_STATE: Joint(math.radians(-370.25), None, 0.001),
-        topics.CORRECTED_INTERVAL: Joint(math.radians(0.5 / 60.0), None, 0.001),
-        topics.TRANSMISSION_ERROR: Joint(math.radians(-1.5 / 60.0), None, 0.001),
+        topics.OUTPUT_STATE: JointValue(math.radians(-370.0), -1.0, 0.001, 999.6),
+        topics.CORRECTED_STATE: JointValue(math.radians(-370.25), None, 0.001),
+        topics.CORRECTED_INTERVAL: JointValue(math.radians(0.5 / 60.0), None, 0.001),
+        topics.TRANSMISSION_ERROR: JointValue(math.radians(-1.5 / 60.0), None, 0.001),
     }
     values = {'peak to peak (rad)': '0.0002'}
     kept = {'home file': 'not kept: set home_file'}
@@ -117,7 +120,7 @@ def test_values_are_those_of_the_topics():
 
 
 def test_a_gear_at_rest_has_no_negative_zero():
-    joints = {topics.OUTPUT_STATE: Joint(-1e-9, -1e-9, 0.001, 1000.0)}
+    joints = {topics.OUTPUT_STATE: JointValue(-1e-9, -1e-9, 0.001, 1000.0)}
     angle, rotor, speed, *_ = values_of(gear_node(joint=joints.get))
     assert angle == Entry('output angle', '0.000°', '0.00000 rad')
     assert rotor == Entry('rotor angle', '0.000°', '0.000 turns')
@@ -143,7 +146,7 @@ def test_margin_of_the_preload_is_a_value_and_a_bar(margin, tone):
 
 
 def test_values_that_are_out_of_date_say_so_and_move_nothing():
-    silent = gear_node(joint={topics.OUTPUT_STATE: Joint(0.1, None, 90.0)}.get)
+    silent = gear_node(joint={topics.OUTPUT_STATE: JointValue(0.1, None, 90.0)}.get)
     view = view_of(silent)
     assert [entry.tone for entry in view.values[:2]] == ['stale', 'stale']
     assert view.rotor is None
@@ -163,7 +166,11 @@ def test_values_that_are_out_of_date_say_so_and_move_nothing():
         (gear_node(parameters=None), 'connecting', ''),
         (gear_node(), 'connected', ''),
         (gear_node(joint={}.get), 'no output', 'There was none yet.'),
-        (gear_node(joint={topics.OUTPUT_STATE: Joint(0.0, 0.0, 5.74)}.get), 'no output', '5.7 s'),
+        (
+            gear_node(joint={topics.OUTPUT_STATE: JointValue(0.0, 0.0, 5.74)}.get),
+            'no output',
+            '5.7 s',
+        ),
     ],
 )
 def test_state_of_the_node_is_told(gear, state, words):
@@ -272,7 +279,7 @@ def test_narrow_table_cuts_nothing():
 
 def test_names_do_not_reach_the_terminal_raw(capsys):
     shown = printed(table(rows_of(FULL))) + line(rows_of(FULL))
-    list_drivers([Driver('/odd', (HOSTILE,), 1.0)], Console())
+    list_drivers([DriverTopic('/odd', (HOSTILE,), 1.0)], Console())
     assert '\x1b' not in shown.replace('\x1b[0m', '') + capsys.readouterr().out
 
 
