@@ -2,9 +2,9 @@
 """The subcommands of `gearkin`, one module each.
 
 Each module has `add_arguments(parser)` and `run(options)`, which returns the exit code and raises
-ValueError, OSError or RuntimeError if input or arguments are unusable, in one line. It imports no
-other command; common functions are in `arguments` and `output`. Commands compute nothing: their
-results come from the other rooms.
+ValueError, OSError or RuntimeError with a text of one line if input or arguments are unusable. It
+imports no other command; common functions are in `arguments` and `output`. Commands compute
+nothing: their results come from the other sub-packages.
 """
 
 from enum import IntEnum

@@ -17,7 +17,7 @@ from gear_kinematics.report.image import check_image
 _SPEED = 2.0 * TURN  # rad/s: fast enough for the output, slow enough for the rotor
 _FPS = 20
 _MOST_FRAMES = 2000
-"""All of them are in memory until the last one is drawn."""
+"""Greatest number of frames, all of which are in memory until the last one is drawn."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -55,7 +55,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _frames(options: argparse.Namespace, config: NodeParameters, cycle_turns: int) -> Trajectory:
-    """The recorded motion, or a whole cycle."""
+    """Make the frames of the recorded motion, or of a whole cycle."""
     moved = drawing.recording(options, config) or Trajectory.at_constant_speed(_SPEED, cycle_turns)
     interval = options.rate / _FPS
     count = math.ceil((moved.time[-1] - moved.time[0]) / interval)

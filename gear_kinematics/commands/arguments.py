@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Arguments that several commands have in common."""
+"""Arguments shared by several commands."""
 
 import argparse
 import math
@@ -40,7 +40,7 @@ def between(
 
 
 def group(parser: argparse.ArgumentParser, title: str) -> argparse._ArgumentGroup:
-    """Return the group of options under a heading of --help, which is made where it is missing."""
+    """Return the group of options under a heading of --help, and create it if it is missing."""
     known = (group for group in parser._action_groups if group.title == title)  # noqa: SLF001
     return next(known, None) or parser.add_argument_group(title)
 
@@ -66,7 +66,7 @@ def add_config(
 
 
 def add_mechanism(parser: argparse.ArgumentParser, *, sizes: bool = False) -> None:
-    """Add the options for a mechanism: parameters of the node, tooth numbers, and sizes too."""
+    """Add the options for a mechanism: parameters of the node, tooth numbers and sizes."""
     add_config(parser)
     gear = group(parser, 'gear')
     gear.add_argument(
@@ -96,11 +96,11 @@ def add_verbose(parser: argparse.ArgumentParser, text: str) -> None:
 
 
 def config_path(options: argparse.Namespace, bag: Path | None = None) -> Path:
-    """The given parameter file, or the one in the bag's folder, or the default."""
+    """Choose the given parameter file, or the one in the bag's folder, or the default."""
     if options.config:
         return Path(options.config)
     default = default_config()
-    return (beside(bag, default.name) if bag else None) or default
+    return (in_bag_folder(bag, default.name) if bag else None) or default
 
 
 _REPLACED = {
@@ -132,7 +132,7 @@ def load_config(options: argparse.Namespace, bag: Path | None = None) -> NodePar
     return replace(config, **given)
 
 
-def beside(bag: Path, name: str) -> Path | None:
-    """The file of a name in the folder of a bag, if there is one."""
+def in_bag_folder(bag: Path, name: str) -> Path | None:
+    """Find the file with a name in the folder of a bag, if there is one."""
     path = (bag if bag.is_dir() else bag.parent) / name
     return path if path.is_file() else None

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Arguments about bags, and the files beside them, that several commands have in common."""
+"""Arguments about bags and the files in their folders, shared by several commands."""
 
 import argparse
 from collections.abc import Iterator, Sequence
@@ -14,21 +14,21 @@ from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.parameters import NodeParameters
 
 CALIBRATION = 'calibration.yaml'
-"""Name of a calibration beside a bag."""
+"""Name of a calibration in the folder of a bag."""
 
 
 def add_rotor(parser: argparse.ArgumentParser, *, configured: bool = True) -> None:
     """Add the options for the rotor's topic and joint; `load_config` applies the latter.
 
     Args:
-        parser: to add them to.
+        parser: the parser to which they are added.
         configured: whether the command takes parameters of the node, too.
     """
     group = arguments.group(parser, 'recording')
     group.add_argument(
         '--rotor-topic',
         metavar='NAME',
-        help='of the joint states (default: found by type, name and joint)',
+        help='topic of the joint states (default: found by type, name and joint)',
     )
     text = ' (default: the parameter rotor_joint)' if configured else ', to find its topic'
     group.add_argument('--joint', metavar='NAME', help=f'of the rotor{text}')
@@ -56,10 +56,10 @@ def add_calibration(parser: argparse.ArgumentParser) -> None:
 def calibration_path(
     options: argparse.Namespace, config: NodeParameters, bag: Path | None
 ) -> Path | None:
-    """The given calibration, or that of the parameters, or the one in the bag's folder."""
+    """Choose the given calibration, or that of the parameters, or the one in the bag's folder."""
     if given := options.calibration or config.calibration:
         return Path(given)
-    return arguments.beside(bag, CALIBRATION) if bag else None
+    return arguments.in_bag_folder(bag, CALIBRATION) if bag else None
 
 
 def load_calibration(
@@ -87,9 +87,9 @@ def results(
     tasks: Sequence[Any],
     unit: str,
 ) -> dict[Path, fleet.Report]:
-    """Return the reports on tasks by their `bag`, from several processes if `add_jobs` says so.
+    """Return the reports on tasks by their `bag`; with `--jobs`, several processes compute them.
 
-    These have a progress in the unit; otherwise, each recording has its own.
+    Several processes have one progress bar in the unit; otherwise, each recording has its own.
     """
     if options.jobs > 1:
         done = fleet.on_this_machine(work, tasks, options.jobs)
@@ -105,10 +105,10 @@ def results(
 
 @contextmanager
 def naming(bag: Path, *others: Path) -> Iterator[None]:
-    """Name the bag in errors that name neither it nor other files.
+    """Add the bag's name to errors that name neither the bag nor other files.
 
     Raises:
-        ValueError, RuntimeError: with the bag at the begin of the text.
+        ValueError, RuntimeError: with a text that begins with the bag.
     """
     try:
         yield

@@ -84,7 +84,7 @@ def _check(options: argparse.Namespace, config: NodeParameters, reporter: Report
 def _read(
     options: argparse.Namespace, config: NodeParameters
 ) -> Iterator[tuple[Recording, Encoders]]:
-    """Read the recordings, and complain about those that cannot be read."""
+    """Read the recordings, and report those that cannot be read."""
     for path in options.recordings:
         try:
             with bags.naming(path), message_progress(path.name, quiet=options.quiet) as progress:

@@ -22,32 +22,35 @@ from gear_kinematics.share import version
 from gear_kinematics.wire.nearest import among
 
 COMMANDS: dict[str, tuple[str, str]] = {
-    'info': ('what is in recordings: duration, topics, rates, joints and gaps', 'info logs/*/'),
+    'info': ('list the contents of recordings: topics, rates, joints and gaps', 'info logs/*/'),
     'validate': ('compare recorded outputs with recomputed ones', 'validate logs/monday'),
     'compute': ('write a bag with the outputs for a rotor topic', 'compute logs/monday computed'),
     'replay': ("publish a bag's rotor topic with its own timing", 'replay logs/monday --loop'),
     'demo': ('play the shipped bag into the live node and validate its outputs', 'demo'),
     'init': ('list running drivers, and write a parameter file for one', 'init --joint m1'),
     'watch': ('show a running node and its driver live', 'watch --text'),
-    'describe': ('ratio, mobility, vernier and teeth of a gear', 'describe --html gear.html'),
+    'describe': (
+        'report ratio, mobility, vernier and teeth of a gear',
+        'describe --html gear.html',
+    ),
     'index': (
-        'pin holes for a turn of the ring gear or the phase of branch B',
+        'find the pin holes for a turn of the ring gear or the phase of branch B',
         'index --degrees 0.15',
     ),
     'preload': (
-        'preload, torque limits and torque split, and the ring turn and pin holes for them',
+        'compute preload, torque limits and torque split, and the pin holes for them',
         'preload --wanted-threshold 1 --branch-stiffness 3000 --shaft-stiffness 1000',
     ),
     'lost-motion': (
-        'hysteresis, lost motion, stiffness, play and transmission error from recordings',
+        'measure hysteresis, lost motion, stiffness, play and transmission error in recordings',
         'lost-motion ramps.csv --html ramps.html --max-hysteresis 90',
     ),
     'loads': (
-        'whether the preload held in recordings, and the forces at every joint',
+        'check whether the preload held in recordings, and report the forces at every joint',
         'loads logs/monday --config actuator.yaml',
     ),
     'calibrate': (
-        'calibrate the real output, from recordings with an encoder at rotor and output',
+        'calibrate the real output from recordings of the encoders at rotor and output',
         'calibrate encoder/monday encoder/tuesday -o calibration.yaml',
     ),
     'commission': (
@@ -69,7 +72,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
 
 
 class _Parser(argparse.ArgumentParser):
-    """Reports an error in one line, without the usage, and takes -58/3 for a number."""
+    """Reports an error in one line, without the usage, and accepts -58/3 as a number."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
@@ -78,14 +81,14 @@ class _Parser(argparse.ArgumentParser):
         self.set_defaults(parser=self)  # that of the innermost subcommand remains
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
-        """Name the nearest choice, too."""
+        """Name the nearest choice in the error as well."""
         if action.choices is not None and value not in action.choices:
             choices = list(map(str, action.choices))
             hint = among(str(value), choices, most=len(choices))
             raise argparse.ArgumentError(action, f'invalid choice: {value!r}{hint}')
 
     def refuse(self, unknown: Sequence[str]) -> NoReturn:
-        """Report unknown options, with those that there are, or surplus arguments."""
+        """Report unknown options together with the known ones, or surplus arguments."""
         message = f'unrecognized arguments: {" ".join(unknown)}'
         if options := [word for word in unknown if word.startswith('-') and word != '-']:
             known = [text for text in self._option_string_actions if text.startswith('--')]
@@ -110,7 +113,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if unknown:
             options.parser.refuse(unknown)
         options.command_line = shlex.join(['gearkin', *words])
-        # Overflows show in the results.
+        # Overflows can be seen in the results.
         with closed_pipe_ignored(), np.errstate(all='ignore'):
             return int(options.run(options))
     except (ValueError, OSError, RuntimeError) as error:
@@ -130,7 +133,7 @@ def make_parser(*called: str) -> argparse.ArgumentParser:
     """Build the parser of the program.
 
     Args:
-        called: the subcommands whose modules are imported, for their arguments; all if none.
+        called: the subcommands whose modules are imported for their arguments; all if empty.
     """
     parser = _Parser(prog='gearkin', description=__doc__)
     parser.add_argument('--version', action='version', version=f'gearkin {version()}')

@@ -30,29 +30,33 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     recording.add_argument(
         '--live',
         action='store_true',
-        help='hear the drivers now, and guide through turning the output by hand; Enter ends it',
+        help='listen to the drivers now, and guide through turning the output by hand; Enter ends',
     )
-    recording.add_argument('--encoder-joint', metavar='NAME', help='of the output')
+    recording.add_argument('--encoder-joint', metavar='NAME', help='joint of the output')
     gear = arguments.group(parser, 'gear')
     known = gear.add_mutually_exclusive_group()
-    known.add_argument('--ratio', type=ratio_text, metavar='I', help='confirm it, such as -19')
-    known.add_argument('--teeth', type=_teeth, metavar='ZK/ZS', help='confirm them, such as 80/76')
+    known.add_argument(
+        '--ratio', type=ratio_text, metavar='I', help='confirm this ratio, such as -19'
+    )
+    known.add_argument(
+        '--teeth', type=_teeth, metavar='ZK/ZS', help='confirm these teeth, e.g. 80/76'
+    )
     known.add_argument('--check', type=Path, metavar='FILE', help='judge this parameter file')
     gear.add_argument(
         '--zero-here',
         type=_moment,
         metavar='START|END|STAMP',
-        help='the output angle is 0 then, in the last recording; a stamp or time of it, s '
-        "(default: at 0 of the output's encoder)",
+        help='moment of the last recording at which the output angle is 0; a stamp or a time, s '
+        "(default: where the output's encoder reads 0)",
     )
     arguments.group(parser, 'output').add_argument(
         '-o',
         '--output',
         default=default_config().name,
         metavar='FILE',
-        help='the parameter file (default: %(default)s); replaces nothing',
+        help='the parameter file to create (default: %(default)s); it must not exist yet',
     )
-    arguments.add_verbose(parser, 'print tables and remarks in a pipe, too')
+    arguments.add_verbose(parser, 'print tables and remarks in a pipe as well')
     add_report_forms(parser)
 
 
@@ -101,7 +105,7 @@ def _read(options: argparse.Namespace, request: analysis.Request) -> analysis.Co
 
 
 def _recorded(path: Path) -> list[analysis.Channel]:
-    """The joints in a bag."""
+    """List the joints in a bag."""
     with Bag(path) as bag:
         heard = joints_on(bag, [topic for topic in bag.topics if bag.topics[topic] == JOINT_STATE])
     return [analysis.Channel(topic, joint) for topic, joints in heard.items() for joint in joints]
@@ -114,7 +118,7 @@ def _chosen(joints: list[analysis.Channel], request: analysis.Request) -> analys
 
 
 def _hear(request: analysis.Request) -> analysis.Commissioning:
-    """Hear both encoders until they tell what is needed, or the user ends it."""
+    """Listen to both encoders until all values are known, or the user ends it."""
     warn_of_shared_memory(participants=1)
     # These need ROS, unlike most commands.
     from gear_kinematics.ros.replay import stopped_by_signals  # noqa: PLC0415

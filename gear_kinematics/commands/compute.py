@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Write the bag, with its parameters beside it, and print the number of its messages."""
+    """Write the bag and its parameters, and print the number of its messages."""
     config = arguments.load_config(options, options.bag)
     calibration = bags.load_calibration(options, config, options.bag)
     with (
@@ -76,7 +76,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _files(options: argparse.Namespace, config: NodeParameters) -> dict[str, bytes]:
-    """The files with which the bag was computed, which `gearkin validate` finds beside it."""
+    """List the files with which the bag was computed; `gearkin validate` finds their copies."""
     files = {}
     if calibration := bags.calibration_path(options, config, options.bag):
         files[bags.CALIBRATION] = calibration.read_bytes()

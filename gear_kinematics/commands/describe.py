@@ -25,7 +25,7 @@ class _Fact(NamedTuple):
 
     @property
     def cell(self) -> Cell:
-        """The value in tables: rounded, and angles in degrees, minutes and seconds of arc."""
+        """Format the value for tables: rounded, angles in degrees, minutes and seconds of arc."""
         match self.value:
             case None:
                 return Cell('')
@@ -72,7 +72,7 @@ def _sentence(data: Mapping[str, Any]) -> str:
 
 
 def _facts(mechanism: Mechanism) -> list[_Fact]:
-    """Properties of the mechanism alone."""
+    """List the properties of the mechanism alone."""
     zk = mechanism.ring_teeth
     return [
         _Fact('ring_teeth', zk),
@@ -91,7 +91,7 @@ def _facts(mechanism: Mechanism) -> list[_Fact]:
 
 
 def _tooth_facts(mechanism: Mechanism, module: float) -> list[_Fact]:
-    """Properties of involute teeth of the module."""
+    """List the properties of involute teeth with the module."""
     try:
         pair, interference = tooth_pair(mechanism, module), None
     except InterferenceError as error:

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What `plot`, `animate` and `urdf` have in common: a mechanism, its motion, and its teeth."""
+"""Common parts of `plot`, `animate` and `urdf`: a mechanism, its motion, and its teeth."""
 
 import argparse
 import math
@@ -38,7 +38,7 @@ def add_image(parser: argparse.ArgumentParser, formats: str) -> None:
 
 
 def force_at(options: argparse.Namespace, config: NodeParameters) -> float:
-    """F_t on the satellite of the first branch, N, at the torque that the options name."""
+    """Compute F_t on the first branch's satellite, N, at the torque given by the options."""
     if not options.torque:
         return 0.0
     (torque, *_), _ = config.sharing.branches(options.torque)
@@ -46,7 +46,7 @@ def force_at(options: argparse.Namespace, config: NodeParameters) -> float:
 
 
 def recording(options: argparse.Namespace, config: NodeParameters) -> Trajectory | None:
-    """Read the part of the rotor's motion that the options name; None without a bag.
+    """Read the part of the rotor's motion selected by the options; None without a bag.
 
     Raises:
         ValueError: if such options are given without a bag.

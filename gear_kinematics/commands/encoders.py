@@ -24,8 +24,8 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: boo
     `load_config` applies `--ratio` and `--joint`, and `sources` returns the others.
 
     Args:
-        parser: of the command.
-        roles: what the columns of CSV files can be, of `_COLUMNS`.
+        parser: parser of the command.
+        roles: quantities of `_COLUMNS` that columns of CSV files can have.
         configured: whether the command takes parameters of the node, and a ratio.
     """
     number = '+' if configured else '*'  # --live takes their place
@@ -49,7 +49,7 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: boo
     for role in roles:
         group.add_argument(f'--{role}-column', metavar='NAME', help=_COLUMNS[role])
     group.add_argument(
-        '--angle-unit', choices=ANGLE_UNITS, help='of all angles (default: by name, or rad)'
+        '--angle-unit', choices=ANGLE_UNITS, help='unit of all angles (default: by name, or rad)'
     )
     if 'torque' in roles:
         group.add_argument(

@@ -15,7 +15,7 @@ EXTRAS = {
 }
 """The extra that installs a package; setup.py defines the extras."""
 _MESSAGES = '_msgs', '_srvs', '_interfaces'
-"""Ends of the names of further packages of the extra `ros`."""
+"""Suffixes of the names of further packages of the extra `ros`."""
 
 
 def remedy(error: ImportError) -> str:

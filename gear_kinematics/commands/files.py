@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Files that a command writes: nothing of the user's is replaced by a report."""
+"""Files that a command writes; a report never replaces a file of the user's."""
 
 import argparse
 import errno
@@ -17,11 +17,11 @@ from gear_kinematics.report.mark import is_report
 _INPUTS = ('bag', 'bags', 'recordings', 'config', 'calibration', 'check', 'measured')
 """Options and arguments that name files to read."""
 _REPLACEABLE = {'-o': ('calibration', is_calibration)}
-"""Files that options may replace, if not reports."""
+"""Test of the files other than reports that an option may replace."""
 
 
 def add_force(parser: argparse.ArgumentParser) -> None:
-    """Add the option to replace files that are no reports."""
+    """Add the option to replace files that are not reports."""
     group(parser, 'output').add_argument(
         '--force',
         action='store_true',
@@ -37,7 +37,7 @@ def check_targets(options: argparse.Namespace, targets: Mapping[str, str | None]
         targets: paths by the name of the option or argument; '-' is stdout.
 
     Raises:
-        ValueError: naming the first file that must not or cannot be written.
+        ValueError: if a file must not or cannot be written; the text names the first one.
     """
     inputs = {given.resolve() for given in _inputs(options)}
     files: dict[Path, str] = {}
@@ -87,7 +87,7 @@ def _check_folder(name: str, path: Path) -> None:
 
 
 def write_text(target: str, text: str) -> None:
-    """Write a file like `write_file`; '-' is stdout."""
+    """Write a text as `write_file` does; '-' is stdout."""
     if target == '-':
         with closed_pipe_ignored():
             print(text, end='' if text.endswith('\n') else '\n')

@@ -26,7 +26,7 @@ from gear_kinematics.report.document import (
 from gear_kinematics.shape.angles import arc, arc_seconds
 
 _NEIGHBOURS = 3
-"""Positions that are listed on either side of the nearest one."""
+"""Number of positions listed on either side of the nearest one."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -15,15 +15,15 @@ from gear_kinematics.report.document import printable
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument('--topic', metavar='NAME', help='of the driver, if there are several')
-    parser.add_argument('--joint', metavar='NAME', help='of the rotor, if there are several')
+    parser.add_argument('--topic', metavar='NAME', help="the driver's topic, if there are several")
+    parser.add_argument('--joint', metavar='NAME', help="the rotor's joint, if there are several")
     parser.add_argument(
         '-o',
         '--output',
         type=Path,
         default=default_config().name,
         metavar='FILE',
-        help='the parameter file (default: %(default)s); replaces nothing',
+        help='the parameter file to create (default: %(default)s); it must not exist yet',
     )
 
 

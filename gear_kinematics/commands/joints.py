@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The choice of a joint among those that are heard or recorded."""
+"""The choice of a joint among those of live or recorded messages."""
 
 import sys
 from collections.abc import Sequence
@@ -17,9 +17,9 @@ def choose_joint(
     """Return the joint that is given, the only one on its usual topic, or the one the user names.
 
     Args:
-        joints: that are there.
-        given: what is known of it.
-        role: of the joint.
+        joints: the joints to choose from.
+        given: the given topic and name of the joint, as far as they are known.
+        role: role of the joint in the question and in errors.
 
     Raises:
         ValueError: if there is none, or there are several and nobody to ask.
@@ -29,7 +29,9 @@ def choose_joint(
     base = {'rotor': ROTOR_STATE, 'output': OUTPUT_ENCODER}[role]
     usual = [joint for joint in found if base_name(joint.topic) == base]
     others = [joint for joint in found if base_name(joint.topic) not in TOPICS]
-    found = usual or others or (found if any(given) else [])  # of this package, if they are named
+    found = (
+        usual or others or (found if any(given) else [])
+    )  # topics of this package only if named
     if len(found) == 1:
         return found[0]
     names = [f'{printable(joint)} on {topic}' for topic, joint in found or joints]

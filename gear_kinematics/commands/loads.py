@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""`gearkin loads`: whether the preload held over recordings, and what every joint carried."""
+"""`gearkin loads`: a check that the preload held in recordings, and the loads of every joint."""
 
 import argparse
 import math

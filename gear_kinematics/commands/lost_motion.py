@@ -88,7 +88,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _names(paths: Sequence[Path]) -> list[str]:
-    """Name recordings by their files, or by their paths where those are the same."""
+    """Name recordings by their files, or by their paths if files have equal names."""
     known = Counter(path.name for path in paths)
     return [path.name if known[path.name] == 1 else str(path) for path in paths]
 
@@ -113,7 +113,7 @@ def _measured(path: Path, name: str, options: argparse.Namespace) -> LostMotion:
 def _compared(
     reports: Sequence[LostMotion], options: argparse.Namespace
 ) -> tuple[Sequence[LostMotion], Comparison | None]:
-    """Return the reports, at a common torque if they are compared, and what that tells."""
+    """Return the reports, at a common torque if they are compared, and the comparison."""
     groups, apart = None, []
     if options.group:
         patterns = options.group

@@ -60,7 +60,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _shown(gear: TwinGear) -> TwinGear:
-    """The gear, without meshes of its teeth if they cannot be made; says so on stderr."""
+    """Return the gear, without meshes if they cannot be made, which is reported on stderr."""
     parameters = gear.parameters
     if parameters.meshes == meshes.NONE:
         return gear

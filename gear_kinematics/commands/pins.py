@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What `index` and `preload` have in common: the turn of a ring gear, and the pins for it."""
+"""Common parts of `index` and `preload`: the turn of a ring gear, and the pins for it."""
 
 import argparse
 from collections.abc import Iterator
@@ -19,7 +19,7 @@ SENSES = (
     'clockwise, from 0 at the zero marks.'
 )
 _ZERO = Fraction(0)
-"""The turn of a ring gear whose tooth 0 and hole 0 are at the chassis's hole 0."""
+"""Setting of a ring gear whose tooth 0 and hole 0 are at the chassis's hole 0."""
 
 
 class Pins(NamedTuple):
@@ -30,7 +30,7 @@ class Pins(NamedTuple):
     ring_turn: float
     """The wanted turn, rad."""
     choices: list[Choice]
-    """The nearest one is in the middle."""
+    """Positions of the vernier, with the nearest one in the middle."""
 
     @property
     def nearest(self) -> Choice:
@@ -51,23 +51,23 @@ class Pins(NamedTuple):
 
 
 def add_turn(parser: argparse.ArgumentParser, *, required: bool) -> argparse._ActionsContainer:
-    """Add the options for a turn and its pins; returns the group of ways to give the turn."""
+    """Add the options for a turn and its pins; returns the group of options for the turn."""
     group = arguments.group(parser, 'turn of a ring gear')
-    ways = group.add_mutually_exclusive_group(required=required)
-    ways.add_argument('--degrees', type=float, metavar='DEG', help='turn of the ring gear')
+    turns = group.add_mutually_exclusive_group(required=required)
+    turns.add_argument('--degrees', type=float, metavar='DEG', help='turn of the ring gear')
     group.add_argument(
         '--phase-b', action='store_true', help='add the turn for the cam phase of branch B'
     )
-    return ways
+    return turns
 
 
 def find(
     options: argparse.Namespace, mechanism: Mechanism, turn: float, neighbours: int = 0
 ) -> Pins:
-    """Find the pins nearest to a turn, rad, and to that of the phase, if the options ask for it.
+    """Find the pins nearest to a turn, rad, plus the turn for the cam phase if requested.
 
     Raises:
-        ValueError: if it is more than a whole turn in either direction.
+        ValueError: if the turn exceeds a whole turn in either direction.
     """
     phase = ring_phase(mechanism) if options.phase_b else None
     wanted = turn + (phase or 0.0)
@@ -78,7 +78,7 @@ def find(
 
 
 def at_setting(options: argparse.Namespace, mechanism: Mechanism) -> Pins:
-    """The pins of the given setting, and the turn to it."""
+    """Return the pins of the given setting, and the turn to it."""
     pins = find(options, mechanism, 0.0)
     setting = vernier.pin_setting(mechanism.ring_teeth, *options.setting)
     turn = vernier.angle_between(_ZERO, setting.turn)

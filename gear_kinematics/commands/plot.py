@@ -16,7 +16,7 @@ _DEGREES = 40.0  # rotor angle at which all parts of the scheme can be seen
 _SPEED = 100.0 * math.pi  # rad/s: 3000 rpm
 _FIGURES = ('output', 'roses', 'scheme', 'slides')
 _OF_ONE = {'degrees': 'scheme', 'torque': 'scheme', 'speed': 'slides', 'bag': 'output'}
-"""Options that only one of the figures has."""
+"""Options that apply to only one of the figures."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

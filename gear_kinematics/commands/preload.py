@@ -27,7 +27,7 @@ class _Answer(NamedTuple):
 
     mechanism: Mechanism
     names: tuple[str, str]
-    """Of branches A and B."""
+    """Torques of branches A and B."""
     backlash: float
     preload: Preload
     pins: Pins
@@ -37,24 +37,24 @@ class _Answer(NamedTuple):
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    ways = pinning.add_turn(parser, required=True)
-    ways.add_argument(
+    turns = pinning.add_turn(parser, required=True)
+    turns.add_argument(
         '--setting',
         type=int,
         nargs=3,
         metavar=('TOOTH', 'RING_HOLE', 'CHASSIS_HOLE'),
         help='pin setting of the ring gear',
     )
-    ways.add_argument(
+    turns.add_argument(
         '--wanted-preload',
         type=float,
         metavar='N·m',
-        help='of both branches without a load; negative: by turning the other way',
+        help='torque in both branches without load; negative for a turn in the other direction',
     )
-    ways.add_argument(
+    turns.add_argument(
         '--wanted-threshold', type=float, metavar='N·m', help='load up to which both are in mesh'
     )
-    ways.add_argument(
+    turns.add_argument(
         '--from',
         dest='recording',
         type=Path,
@@ -66,7 +66,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=arguments.positive,
         default=1.2,
         metavar='FACTOR',
-        help='on the least preload for a recording (default: %(default)g)',
+        help='safety factor of the least preload for a recording (default: %(default)g)',
     )
     group = parser.add_argument_group('stiffness', 'torsional, at the output')
     group.add_argument(
@@ -75,14 +75,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs='+',
         required=True,
         metavar='N·m/rad',
-        help='of both branches, or of A and of B, the one at the output; inf: rigid',
+        help='stiffness of each branch, or of A and of B, the one at the output; inf is rigid',
     )
     group.add_argument(
         '--shaft-stiffness',
         type=float,
         required=True,
         metavar='N·m/rad',
-        help='between the arms',
+        help='stiffness of the shaft between the arms',
     )
     group.add_argument(
         '--backlash',
@@ -137,7 +137,7 @@ def _answer(options: argparse.Namespace) -> _Answer:
 
 
 def _wanted(options: argparse.Namespace, pair: Mechanism, stiffness: Stiffness) -> float:
-    """The turn that the options ask for, rad."""
+    """Determine the turn given by the options, rad."""
     sign = 1.0
     if options.wanted_preload is not None:
         sign = options.wanted_preload

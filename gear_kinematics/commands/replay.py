@@ -70,7 +70,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _topic(bag: Bag, options: argparse.Namespace) -> str:
-    """Return the rotor's topic, on which a joint that is given must be."""
+    """Return the rotor's topic, which must have the given joint if there is one."""
     topic = find_rotor_topic(bag, options.rotor_topic, options.joint or '')
     if options.joint and options.joint not in (joints := joints_on(bag, [topic])[topic]):
         hint = among(options.joint, joints)

@@ -56,7 +56,7 @@ class Reporter:
         Args:
             options: the parsed arguments.
             sections: number of sections of the document.
-            others: targets of further options, which the command writes itself.
+            others: targets of other options, which the command itself writes.
             compared: whether the last section compares the others, and has the figure of the plot.
             brief: whether a section that passed is one line in a pipe.
 
@@ -89,7 +89,7 @@ class Reporter:
         Args:
             document: the report.
             configs: the parameter files that were used.
-            printed: False where one line on stderr has said it all.
+            printed: whether to print the report; False if one line on stderr was enough.
 
         Raises:
             ValueError: if there is nothing to plot; everything else is written by then.
@@ -111,7 +111,7 @@ class Reporter:
             write_file(plot, to_image(figure, Path(plot)))
 
     def _origin(self, configs: Iterable[Path]) -> Origin:
-        """Describe this moment, the command and its parameter files, each of them once.
+        """Record the time, the command and its parameter files, each of them once.
 
         Raises:
             OSError: if one of the files has become unreadable.

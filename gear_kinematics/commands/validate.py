@@ -46,11 +46,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='judge all messages, even where the recorder may have lost some, and fail a node '
         'that was homed',
     )
-    way = arguments.group(parser, 'several recordings').add_mutually_exclusive_group()
-    way.add_argument(
+    sources = arguments.group(parser, 'several recordings').add_mutually_exclusive_group()
+    sources.add_argument(
         '--live', action='store_true', help='validate the outputs of a live node instead'
     )
-    bags.add_jobs(way)
+    bags.add_jobs(sources)
     add_report_forms(parser, junit=True)
     arguments.add_verbose(parser, 'print all counts and errors, not only what was found')
 
@@ -67,7 +67,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     for bag in found.bags:
         try:
             tasks.append(_task(bag, tolerances, options))
-        except (ValueError, OSError) as error:  # of the files beside it, or of options
+        except (ValueError, OSError) as error:  # from files in its folder, or from options
             faults[bag] = str(error)
     if not tasks:
         complain('; '.join(dict.fromkeys(faults.values())))

@@ -10,7 +10,9 @@ from gear_kinematics.commands.output import Console, warn_of_shared_memory
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument(
-        '--text', action='store_true', help='in the terminal, or as lines in a pipe; no page'
+        '--text',
+        action='store_true',
+        help='show text in the terminal, or lines in a pipe, instead of a page',
     )
     parser.add_argument(
         '--node',
@@ -21,10 +23,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Watch until interrupted.
+    """Watch the node until interrupted.
 
     Raises:
-        KeyboardInterrupt: on SIGINT or SIGTERM, when everything is closed.
+        KeyboardInterrupt: on SIGINT or SIGTERM, once everything is closed.
     """
     warn_of_shared_memory(participants=1)
     # These need ROS, unlike most commands.

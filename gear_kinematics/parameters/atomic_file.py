@@ -8,10 +8,11 @@ from pathlib import Path
 
 
 def replace_file(path: Path, content: bytes) -> None:
-    """Write a file and have it on the disk; where a link leads to it, the link remains.
+    """Write a file and flush it to the disk; a link to the file is kept.
 
     Raises:
-        OSError: if it cannot be written. What was there remains, whatever happens when.
+        OSError: if the file cannot be written. The previous content then remains, whenever the
+            error occurs.
     """
     path = Path(os.path.realpath(path))
     # Never too long a name, and another one than of a process that was killed.

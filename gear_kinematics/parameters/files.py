@@ -31,9 +31,9 @@ class _OtherNodesError(ConfigError):
 
 
 def require_any(paths: Collection[Path], node: str) -> dict[str, Path]:
-    """Check that a node's parameter files have parameters, and at least one some for the node.
+    """Check that parameter files contain parameters, and at least one of them some for the node.
 
-    ROS silently ignores other files, and the node would run with its default values: here they
+    ROS silently ignores other files, and the node would run with its default values. Here, they
     raise ConfigError.
 
     Returns:
@@ -55,7 +55,7 @@ def require_any(paths: Collection[Path], node: str) -> dict[str, Path]:
 
 
 def given_parameters(path: Path, node: str) -> dict[str, Any]:
-    """The parameters that a file has for a node, by dotted names.
+    """Read the parameters for a node from a file, by dotted names.
 
     All blocks that apply to the node count, in the order in which they begin: a later value of a
     parameter replaces an earlier one, whether its block has a wildcard or not.
@@ -74,7 +74,7 @@ def given_parameters(path: Path, node: str) -> dict[str, Any]:
 
 
 default_values = cache(given_parameters)
-"""The same, of an installed file, which does not change."""
+"""Cached `given_parameters` of an installed file, which does not change."""
 
 
 def _check_strays(path: Path, name: str, blocks: Sequence[tuple[str, dict[str, Any]]]) -> None:
@@ -108,7 +108,7 @@ def _mistyped(pattern: str, name: str) -> bool:
 
 
 def _full_name(path: Path, node: str, blocks: Iterable[tuple[str, object]]) -> str:
-    """The fully qualified name of the only node of this name in a file; without one, `/node`."""
+    """Find the fully qualified name of the only such node in a file; `/node` if there is none."""
     names = [name for name, _ in blocks if name.rpartition('/')[2] == node and '*' not in name]
     if len(names) > 1:
         raise ConfigError(
@@ -123,7 +123,7 @@ def _applies(pattern: str, name: str) -> bool:
 
 
 def _read(path: Path) -> list[tuple[str, dict[str, Any]]]:
-    """The blocks of a parameter file: names of nodes, and parameters by dotted names."""
+    """Read the blocks of a parameter file: names of nodes, and parameters by dotted names."""
     document = read_yaml(path, ConfigError, _RosLoader)
     blocks: dict[str, dict[str, Any]] = {}
     for name, parameters in _blocks(document):
@@ -143,7 +143,7 @@ class _Pairs(tuple[tuple[Any, Any], ...]):
 
 
 class _RosLoader(Loader):
-    """Keeps repeated keys, which ROS merges. The file may be of many nodes."""
+    """Keeps repeated keys, which ROS merges; the file may have parameters of many nodes."""
 
     max_bytes = 2**20
     max_events = 2**17

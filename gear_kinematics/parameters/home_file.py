@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The home file: the zero that the node keeps until its next start."""
+"""The home file, in which the node keeps its zero until its next start."""
 
 import errno
 from datetime import UTC, datetime

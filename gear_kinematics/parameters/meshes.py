@@ -8,9 +8,9 @@ from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.share import PACKAGE, share_directory
 
 AUTO = 'auto'
-"""The installed meshes, if there are any of this mechanism."""
+"""Value that selects the installed meshes, if there are any for this mechanism."""
 NONE = 'none'
-"""Simple shapes."""
+"""Value that selects simple shapes."""
 _URI = re.compile(r'[A-Za-z][A-Za-z0-9+.-]*://[!-~]+')
 
 
@@ -25,7 +25,8 @@ def check(value: str) -> None:
 def folder_name(mechanism: Mechanism, module: float) -> str:
     """The folder of the meshes of a mechanism below `meshes` of the package's share directory.
 
-    They depend on no other sizes. foxglove_bridge serves no folders with dots in their names.
+    The name contains every size that determines the meshes, and no dots, as foxglove_bridge
+    serves no folders with dots in their names.
     """
     teeth = mechanism.ring_teeth, mechanism.satellite_teeth
     return re.sub(r'\W', '_', '_'.join(map(repr, (*teeth, mechanism.eccentricity, module))))

@@ -17,7 +17,7 @@ from gear_kinematics.wire.topics import OUTPUT_ENCODER, ROTOR_STATE
 
 
 def new_config(topic: str, joint: str, name: str) -> str:
-    """Return the text of a parameter file of a name for the joint on a driver's topic.
+    """Return the text of a named parameter file for a joint on a driver's topic.
 
     The joint is an index where joints have no names.
     """
@@ -37,10 +37,10 @@ def quoted(text: str) -> str:
 
 
 def start_command(topic: str, name: str, encoder: str = '') -> str:
-    """The command that starts the node with a parameter file, for the topics of a driver.
+    """Return the command that starts the node with a parameter file and a driver's topics.
 
-    An empty topic is not remapped, as that of an encoder at the output that there is not.
-    A workspace of ROS has the node not on the PATH, a virtual environment only while it is active.
+    An empty topic, such as that of a missing output encoder, is not remapped. In a workspace of
+    ROS, the node is not on the PATH; in a virtual environment, only while that is active.
     """
     program = ['ros2', 'run', PACKAGE, NODE]
     if shutil.which(NODE):
@@ -55,7 +55,7 @@ def start_command(topic: str, name: str, encoder: str = '') -> str:
 
 
 def write_new(path: Path, text: str) -> None:
-    """Write a file that must not exist yet, completely or not at all; else raise ConfigError."""
+    """Write a new file completely or not at all; raises ConfigError if that is impossible."""
     try:
         with path.open('x', encoding='utf-8') as file:
             try:

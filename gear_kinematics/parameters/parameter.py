@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""A parameter of the node: its type, meaning and bounds, and what is wrong with a value."""
+"""A parameter of the node: its type, meaning and bounds, and the check of its values."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ class Parameter:
     choices: tuple[str, ...] = ()
     read_only: bool = False
     check: Callable[[Any], object] = bool
-    """Raises ValueError for other faults."""
+    """Additional check, which raises ValueError."""
     kind: type = float
     items: type = str
     """Type of the items of a list."""
@@ -39,7 +39,7 @@ class Parameter:
         return self.other_fault(name, value)
 
     def other_fault(self, name: str, value: Any) -> str | None:
-        """Return a fault of a value within the type and the bounds, which ROS checks, or None."""
+        """Return a fault of a value whose type and bounds ROS has checked, or None."""
         if self.choices and value not in self.choices:
             return f'{name} must be one of {", ".join(self.choices)}, not {value!r}'
         try:

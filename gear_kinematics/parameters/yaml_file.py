@@ -19,10 +19,13 @@ class Loader(getattr(yaml, 'CSafeLoader', yaml.SafeLoader)):  # type: ignore[mis
 
     max_bytes: ClassVar[int] = 2**18
     max_events: ClassVar[int] = 2**13
-    """Values, and begins and ends of lists. They load within 50 ms, and are twice as many as in a
-    calibration of 60 coefficients, which is the largest that is ever fitted."""
+    """Greatest number of values and of begins and ends of lists.
+
+    They load within 50 ms, and are twice as many as in a calibration of 60 coefficients, the
+    largest that is ever fitted.
+    """
     aliases: ClassVar[bool] = False
-    """Whether there may be any: what is written from the values can expand without end."""
+    """Whether aliases are allowed: text written from their values can expand without end."""
 
     def flatten_mapping(self, node: yaml.MappingNode) -> None:
         """Leave merge keys (`<<`), which can expand without end, to be refused as unknown."""

@@ -32,7 +32,7 @@ class Tone(StrEnum):
     """Emphasis of a value."""
 
     PLAIN = ''
-    NONE = 'none'  # of a count of zero, which says nothing among others
+    NONE = 'none'  # for a count of zero, which is left out among others
     NOTABLE = 'notable'
     BAD = 'bad'
 
@@ -47,11 +47,11 @@ class Cell:
     text: str
     tone: Tone = Tone.PLAIN
     unit: str = ''
-    """Unit of the value; in the first cell of a row, of all its values."""
+    """Unit of the value; the unit of a row's first cell applies to all its values."""
 
     @property
     def says(self) -> bool:
-        """Whether there is anything to read in it."""
+        """Whether the cell has anything to read."""
         return bool(self.text) and self.tone != Tone.NONE
 
     def with_unit(self) -> str:
@@ -65,11 +65,11 @@ def _cell(value: str | Cell) -> Cell:
 
 
 class Layout(StrEnum):
-    """Layout of a table, where there is room."""
+    """Layout of a table if there is room for it."""
 
     ROWS = 'rows'  # below headings
     INLINE = 'inline'  # a single row, as labelled values side by side
-    LINES = 'lines'  # the same, one per line
+    LINES = 'lines'  # a single row, as labelled values, one per line
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +97,7 @@ class Table:
     def of_values(
         cls, layout: Layout, *values: tuple[str, str | Cell], about: tuple[str, str] = ('', '')
     ) -> Self:
-        """Return a table of one row, of labels and values after heading and text of a subject."""
+        """Return a table of one row: a subject with its heading, then labels and values."""
         heading, subject = about
         cells = (_cell(value) for _, value in values)
         labels = (label for label, _ in values)
@@ -116,7 +116,7 @@ class Table:
                     yield about, column, cell
 
     def below_headings(self) -> Self:
-        """Return the table with units in the texts, and without columns that say nothing."""
+        """Return the table with units in the texts, and without empty columns."""
         kept = [k for k in range(len(self.columns)) if any(row[k].says for row in self.rows)]
         rows = (_with_units(row) for row in self.rows)
         columns = tuple(self.columns[k] for k in kept)
@@ -125,7 +125,7 @@ class Table:
 
 
 def _with_units(row: tuple[Cell, ...]) -> tuple[Cell, ...]:
-    """Return a row with the unit of its first cell there, and other units beside their values."""
+    """Return a row with its common unit in the first cell, and other units after their values."""
     subject, *cells = row
     named = replace(subject, text=f'{subject.text} [{subject.unit}]') if subject.unit else subject
     others = (c if c.unit == subject.unit else replace(c, text=c.with_unit()) for c in cells)
@@ -139,7 +139,7 @@ class Finding:
     kind: Literal['error', 'finding']
     text: str
     time: float | None = None
-    """The moment that it is about, on the x axis of the figure."""
+    """Position on the x axis of the figure to which the sentence refers."""
 
 
 class Pen(StrEnum):
@@ -152,12 +152,12 @@ class Pen(StrEnum):
     FIFTH = 'fifth'
     SIXTH = 'sixth'
     MODEL = 'text'
-    """Dashed."""
+    """Dashed line."""
     FAINT = 'faint'
 
 
 PENS = Pen.FIRST, Pen.SECOND, Pen.THIRD, Pen.FOURTH, Pen.FIFTH, Pen.SIXTH
-"""Of lines side by side."""
+"""Pens of lines that are compared."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -181,7 +181,7 @@ class Panel:
     title: str
     x_label: str
     y_label: str
-    """With units, as text."""
+    """Label of the y axis with its unit, as text."""
     lines: tuple[Line, ...]
     marks: tuple[tuple[float, str], ...] = ()
     """Positions on the x axis, each with a text."""
@@ -199,7 +199,7 @@ class Panel:
 
     @property
     def has_legend(self) -> bool:
-        """Whether a legend names the lines: of a single one, the axis does."""
+        """Whether a legend names the lines; the axis names a single one."""
         return len({line.name for line in self.lines}) > 1
 
 
@@ -210,7 +210,7 @@ class Figure:
     panels: tuple[Panel, ...]
     stacked: bool = False
     columns: int | None = None
-    """Most panels side by side in an image; None: all of them."""
+    """Greatest number of panels side by side in an image; None for all of them."""
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -234,9 +234,9 @@ class Section:
     """The report on one recording, or on one mechanism."""
 
     name: str
-    """May be empty in a document of one section."""
+    """Name of the section, which may be empty if it is the only one."""
     tables: tuple[Table, ...]
-    """The first describes the subject of the report."""
+    """Tables, of which the first describes the subject of the report."""
     verdict: Verdict | None = None
     findings: tuple[Finding, ...] = ()
     remarks: tuple[str, ...] = ()
@@ -244,11 +244,11 @@ class Section:
     figure: Figure | None = None
     mechanism: MovingMechanism | None = None
     below: Figure | None = None
-    """What a page shows below both."""
+    """Figure that a page shows below the other figure and the mechanism."""
     key: Table | None = None
-    """What a page shows above the figure."""
+    """Table that a page shows above the figure."""
     leads: bool = False
-    """Whether a page begins with it, as with the comparison of the others."""
+    """Whether a page begins with this section, such as a comparison of the others."""
     cases: tuple[Case, ...] = ()
     answer: str = ''
     """The result in one line."""
@@ -256,7 +256,7 @@ class Section:
 
     @property
     def image(self) -> Figure | None:
-        """What an image file shows."""
+        """Figure that an image file shows."""
         if not (self.figure and self.below):
             return self.figure
         return Figure((*self.figure.panels, *self.below.panels), columns=self.below.columns)
@@ -264,12 +264,12 @@ class Section:
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """How a report was made."""
+    """The origin of a report: program, time, command and parameter files."""
 
     version: str
     date: str
     command: str
-    """As typed in a shell."""
+    """Command as typed in a shell."""
     configs: tuple[tuple[str, str], ...] = ()
     """Parameter files with their SHA-256."""
 
@@ -279,7 +279,7 @@ class Document:
     """A whole report."""
 
     title: str
-    """Such as `gearkin validate`."""
+    """Title such as `gearkin validate`."""
     sections: tuple[Section, ...]
     data: Mapping[str, Any] = field(default_factory=dict)
     """Contents of the JSON: the numbers of the results."""
@@ -291,12 +291,12 @@ class Document:
     origin: Origin | None = None
 
     def of_failed(self) -> Self:
-        """Return the document without what passed, or makes no judgement."""
+        """Return the document with only those sections that failed or are unusable."""
         sections = tuple(s for s in self.sections if s.verdict not in {None, Verdict.PASS})
         return replace(self, sections=sections, summary=None, totals=self.totals * bool(sections))
 
     def in_order(self) -> Self:
-        """Return it as it is read: a comparison first, and failed sections before others."""
+        """Return the document in reading order: a comparison first, then failed sections."""
         ranks = [Verdict.FAIL, Verdict.UNUSABLE, Verdict.PASS, None]
         keys = [(not section.leads, ranks.index(section.verdict)) for section in self.sections]
         order, summary = sorted(range(len(keys)), key=keys.__getitem__), self.summary

@@ -24,7 +24,7 @@ from gear_kinematics.report.page import page, resource
 _PANEL_HEIGHT = 11.5  # rem, of stacked ones
 _HEIGHT = 34.0  # rem, of all of them at least
 _FEW_SENTENCES = 6
-"""Most findings beside the first, or remarks, that are not folded."""
+"""Greatest number of remarks, or of findings after the first, that are not folded."""
 
 
 def to_html(document: Document) -> str:
@@ -75,7 +75,7 @@ def _header(document: Document) -> Iterator[str]:
 
 
 def _section(section: Section, number: int, drawings: Drawings) -> Iterator[str]:
-    """Write the parts of a section: what was found, what can be seen, and then the tables."""
+    """Write the parts of a section: findings, figures, and then tables."""
     name, kind = f'figure-{number}', section.verdict or ''
     moments = name if section.figure and section.figure.stacked else ''
     findings = [_sentence(finding, moments) for finding in section.findings]
@@ -95,7 +95,7 @@ def _section(section: Section, number: int, drawings: Drawings) -> Iterator[str]
 def _figure(
     figure: Figure | None, mechanism: MovingMechanism | None, name: str, drawings: Drawings
 ) -> Iterator[str]:
-    """Write a figure, beside the mechanism that moves with it."""
+    """Write a figure next to the mechanism that moves with it."""
     if not figure:
         return
     if not figure.stacked:
@@ -149,7 +149,7 @@ def _badge(verdict: Verdict | None) -> str:
 
 
 def _sentence(finding: Finding, figure: str) -> str:
-    """Write a finding, as a link to its moment in the figure, if there is one."""
+    """Write a finding; if it refers to a moment in the figure, as a link to it."""
     text = escape(finding.text)
     if finding.time is None or not figure:
         return text

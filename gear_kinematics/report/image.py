@@ -14,7 +14,7 @@ from gear_kinematics.report.mark import MARK
 from gear_kinematics.report.page import resource
 
 COLOURS = dict(re.findall(r'--(\w+): light-dark\((#\w+)', resource('page.css')))
-"""Of pages in the light, by their names."""
+"""Colours of the light style of pages, by their names."""
 INK, FAINT, RULE = COLOURS['text'], COLOURS['faint'], COLOURS['rule']
 _STYLE = {
     'axes.edgecolor': INK,
@@ -33,10 +33,12 @@ _METADATA = {
     'svg': {'Description': MARK, 'Date': None},  # undated, for reproducible files
     'pdf': {'Creator': MARK, 'CreationDate': None},
 }
-"""By the format: our mark, by which files are recognised."""
+"""Metadata with our mark, by which files are recognised, for each format."""
 _FOLDER = '/'
-"""To import matplotlib in: it obeys a matplotlibrc in the current folder, which may come with a
-recording. There are no modules either that could be imported in place of others."""
+"""Working directory in which matplotlib is imported.
+
+It obeys a matplotlibrc in the current folder, which may come with a recording. This directory has
+neither such a file nor modules that could be imported in place of others."""
 _PANEL = (6.0, 5.2)  # inches, side by side
 _STACKED = (7.5, 3.0)  # inches
 _FONT_SIZE = 9.0  # points
@@ -58,7 +60,7 @@ def check_image(path: Path, formats: Collection[str] = _METADATA.keys()) -> None
 
 
 def to_image(figure: Figure, path: Path) -> bytes:
-    """Draw a figure for a file that was checked."""
+    """Draw a figure to an image file that was checked before."""
     rows, columns = figure.shape
     if figure.stacked:
         size = _STACKED[0], rows * _STACKED[1]
@@ -82,9 +84,9 @@ def _format(path: Path) -> str:
 
 @contextmanager
 def canvas(size: tuple[float, float]) -> Iterator[Any]:
-    """Open a figure of matplotlib in our style, of a size in inches.
+    """Open a figure of matplotlib in our style, with a size in inches.
 
-    It has to be encoded before it is closed.
+    The figure has to be encoded before it is closed.
 
     Raises:
         ModuleNotFoundError: without matplotlib.

@@ -14,17 +14,17 @@ from gear_kinematics.report.document import Line, Panel, Pen
 from gear_kinematics.report.mechanism import MovingMechanism
 
 _GAP = 0.2
-"""Gap between panels / height of a panel with its gap."""
+"""Ratio of the gap between panels to the height of a panel with its gap."""
 _LINE = 36
-"""Most characters of a line of text, which a phone has room for."""
+"""Greatest number of characters in a line of text, so that it fits on a phone."""
 
 
 def interactive(panels: Sequence[Panel], mechanism: MovingMechanism | None) -> dict[str, Any]:
     """Return the data and the layout of a plot.
 
     Args:
-        panels: from top to bottom, over the same x axis.
-        mechanism: moves with it.
+        panels: panels from top to bottom, over a common x axis.
+        mechanism: mechanism that moves with the plot, if any.
 
     Returns:
         `data` and `layout` of plotly; `time`, the x of all lines without one of their own;
@@ -70,7 +70,7 @@ def interactive(panels: Sequence[Panel], mechanism: MovingMechanism | None) -> d
 
 
 def _domains(count: int) -> Iterator[list[float]]:
-    """Yield the ends of the y axes from top to bottom / height of the plot."""
+    """Yield the ends of the y axes from top to bottom, relative to the height of the plot."""
     whole = count - _GAP  # no gap below the last
     for k in range(count):
         yield [max(0.0, (whole - k - 1 + _GAP) / whole), (whole - k) / whole]

@@ -20,7 +20,7 @@ def to_json(document: Document) -> str:
 
 
 def _strict(value: Any) -> Any:
-    """Replace what strict JSON has no place for: NaN, infinities and lone surrogates."""
+    """Replace what strict JSON cannot express: NaN, infinities and lone surrogates."""
     match value:
         case Mapping():
             return {_strict(key): _strict(item) for key, item in value.items()}

@@ -1,15 +1,15 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The mark by which gearkin recognises the files that it wrote, and so replaces no others."""
+"""Mark by which gearkin recognises the files that it wrote, so that it replaces no others."""
 
 from pathlib import Path
 
 MARK = 'made by gearkin'
-"""In comments of text and in the metadata of images."""
+"""Mark in comments of text files and in the metadata of images."""
 _JSON = b'{\n  "made_by": "gearkin '
 _STARTS = (b'<!DOCTYPE html>', b'<?xml ', b'\x89PNG\r\n', b'GIF8', b'%PDF-')
-"""Begins of the other formats."""
+"""First bytes of files in the other formats."""
 _SEARCHED = 2**16
-"""Bytes at either end of a file in which its mark is."""
+"""Number of bytes at either end of a file that are searched for the mark."""
 
 
 def is_report(path: Path) -> bool:

@@ -13,12 +13,12 @@ from gear_kinematics.kinematics import Mechanism
 Array = NDArray[np.float64]
 
 _RADIUS = 500.0
-"""Radius of the drawing, in units of which no screen shows a tenth."""
+"""Radius of the drawing, in units so small that no screen resolves a tenth of one."""
 _VIEW = _RADIUS + 5.0
 _CENTRE = 7.0
 """Radius of the dots that mark centres."""
 _SPEEDS = (1e-4, 1e-3, 1e-2, 1e-1, 1.0, 10.0, 100.0)
-"""Playing speeds / real time."""
+"""Playing speeds relative to real time."""
 _EASY_RATE = 360.0  # degrees of the rotor per second, which the eye can follow
 
 
@@ -28,9 +28,9 @@ class MovingMechanism:
 
     mechanism: Mechanism
     module: float
-    """Of the teeth, m."""
+    """Module of the teeth, m."""
     time: Array
-    """(n,), s."""
+    """Times of the samples, (n,), s."""
     rotor: Array
     """Angle of the rotor, (n,), degrees."""
     output: Array
@@ -38,11 +38,11 @@ class MovingMechanism:
     start: int = 0
     """Index of the sample that is shown first."""
     forces: Array | None = None
-    """F_t of each branch, (n, B), drawn as an arrow so many radii of the drawing long."""
+    """Force F_t of each branch, (n, B), as the length of an arrow in radii of the drawing."""
 
 
 class Drawings:
-    """The mechanisms of a page, which contains each common shape once."""
+    """The mechanisms of a page, which share their common shapes."""
 
     def __init__(self) -> None:
         self._names: dict[str, str] = {}  # of the shapes, by their paths

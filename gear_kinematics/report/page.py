@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The shell of pages, which load nothing from anywhere."""
+"""The frame of self-contained pages, which load nothing from anywhere."""
 
 import base64
 import hashlib
@@ -15,14 +15,15 @@ _NONE = "'none'"
 def page(
     title: str, body: str, scripts: Sequence[str] = (), *, style: str = '', server: str = ''
 ) -> str:
-    """Write a page that holds all it needs.
+    """Write a self-contained page.
 
     Args:
-        title: as text.
-        body: as HTML.
-        scripts: their sources; the browser runs no others.
-        style: rules beside those of all pages.
-        server: its address for WebSockets, `ws://host:port`, the only one it may connect to.
+        title: title as text.
+        body: body as HTML.
+        scripts: sources of the scripts; the browser runs no others.
+        style: style rules in addition to those of all pages.
+        server: address for WebSockets, `ws://host:port`, the only one that the page may connect
+            to.
     """
     hashes = ' '.join(
         f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
@@ -48,5 +49,5 @@ def page(
 
 
 def resource(name: str) -> str:
-    """Read a file beside this module."""
+    """Read a file in the folder of this module."""
     return files('gear_kinematics.report').joinpath(name).read_text('utf-8')

@@ -21,7 +21,7 @@ from gear_kinematics.report.document import (
 )
 
 _PADDING = 2
-"""Columns between two columns of a table."""
+"""Number of blank characters between two columns of a table."""
 _VERDICT_STYLES = {
     None: '',
     Verdict.PASS: 'bold green',
@@ -41,9 +41,10 @@ def render(document: Document, console: Console, *, brief: bool = False) -> None
 
     Args:
         document: the report.
-        console: to print it on.
-        brief: whether a section is its verdict, its findings and its answer: elsewhere a single
-            line, if it passed. On a terminal, this holds for those with an answer, or unusable.
+        console: the console to print on.
+        brief: whether a section is reduced to its verdict, findings and answer; in a pipe, to a
+            single line if it passed. On a terminal, only sections that have an answer or are
+            unusable are reduced.
     """
     if not console.is_terminal:
         for line in lines(document, brief=brief):
@@ -82,7 +83,7 @@ def lines(document: Document, *, brief: bool = False) -> Iterator[str]:
 
 
 def section_lines(section: Section, *, brief: bool = False) -> Iterator[str]:
-    """Yield what is known of one section, line by line; of a brief one, no values."""
+    """Yield one section line by line; a brief one is without values."""
     name = f'{section.name}: ' if section.name else ''
     if section.verdict:
         yield f'{name}verdict: {OUTCOME[section.verdict]}'
@@ -97,7 +98,7 @@ def section_lines(section: Section, *, brief: bool = False) -> Iterator[str]:
 
 
 def _table_lines(table: Table) -> Iterator[str]:
-    """Yield a line for each row, and of facts a line for each."""
+    """Yield a line for each row, or for each fact."""
     for row in table.rows:
         facts = list(replace(table, rows=(row,)).facts())
         if table.layout == Layout.LINES:

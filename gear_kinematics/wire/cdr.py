@@ -20,7 +20,7 @@ SECOND = 1_000_000_000  # ns
 STAMP_OFFSET = 4  # after the encapsulation
 STAMP = struct.Struct('<iI')
 STAMP_BYTES = slice(STAMP_OFFSET, STAMP_OFFSET + STAMP.size)
-"""Where the stamp is in the bytes of a message with a header."""
+"""Position of the stamp in the bytes of a message with a header."""
 LATEST = 2**31 * SECOND - 1
 """Latest stamp, ns, whose seconds fit into 32 bits."""
 _ENCAPSULATION = b'\x00\x01\x00\x00'  # of what is written here: little endian
@@ -44,7 +44,7 @@ class Layout(NamedTuple):
     size: int
     """Bytes of the whole message."""
     texts: tuple[bytes, ...]
-    """The strings: frame_id, then the names of a JointState."""
+    """Strings of the message: frame_id, then the names of a JointState."""
     arrays: tuple[tuple[int, int], ...]
     """Offset and count of the float64 of each array."""
     fixed: tuple[tuple[int, int], ...]
@@ -52,7 +52,7 @@ class Layout(NamedTuple):
 
 
 def joint_names(layout: Layout) -> list[bytes]:
-    """Names of the joints of a JointState.
+    """List the names of the joints of a JointState.
 
     If no joint has a name, as in messages of many micro-ROS drivers, their indices are their
     names: b'0', b'1', ...
@@ -65,7 +65,7 @@ def joint_names(layout: Layout) -> list[bytes]:
 
 
 def joint_index(layout: Layout, joint: bytes) -> int | None:
-    """Index in the arrays of a joint of `joint_names`, b'' for the only one; None without it."""
+    """Find the index of a joint of `joint_names`, b'' for the only one; None if it is missing."""
     names = joint_names(layout)
     if joint:
         return names.index(joint) if joint in names else None
@@ -163,10 +163,10 @@ class Template:
         """Lay the message out.
 
         Args:
-            frame_id: of the header.
+            frame_id: frame of the header.
             names: the array of names, if the type has one.
-            arrays: of each the number of items, the float64 of an item, and the places of those
-                that `encode` writes; the others are 0.
+            arrays: for each array its number of items, the float64 of an item, and the places of
+                those that `encode` writes; the others are 0.
         """
         self.blank = bytearray(_ENCAPSULATION + bytes(STAMP.size))
         """The message with zeros as stamp and numbers."""

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What messages on unknown names say: the nearest known name, and all of them."""
+"""Texts for messages on unknown names: the nearest known name, and all known names."""
 
 from collections.abc import Collection, Iterable
 from difflib import get_close_matches
@@ -10,7 +10,7 @@ _COMPARED = 1000  # names; a bag can have tens of thousands
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """End of a message on an unknown name: a question about the nearest known one, or ''."""
+    """Ask whether the nearest known name is meant, as the end of a message; '' if none is near."""
     names = list(known)[:_COMPARED]
     matches = get_close_matches(name, names, n=1)
     if not matches:
@@ -20,14 +20,14 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 
 def listed(names: Collection[str], first: Collection[str] = (), most: int = _SHOWN) -> str:
-    """List names in one line, those in `first` before the others, and at most so many."""
+    """List a limited number of names in one line, with those in `first` before the others."""
     shown, more = sorted(names, key=lambda name: (name not in first, name)), len(names) - most
     text = ', '.join(f'{name:.{_LONGEST}}' for name in shown[:most])
     return f'{text} and {more} more' if more > 0 else text
 
 
 def among(name: str, known: Collection[str], most: int = _SHOWN) -> str:
-    """End of a message on an unknown name: the nearest known one, and which there are."""
+    """Suggest the nearest known name and list all, as the end of a message."""
     there = f'there are: {listed(known, most=most)}' if known else 'there are none'
     hint = nearest(name, sorted(known))
     return f'{hint} {there}' if hint else f'; {there}'
