@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Print how far the slides of the gear move in a turn of the rotor, from one batch."""
+"""Print the travel of the gear's slides during a turn of the rotor, computed in one batch."""
 
 import numpy as np
 

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Calibrate a gear from one recording of rotor and output encoder, and check it by another one.
+"""Calibrate a gear from a recording of rotor and output encoder, and check it with another one.
 
 python calibration.py FIRST SECOND RATIO   # bags or CSV files
 """

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Record both encoders and what the node says of them, until what moves the rotor ends."""
+"""Record both encoders and the outputs of the node until the program that moves the rotor ends."""
 
 import sys
 import time

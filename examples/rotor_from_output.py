@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Print what a driver has to reach for a swing of the output, and check it forwards."""
+"""Print the rotor states that a driver has to reach for a swing of the output, and check them."""
 
 import numpy as np
 

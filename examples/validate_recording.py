@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Hold a recording of a package to what the node should have published, as its pytest could.
+"""Compare a recording with the outputs the node should have published, as a pytest could do.
 
 python validate_recording.py [BAG [PARAMETERS]]
 """
