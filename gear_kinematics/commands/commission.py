@@ -66,7 +66,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     if not options.check and (path.exists() or path.is_symlink()):
         raise ValueError(f'{path}: exists already; give another name with -o')
     if options.live == bool(options.recordings):
-        raise ValueError('name recordings, or --live, which hears the drivers instead')
+        raise ValueError('name recordings, or give --live to listen to the drivers instead')
     written = {} if options.check else {'-o': options.output}
     reporter = Reporter(options, others=written, brief=not options.verbose)
     file = NodeParameters.load(options.check) if options.check else None

@@ -36,8 +36,9 @@ def choose_joint(
         return found[0]
     names = [f'{printable(joint)} on {topic}' for topic, joint in found or joints]
     if not (found and sys.stdin.isatty() and sys.stdout.isatty()):
-        there = listed(names) or 'none is there'
-        raise ValueError(f'which joint is the {role}? Name its topic and joint: {there}')
+        option = {'rotor': '--joint', 'output': '--encoder-joint'}[role]
+        remedy = f'Repeat with {option}, and its topic if needed: {listed(names)}'
+        raise ValueError(f'which joint is the {role}? {remedy if names else "There is none."}')
     for number, name in enumerate(names, 1):
         print(f'{number:3}  {name}')
     answer = input(f'Number of the joint of the {role}: ')

@@ -47,7 +47,7 @@ class UsedRecording:
     sha256: str
     samples: int
     duration: float
-    """s."""
+    """Duration of the recording, s."""
     zero: float
     """Offset of the deviation in this recording, from the zero of its encoder, rad."""
 
@@ -60,9 +60,9 @@ class Order:
     cycles: Fraction
     """Order n: cycles per turn of the rotor."""
     cos: float
-    """rad."""
+    """Cosine coefficient, rad."""
     sin: float
-    """rad."""
+    """Sine coefficient, rad."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,9 +70,9 @@ class Stop:
     """A stop operator on the ideal output angle: its coefficient times its state in ±radius."""
 
     radius: float
-    """rad, greater than 0."""
+    """Radius of the operator, rad, greater than 0."""
     coefficient: float
-    """rad/rad."""
+    """Coefficient of the state, rad/rad."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,9 +80,9 @@ class Compliance:
     """Wind-up caused by the output torque M: coefficient · (M - torque)."""
 
     coefficient: float
-    """rad/(N·m)."""
+    """Coefficient of the torque, rad/(N·m)."""
     torque: float
-    """N·m."""
+    """Torque without a wind-up, N·m."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,11 +131,11 @@ class Calibration:
     gear_ratio: Fraction
     """Signed, exact gear ratio i."""
     ring_teeth: int | None
-    """None if only the ratio is known."""
+    """Number of teeth zk; None if only the ratio is known."""
     satellite_teeth: int | None
-    """None if only the ratio is known."""
+    """Number of teeth zs; None if only the ratio is known."""
     constant: float
-    """rad."""
+    """Constant part of the deviation, rad."""
     orders: tuple[Order, ...]
     hysteresis: tuple[Stop, ...]
     compliance: Compliance | None

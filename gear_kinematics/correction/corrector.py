@@ -28,7 +28,7 @@ class Correction(NamedTuple):
     """Correction of the ideal output angle, as floats or arrays (n,)."""
 
     deviation: Any
-    """rad."""
+    """Deviation of the real from the ideal output angle, rad."""
     slope: Any
     """Derivative of the deviation with respect to the ideal output angle."""
     half_width: Any

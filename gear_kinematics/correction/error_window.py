@@ -22,9 +22,9 @@ class ErrorStatistics(NamedTuple):
 
     samples: int = 0
     mean: float | None = None
-    """rad."""
+    """Mean error, rad."""
     peak_to_peak: float | None = None
-    """rad."""
+    """Greatest minus least error, rad."""
     reversals: Reversals | None = None
     """Lost motion and delay; None unless both directions cover the same angles."""
     calibration: CalibrationFit | None = None

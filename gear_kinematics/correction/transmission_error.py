@@ -21,7 +21,7 @@ class ErrorSample(NamedTuple):
     """The transmission error at the stamp of a measured angle."""
 
     stamp: int
-    """ns."""
+    """Stamp of the measured angle, ns."""
     error: float
     """Measured minus ideal output angle, rad."""
     turns: int

@@ -236,7 +236,7 @@ def solve(
 
 
 class TorqueSharing:
-    """How the branches share the torque of the output.
+    """Distribution of the output's torque among the branches.
 
     Two branches with a preload carry T_A and -T_B, as `preload` splits the external torque -Σ T,
     also beyond the thresholds. Branches without a preload carry equal shares. Floats and arrays

@@ -49,7 +49,7 @@ class LoadingCurve:
     torque: tuple[float, ...]
     """Torques, N·m, non-decreasing; 0 at 0 rad."""
     friction: tuple[float, ...]
-    """N·m."""
+    """Friction torques, N·m."""
 
     def at(self, wind_up: float) -> tuple[float, float]:
         """Torque and friction, N·m, at a wind-up, rad; friction is constant beyond the ends."""
@@ -97,7 +97,7 @@ class TwinGear:
     rotor_damping: float = 0.0
     """Viscous damping of the rotor, N·m·s/rad."""
     output_inertia: float
-    """kg·m²."""
+    """Inertia of the output shaft, kg·m²."""
     ratio: float = field(init=False)
     """Signed gear ratio i."""
     preload: float = field(init=False)

@@ -14,11 +14,11 @@ class Model(Protocol):
     rotor_angle: float
     """Rotor angle φ2, rad."""
     rotor_velocity: float
-    """rad/s."""
+    """Velocity of the rotor, rad/s."""
     output_angle: float
     """Angle φ5 of the output shaft, rad."""
     output_velocity: float
-    """rad/s."""
+    """Velocity of the output shaft, rad/s."""
     branch_torques: tuple[float, ...]
     """Torque T_k that each branch exerts on the output shaft, N·m; 0 out of mesh."""
     output_locked: bool

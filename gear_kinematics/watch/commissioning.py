@@ -30,7 +30,7 @@ _MOST_STATES = 40_000
 four, ... is kept: after five minutes, at 62 Hz, a rotor's wraps still show."""
 _PAUSE = 1.0  # s between the begins of analyses
 _STROKE = TURN / 6.0  # rad, in each direction
-GUIDE = 'Turn the output by hand, slowly, at least a sixth of a turn both ways.'
+GUIDE = 'Turn the output by hand, slowly, at least a sixth of a turn in both directions.'
 
 
 class LiveCommissioning:

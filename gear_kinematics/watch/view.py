@@ -102,9 +102,9 @@ def _state_of(gear: GearNode | None) -> tuple[str, str]:
         return 'connecting', ''
     output = gear.joint(topics.OUTPUT_STATE)
     if not output:
-        return 'no output', 'There was none yet.'
+        return 'no output', 'There has been no output yet.'
     if _freshness(output, gear.parameters):
-        return 'no output', f'The last was {output.age:.1f} s ago.'
+        return 'no output', f'The last output was {output.age:.1f} s ago.'
     return 'connected', ''
 
 

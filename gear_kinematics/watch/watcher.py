@@ -94,7 +94,7 @@ class Watcher:
                     self._gear.poll()
                 view = view_of(self._gear)
             except Exception as error:  # noqa: BLE001, a message that no one expected ends nothing
-                message = f'What came cannot be shown: {type(error).__name__}: {error}'
+                message = f'The messages cannot be shown: {type(error).__name__}: {error}'
                 view = View(state='fault', tone='fail', message=message)
             if self._gear and (parameters := self._gear.parameters):
                 gear = parameters.gear
@@ -113,7 +113,7 @@ class Watcher:
     def _ready_gear(self) -> GearNode:
         """Return the node; raises ValueError if none is ready."""
         if not (self._gear and self._gear.running and self._gear.homing.service_is_ready()):
-            raise ValueError('There is no node that is ready.')
+            raise ValueError('No node is ready.')
         return self._gear
 
     def _do(self, command: Any, answer: 'Future[Answer]') -> None:
@@ -139,7 +139,7 @@ class Watcher:
                 self._live = None
                 answer.set_result(Answer('', done=True))
             case _:
-                raise ValueError('There is no such command now.')
+                raise ValueError('This command is not possible now.')
 
     def _commission(self, rotor: Channel, output: Channel, asked: Mapping[str, Any]) -> None:
         """Subscribe to the two joints of a request unless they are subscribed to already."""

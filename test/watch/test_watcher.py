@@ -165,7 +165,7 @@ def test_values_that_are_out_of_date_say_so_and_move_nothing():
         (gear_node(fault='module must be'), 'fault', 'cannot be used: module must be'),
         (gear_node(parameters=None), 'connecting', ''),
         (gear_node(), 'connected', ''),
-        (gear_node(joint={}.get), 'no output', 'There was none yet.'),
+        (gear_node(joint={}.get), 'no output', 'There has been no output yet.'),
         (
             gear_node(joint={topics.OUTPUT_STATE: JointValue(0.0, 0.0, 5.74)}.get),
             'no output',
@@ -294,7 +294,7 @@ def test_watcher_goes_on_after_what_it_cannot_show(monkeypatch):
     with Watcher() as going_on:
         monkeypatch.setattr('gear_kinematics.watch.watcher.view_of', broken)
         wait_until(lambda: going_on.view.state == 'fault', 'the fault')
-        assert going_on.view.message == 'What came cannot be shown: OverflowError: too odd'
+        assert going_on.view.message == 'The messages cannot be shown: OverflowError: too odd'
         monkeypatch.undo()
         wait_until(lambda: going_on.view.state == 'no node', 'its end')
 
@@ -332,12 +332,12 @@ JOINTS = {'rotor': ['/j', 'm'], 'output': ['/j', 'o']}
 @pytest.mark.parametrize(
     ('command', 'answer'),
     [
-        ({'do': 'home'}, 'There is no node that is ready.'),
-        ({'do': 'undo'}, 'There is no such command now.'),
-        ({'do': 'write'}, 'There is no such command now.'),
-        ({'do': 'exit'}, 'There is no such command now.'),
-        ({'do': 'commission', **JOINTS, 'output': []}, 'There is no such command now.'),
-        ([], 'There is no such command now.'),
+        ({'do': 'home'}, 'No node is ready.'),
+        ({'do': 'undo'}, 'This command is not possible now.'),
+        ({'do': 'write'}, 'This command is not possible now.'),
+        ({'do': 'exit'}, 'This command is not possible now.'),
+        ({'do': 'commission', **JOINTS, 'output': []}, 'This command is not possible now.'),
+        ([], 'This command is not possible now.'),
         ({'do': 'commission', **JOINTS, 'output': ['/j', 'm']}, 'Choose two joints: that of'),
         ({'do': 'commission', **JOINTS, 'ratio': 'x'}, 'a gear ratio must be an integer'),
     ],
@@ -356,7 +356,7 @@ def test_command_that_fails_in_an_unexpected_way_ends_nothing(running, monkeypat
         patch.setattr(Watcher, '_do', broken)
         answer = running.ask({'do': 'home'}).result(20.0)
     assert answer == ('That failed: TypeError: no such thing', False)
-    assert running.ask({'do': 'home'}).result(20.0)[0] == 'There is no node that is ready.'
+    assert running.ask({'do': 'home'}).result(20.0)[0] == 'No node is ready.'
 
 
 # gearkin init
@@ -371,7 +371,7 @@ def listening(monkeypatch, tmp_path):
 
 
 JOINTS = (
-    'which joint is the rotor? Name its topic and joint: '
+    'which joint is the rotor? Repeat with --joint, and its topic if needed: '
     'brake on /motor/joint_states, m1 on /motor/joint_states'
 )
 
