@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Readings of a rotor and an output encoder on a gear that is known, as functions of time.
+"""Readings of encoders at rotor and output of a known gear, as functions of time.
 
 Nothing of the code under test is used. Play is the motion of a block between two stops.
 """
@@ -9,8 +9,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
+from simulated_joint import TURN, with_play
 
-TURN = 2.0 * math.pi
 ARC_MINUTE = TURN / 360.0 / 60.0
 MS = 10**6
 START = 1_700_000_000 * 10**9
@@ -59,13 +59,9 @@ class Drive:
     ratio: float = -19.0
 
     def output(self, ideal: np.ndarray) -> np.ndarray:
-        """The output that the ideal output angles push along, from the middle of the play."""
-        places, place, half = [], float(ideal[0]), 0.5 * self.play
-        for pushed in ideal.tolist():
-            place = min(max(place, pushed - half), pushed + half)
-            places.append(place)
+        """Output angles that result from ideal ones, starting in the middle of the play."""
         errors = sum(a * np.sin(order * ideal + order) for order, a in self.errors.items())
-        return np.array(places) + errors
+        return with_play(ideal, self.play) + errors
 
     def readings(
         self, profile: Profile, seconds: float, rate: float = 1000.0, seed: int = 1

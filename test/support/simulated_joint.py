@@ -11,7 +11,7 @@ MOTIONS = 'sweep', 'there and back', 'sine', 'jog', 'hand'
 
 
 class Joint(NamedTuple):
-    """What was recorded, (n,) each."""
+    """Recorded columns, (n,) each."""
 
     rotor: np.ndarray
     output: np.ndarray
@@ -40,7 +40,7 @@ def moved(travel, motion, time, random):
 
 
 def encoder_error(angle, amplitude, kind, phase):
-    """Of an eccentric disc, or of unequal and shifted signals of a magnet, rad."""
+    """Compute the error of an eccentric disc, or of unequal, shifted signals of a magnet, rad."""
     unequal = kind == 'elliptic'
     shift = (0.5 if unequal else 1.0) * math.sin(amplitude)
     gain = (1.0 + amplitude) / (1.0 - amplitude) if unequal else 1.0
@@ -59,7 +59,7 @@ def pitch_error(angle, steps):
 
 
 def with_play(angle, play):
-    """The output stays until its play is crossed."""
+    """Return output angles that stay until the play is crossed, starting in its middle."""
     out, at = [], angle[0]
     for driven in angle.tolist():
         at = min(max(at, driven - 0.5 * play), driven + 0.5 * play)
