@@ -45,7 +45,7 @@ def test_terminal_lists_drivers_and_refuses_to_home_without_a_node(tmp_path):
         terminal.wait_for('/nobody is not running')
         terminal.wait_for(rf'{MOTOR} +brake, m1 +[1-9]\d+ Hz')
         terminal.type('h')
-        terminal.wait_for('There is no node')
+        terminal.wait_for('No node is ready')
         terminal.interrupt()
         assert terminal.end() == 130
 
