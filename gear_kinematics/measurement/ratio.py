@@ -102,7 +102,9 @@ def wrong_ratio(encoders: Encoders, assumed: Fraction) -> str:
     ideal = encoders.at_measured(encoders.ideal(assumed))
     time = encoders.seconds if encoders.timed else None
     try:
-        found = estimate_ratio(ideal * float(assumed), ideal + encoders.error(assumed), time)
+        found = estimate_ratio(
+            ideal * float(assumed), ideal + encoders.error(assumed), time, encoders.interpolated
+        )
     except RecordingError:
         return ''
     if found.fits(assumed):
@@ -114,20 +116,24 @@ def wrong_ratio(encoders: Encoders, assumed: Fraction) -> str:
     return f'{measured}; gearkin commission finds it, or give{such} --ratio={found.candidates[0]}'
 
 
-def estimate_ratio(rotor: Array, output: Array, time: Array | None = None) -> RatioEstimate:
+def estimate_ratio(
+    rotor: Array, output: Array, time: Array | None = None, period: float = 0.0
+) -> RatioEstimate:
     """Estimate the ratio by least squares that expect errors of a bounded size.
 
     The output angle is slope · rotor angle + offset + play by direction + delay · speed + errors
     that repeat with each turn of output or rotor: for k cycles a turn, their amplitude is at most
     `ENCODER_ERROR`/k, with a probability of 95 %. What less than a turn leaves open of them is in
     the uncertainty; over more, they are fitted. So is by how much the ratio changes if a lag by
-    the acceleration is fitted, as of an inertia on springs. All else is in the scatter of the
+    the acceleration is fitted, as of an inertia on springs, or what is lost by interpolation. All
+    else is in the scatter of the
     estimates with one block of successive samples left out.
 
     Args:
         rotor: (n,), rad, counting turns, in the order of time.
         output: (n,), rad, counting turns.
         time: (n,), s.
+        period: s between the samples between which the rotor is interpolated; 0 if it is not.
 
     Raises:
         RecordingError: if there are too few samples, or the output hardly turns with the rotor, or
@@ -159,12 +165,15 @@ def estimate_ratio(rotor: Array, output: Array, time: Array | None = None) -> Ra
         slope, late = slope + fit.terms[0] / travel, late - _DELAY * fit.terms[3]
     # Nor must its error: the reading of the rotor is not in its acceleration.
     acceleration = slope * (first - early - after + last) / (3.0 * _STEP**2)
+    # Between samples the rotor is taken to move evenly: twice where there is a delay, too.
+    curved = _fitted(columns, rest + period**2 / 4.0 * acceleration)
     lagging = _fitted(np.column_stack([columns, _LAG * acceleration]), rest)
     parts = (
         Component(fit.spread / travel),
         Component(_scatter(fit) / travel, _BLOCKS - 1),
         Component(_ACCURACY / travel),
         Component((lagging.terms[0] - fit.terms[0]) / travel / math.sqrt(3.0)),
+        Component((curved.terms[0] - fit.terms[0]) / travel / math.sqrt(3.0)),
     )
     measured = Estimate(slope, *combined(parts), _BLOCKS)
     if not _MAX_DISTANCE * measured.expanded < abs(slope):

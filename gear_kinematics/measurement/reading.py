@@ -23,6 +23,7 @@ from gear_kinematics.measurement.recording import (
     Encoders,
     Recording,
     RecordingError,
+    RestoredClock,
     RotorMotion,
     in_order,
     locked_shaft,
@@ -120,13 +121,18 @@ class States:
         self._input = RotorInput(parameters)
         self._inputs, self._outputs = _Columns(most // (2 if encoder else 1)), _Columns(most // 2)
         self._lacking = ''
+        self._clock = RestoredClock()
+        self._output_clock = RestoredClock(self._clock.steps)
 
     def add(self, rotor: TopicMessages, encoder: TopicMessages | None) -> None:
         """Add what came on both topics."""
-        new = self._input.accept_batch(rotor.data, rotor.received)
-        self._inputs.add((new.stamp, new.turns, new.angle, new.effort, new.segment))
+        data, later = self._clock.restored(rotor)
+        new = self._input.accept_batch(data, rotor.received)
+        segment = new.segment + later[new.row]
+        self._inputs.add((new.stamp, new.turns, new.angle, new.effort, segment))
         if encoder:
-            states = decode_joint_states(encoder.data, self._parameters.output_encoder_joint)
+            data, _ = self._output_clock.restored(encoder)
+            states = decode_joint_states(data, self._parameters.output_encoder_joint)
             self._lacking = self._lacking or states.missing_joint
             self._outputs.add(_measured(states, encoder.received, self._parameters))
 
@@ -139,6 +145,7 @@ class States:
         rotor, encoder, parameters = self._rotor, self._encoder, self._parameters
         rejected = self._input.rejected
         remarks = [f'{rotor}: {count} states {cause}' for cause, count in rejected.items()]
+        remarks += [f'the clock was {step}: nothing is interpolated' for step in self._clock.steps]
         for topic, read in ((rotor, self._inputs), (encoder, self._outputs)):
             if read.every > 1:
                 what = f'one state of {read.every} is used: no more are kept in memory'

@@ -2,7 +2,7 @@
 """A recording of a gear, whatever its file format: angles under torque, and both encoders."""
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
@@ -12,13 +12,18 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_kinematics.bag import TopicMessages
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.encoder_step import Step
-from gear_kinematics.wire.cdr import SECOND
+from gear_kinematics.wire.cdr import SECOND, header_stamp, with_stamp
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
 Array = NDArray[Any]
 
+_CLOCK_STEP = 20_000_000
+"""ns by which a clock is set back, at least; computers slew it by less."""
+_STEADY = 25
+"""Messages before and after, of which the age is the same."""
 _SPEED_WINDOW = 0.02
 """s, over which the speed is averaged."""
 
@@ -112,6 +117,13 @@ class Encoders:
         """(n,): index of the next rotor sample, or of the last."""
         after: Array = np.minimum(self.before + 1, len(self.rotor.stamp) - 1)
         return after
+
+    @property
+    def interpolated(self) -> float:
+        """Time between the rotor's samples, s; 0 if it was read with every measured angle."""
+        if not self.timed or not (self.share * (1.0 - self.share)).any():
+            return 0.0
+        return float(np.median(np.diff(self.rotor.stamp))) / SECOND
 
     def at_measured(self, values: Array) -> Array:
         """Interpolate a quantity of the rotor to the measured angles."""
@@ -252,6 +264,60 @@ class Recording:
 
 
 # Stamps
+
+
+class ClockStep(NamedTuple):
+    """A clock that was set back while it was recorded."""
+
+    received: int
+    """When the first message with a stamp of the new time was received, ns."""
+    size: int
+    """ns."""
+    stamp: int
+    """The last one of the old time, ns."""
+
+    def __str__(self) -> str:
+        """Say what happened, and when."""
+        return f'set back by {self.size / SECOND:.3f} s at {self.stamp}'
+
+
+class RestoredClock:
+    """Gives the messages of a topic the stamps of a clock that is never set back.
+
+    A step shows by messages that are all older from then on when they are received, where one that
+    is late is followed by others that are not.
+    """
+
+    def __init__(self, of_rotor: Sequence[ClockStep] = ()) -> None:
+        """Begin a topic; of two with the same clock, the second one follows the first."""
+        self.steps: list[ClockStep] = []
+        self._of_rotor = of_rotor
+
+    def restored(self, messages: TopicMessages) -> tuple[Sequence[bytes], Array]:
+        """Return the next n messages, and the number of steps before each, (n,)."""
+        received = np.asarray(messages.received, np.int64)
+        stamp = np.fromiter(map(header_stamp, messages.data), np.int64, len(messages.data))
+        dated = np.flatnonzero(stamp > 0)
+        self._find(stamp[dated], received[dated])
+        later = np.zeros(len(stamp), np.int64)
+        data = messages.data
+        if self.steps:
+            data = [*data]
+            later += sum(received >= step.received for step in self.steps)
+            sizes = np.cumsum([0, *(step.size for step in self.steps)])
+            for k in dated[later[dated] > 0].tolist():
+                data[k] = with_stamp(data[k], int(stamp[k] + sizes[later[k]]))
+        return data, later
+
+    def _find(self, stamp: Array, received: Array) -> None:
+        age = received - stamp
+        for k in np.flatnonzero(np.diff(age) > _CLOCK_STEP).tolist():
+            before, after = age[max(k + 1 - _STEADY, 0) : k + 1], age[k + 1 : k + 1 + _STEADY]
+            size = int(np.median(after) - np.median(before))
+            if size > _CLOCK_STEP and max(np.ptp(before), np.ptp(after)) < size / 4:
+                at = int(received[k + 1])
+                near = (own.size for own in self._of_rotor if abs(own.received - at) < SECOND)
+                self.steps.append(ClockStep(at, next(near, size), int(stamp[k])))
 
 
 def in_order(stamps: Array) -> tuple[Array, int]:

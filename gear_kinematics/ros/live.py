@@ -36,7 +36,7 @@ from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.ros.workarounds.executor import make_executor
 from gear_kinematics.ros.workarounds.shutdown import shut_down
 from gear_kinematics.state.rotor_input import RotorInput
-from gear_kinematics.wire.cdr import SECOND, STAMP_BYTES, JointStateTemplate
+from gear_kinematics.wire.cdr import SECOND, STAMP_BYTES, JointStateTemplate, with_stamp
 from gear_kinematics.wire.joint_reader import RejectedInputError
 from gear_kinematics.wire.topics import CORRECTED_TOPICS, JOINT_STATE, OUTPUT_ENCODER
 
@@ -345,6 +345,4 @@ def _stamped(data: bytes, received: int) -> bytes:
     """Return the message, with its time of reception as stamp if it has none."""
     if any(data[STAMP_BYTES]) or len(data) < STAMP_BYTES.stop:
         return data
-    layout = '<iI' if data[1] & 1 else '>iI'
-    stamp = struct.pack(layout, *divmod(received, SECOND))
-    return data[: STAMP_BYTES.start] + stamp + data[STAMP_BYTES.stop :]
+    return with_stamp(data, received)

@@ -80,6 +80,13 @@ def header_stamp(data: bytes) -> int:
     return int(seconds * SECOND + nanoseconds)
 
 
+def with_stamp(data: bytes, stamp: int) -> bytes:
+    """Return a message that begins with a std_msgs/Header with another stamp, ns."""
+    order = '<' if data[1] & 1 else '>'
+    encoded = struct.pack(f'{order}iI', *divmod(stamp, SECOND))
+    return data[: STAMP_BYTES.start] + encoded + data[STAMP_BYTES.stop :]
+
+
 def joint_state_layout(data: bytes) -> Layout:
     """Find the layout of a sensor_msgs/JointState.
 

@@ -277,17 +277,45 @@ def test_an_encoder_without_stamps_has_the_times_of_reception(tmp_path, config):
     np.testing.assert_allclose(both.error(Fraction(-19)), 0.01, rtol=0, atol=1e-9)
 
 
-def test_a_clock_of_the_encoder_that_is_set_back_ends_the_recording_there(tmp_path, config):
+@pytest.mark.parametrize('step', ['0.040', '0.300', '2.500'])
+def test_a_clock_that_is_set_back_is_restored_and_named(tmp_path, config, step):
+    ideal = np.linspace(0.0, 1.0, 4000) ** 2
+    stamps = START + np.arange(4000) * MS
+    late = stamps.copy()
+    late[3000:] -= round(1000 * float(step)) * MS
+    late[[1000, 1001]] = late[[1001, 1000]]  # disorder is no step
+    rotor = Samples(late, -19.0 * ideal, received=stamps)
+    write_recording(tmp_path / 'back', rotor, Samples(late, ideal, received=stamps))
+    recording, both = read_encoders(tmp_path / 'back', config)
+    assert recording.remarks == (
+        '/rotor_state: 1 states out of order',
+        f'the clock was set back by {step} s at {stamps[2999]}: nothing is interpolated',
+        '/output_encoder: 1 states out of order',
+    )
+    assert len(both.measured) == 3999
+    assert np.ptp(both.error(Fraction(-19))) < 1e-6
+    assert len(both.starts(None)) == 2  # the motion in the step is unknown
+
+
+def test_one_clock_of_two_that_is_set_back_is_restored(tmp_path, config):
     ideal = np.linspace(0.0, 1.0, 4000)
     stamps = START + np.arange(4000) * MS
     late = stamps.copy()
     late[3000:] -= 2500 * MS
-    late[[1000, 1001]] = late[[1001, 1000]]  # disorder is no reset
-    encoder = Samples(late, ideal, received=stamps)
-    write_recording(tmp_path / 'back', Samples(stamps, -19.0 * ideal), encoder)
-    recording, both = read_encoders(tmp_path / 'back', config)
-    assert recording.remarks == (
-        '/output_encoder: 1 states out of order',
-        '/output_encoder: the clock was set back; the last 1000 states are left out',
+    write_recording(
+        tmp_path / 'back',
+        Samples(stamps, -19.0 * ideal),
+        Samples(late, ideal, received=stamps),
     )
-    assert len(both.measured) == 2999
+    _, both = read_encoders(tmp_path / 'back', config)
+    assert len(both.measured) == 4000
+    assert np.ptp(both.error(Fraction(-19))) < 1e-9
+
+
+def test_faults_of_a_clock_change_no_figure(shared_path, config):
+    path = shared_path('data/faults/clock_set_back_by_0.3_s.mcap')
+    measured = measure(read(path, config), config)
+    assert not measured.wrong_ratio
+    lost = measured.transmission.lost_motion
+    # As the file says: 6.9 arcmin.
+    assert abs(lost.value - math.radians(6.9 / 60.0)) <= lost.uncertainty < math.radians(0.3 / 60)

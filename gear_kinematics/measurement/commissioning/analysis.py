@@ -143,7 +143,9 @@ def _decided(
     """The ratio between the encoders, the exact one, and why it is that one, or why it is open."""
     encoders = longest.encoders
     try:
-        ratio = estimate_ratio(longest.turned, encoders.measured, encoders.seconds)
+        ratio = estimate_ratio(
+            longest.turned, encoders.measured, encoders.seconds, encoders.interpolated
+        )
     except RecordingError as error:
         return None, None, f'The ratio is open: {error}.'
     seen = f'{ratio.plus_minus} after {math.degrees(longest.travel):.1f}° of the output'
