@@ -18,6 +18,7 @@ from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, miss
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
 from gear_kinematics.measurement.csv_files import Sources, is_csv, read_csv
 from gear_kinematics.measurement.encoder_step import step_of
+from gear_kinematics.measurement.gate import gated
 from gear_kinematics.measurement.recording import (
     Array,
     Encoders,
@@ -59,8 +60,8 @@ def read(
     """
     sources = sources or Sources()
     if is_csv(path):
-        return read_csv(path, sources, parameters.gear.gear_ratio)
-    return _read_bag(path, parameters, sources, progress)
+        return gated(read_csv(path, sources, parameters.gear.gear_ratio))
+    return gated(_read_bag(path, parameters, sources, progress))
 
 
 def read_encoders(

@@ -1,0 +1,189 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""A gate before every fit: readings of two encoders that cannot both be true are left out.
+
+The error, output minus rotor by their ratio, changes little between samples. Readings between
+which it leaves and comes back are left out; where it stays elsewhere, as after a slip, the
+recording is divided and the longest part is used.
+"""
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.measurement.recording import Array, Encoders, Recording, RotorMotion
+from gear_kinematics.report.document import number
+
+_FEWEST = 50  # samples
+_LEAST_TRAVEL = math.radians(10.0)  # of the output: without it, the ratio does not show
+_STEPS = 12.0  # times the step that 98 % of the samples have: no gear's error
+_LEAST_STEP = math.radians(0.25)
+_STAYS = 4  # samples in a row: no stray reading
+_REVERSAL = 4  # samples around it in which the output may lag
+_FROZEN = math.radians(3.0)  # of the output, that one shaft does while the other stands
+_LEAST_SHARE = 0.25  # of samples that are used: else it is the ratio that is not understood
+_MOST_FAULTS = 0.02  # of samples: more are a unit or a range that is not understood
+_NAMED = 3  # faults of a kind that are named with their moments
+
+
+def gated(recording: Recording) -> Recording:
+    """Leave out what cannot be true of both encoders, with remarks on it.
+
+    Without such readings, or if the output hardly moves, the recording itself is returned.
+    """
+    both = recording.encoders
+    if both is None or len(both.measured) < _FEWEST:
+        return recording
+    slope = _slope(both)
+    rotor = both.at_measured(both.rotor.turned)
+    if np.array_equal(both.measured, np.round(both.measured)):  # counts, whose unit is not known
+        return recording
+    if slope is None or abs(slope) * np.ptp(rotor) < _LEAST_TRAVEL:
+        return recording
+    error = both.measured - slope * rotor
+    frozen = _frozen(both.measured, slope * rotor) | _frozen(slope * rotor, both.measured)
+    rows = np.flatnonzero(~frozen)
+    if len(rows) < _FEWEST:
+        return recording
+    error[rows] -= TURN * np.cumsum(np.round(np.diff(error[rows], prepend=error[rows[0]]) / TURN))
+    steps, ideal = np.diff(error[rows]), slope * np.diff(rotor[rows])
+    limit = max(_STEPS * float(np.quantile(np.abs(steps), 0.98)), _LEAST_STEP)
+    impossible = (np.abs(steps) > limit) & ~_lost_motion(steps, ideal)
+    if np.mean(impossible) > _MOST_FAULTS:
+        return recording
+    kept, jumps = _followed(error[rows], rows, limit, impossible)
+    kept = rows[kept]
+    if len(kept) == len(error) or len(kept) < _LEAST_SHARE * len(error):
+        return recording
+    first, last = kept[0], kept[-1]
+    stray = np.setdiff1d(np.arange(first, last + 1), kept)
+    unit, time = (' s', both.seconds) if both.timed else ('', both.seconds + 1.0)
+    at = 'at' if both.timed else 'at sample'
+    remarks = []
+    isolated = stray[~frozen[stray]]
+    if len(isolated):
+        named = ', '.join(number(time[k], 6) for k in isolated[:_NAMED])
+        more = f' and {len(isolated) - _NAMED} more' if len(isolated) > _NAMED else ''
+        what = 'reading that contradicts' if len(isolated) == 1 else 'readings that contradict'
+        remarks.append(
+            f'{len(isolated)} {what} both neighbours left out, {at} {named}{unit}{more}'
+        )
+    if len(still := np.flatnonzero(frozen)):
+        span = f'{number(time[still[0]], 6)} to {number(time[still[-1]], 6)}{unit}'
+        remarks.append(
+            f'an encoder stood still while the other moved, between {span}: '
+            f'{len(still)} readings left out'
+        )
+    for before, after in ((rows[k - 1], rows[k]) for k in jumps):
+        size = number(math.degrees(error[after] - error[before]))
+        remarks.append(
+            f'the output jumps by {size}° against the rotor {at} {number(time[after], 6)}{unit} '
+            '(a slip, or an encoder that jumped)'
+        )
+    if first or last + 1 < len(error):
+        span = f'{number(time[first], 6)} to {number(time[last], 6)}{unit}'
+        remarks.append(f'only the longest part without a fault is used, {span}')
+    encoders = _without(both, kept, stray, slope)
+    return replace(recording, encoders=encoders, remarks=(*recording.remarks, *remarks))
+
+
+def _slope(both: Encoders) -> float | None:
+    """Output angle by rotor angle, whatever a few readings say; None if it does not show."""
+    rotor, measured = both.at_measured(both.rotor.turned), np.unwrap(both.measured)
+    lag = max(len(rotor) // 40, 1)
+    moved, followed = rotor[lag:] - rotor[:-lag], measured[lag:] - measured[:-lag]
+    enough = np.abs(moved) >= max(0.5 * float(np.quantile(np.abs(moved), 0.8)), 1e-9)
+    return float(np.median(followed[enough] / moved[enough])) if enough.any() else None
+
+
+def _frozen(still: Array, other: Array) -> NDArray[np.bool_]:
+    """Find rows of equal readings of one shaft, rad, while the other moves far."""
+    ends = np.flatnonzero(np.diff(still, prepend=np.nan, append=np.nan))
+    found = np.zeros(len(still), bool)
+    for begin, end in pairwise(ends.tolist()):
+        if end - begin >= _STAYS and np.ptp(other[begin:end]) > _FROZEN:
+            found[begin:end] = True
+    return found
+
+
+def _lost_motion(steps: Array, ideal: Array) -> NDArray[np.bool_]:
+    """Find steps of the error, rad, by which the output lags at a reversal of the rotor."""
+    ways = np.concatenate([np.zeros(_REVERSAL), np.sign(ideal), np.zeros(_REVERSAL)])
+    sums = np.convolve(ways, np.ones(_REVERSAL), 'valid')
+    before, after = sums[: len(ideal)], sums[_REVERSAL : _REVERSAL + len(ideal)]
+    most = np.minimum(np.abs(ideal), np.quantile(np.abs(ideal), 0.98))
+    lag = -steps * np.sign(ideal)
+    late = before * after <= 0.0
+    lost: NDArray[np.bool_] = late & (lag > 0.0) & (lag <= 1.1 * most)
+    return lost
+
+
+def _followed(
+    error: Array, rows: Array, limit: float, impossible: NDArray[np.bool_]
+) -> tuple[Array, list[int]]:
+    """Follow the error, rad, both ways from its longest part without an impossible step.
+
+    Args:
+        error: (n,), of rows of the recording.
+        rows: (n,), their numbers.
+        limit: rad, of a step; after a longer gap, the error may have changed by its range, too.
+        impossible: (n - 1,), steps that are.
+
+    Returns:
+        The indices that are reached with stray readings left out, and those before which it jumps
+        for good.
+    """
+    edges = [0, *(1 + np.flatnonzero(impossible)).tolist(), len(error)]
+    parts = list(pairwise(edges))
+    longest = max(range(len(parts)), key=lambda k: parts[k][1] - parts[k][0])
+    kept, jumps = [np.arange(*parts[longest])], []
+    spread = float(np.ptp(error[kept[0]]))
+    for way, others in ((1, parts[longest + 1 :]), (-1, parts[:longest][::-1])):
+        last = parts[longest][1] - 1 if way > 0 else parts[longest][0]
+        for begin, end in others:
+            near, far = (begin, end - 1) if way > 0 else (end - 1, begin)
+            gap = abs(rows[near] - rows[last]) > _STAYS
+            if abs(error[near] - error[last]) <= limit + spread * gap:
+                kept.append(np.arange(begin, end))
+                last = far
+            elif end - begin >= _STAYS:
+                jumps.append(begin if way > 0 else end)
+                break
+    return np.sort(np.concatenate(kept)), sorted(jumps)
+
+
+def _without(both: Encoders, kept: Array, stray: Array, slope: float) -> Encoders:
+    """Keep rows, and the rotor's samples of their span but those that are stray themselves."""
+    rotor, measured = slope * both.rotor.turned, both.measured
+    bad = np.zeros(len(rotor), bool)
+    for row in stray.tolist():
+        place = int(np.searchsorted(kept, row))
+        early, late = kept[place - 1], kept[place]
+        share = (both.seconds[row] - both.seconds[early]) / max(
+            both.seconds[late] - both.seconds[early], 1e-9
+        )
+        line = measured[early] + share * (measured[late] - measured[early])
+        begin, end = both.before[early], min(both.before[late] + 1, len(rotor) - 1)
+        seconds = both.rotor.seconds[begin : end + 1]
+        path = np.interp(seconds, seconds[[0, -1]], rotor[[begin, end]])
+        off = np.abs(rotor[begin : end + 1] - path)
+        if off.max() > abs(math.remainder(measured[row] - line, TURN)):
+            bad[begin : end + 1] |= off > 0.5 * off.max()
+    good = ~bad
+    first, last = both.before[kept[0]], min(both.before[kept[-1]] + 1, len(rotor) - 1)
+    good[:first] = good[last + 1 :] = False
+    after = np.minimum(both.before + 1, len(rotor) - 1)
+    kept = kept[good[both.before[kept]] & (good[after[kept]] | (both.share[kept] == 0.0))]
+    places = np.cumsum(good) - 1
+    stamp, turns, angle, effort, segment = both.rotor
+    effort, segment = (None if each is None else each[good] for each in (effort, segment))
+    return replace(
+        both,
+        rotor=RotorMotion(stamp[good], turns[good], angle[good], effort, segment),
+        before=places[both.before[kept]],
+        share=both.share[kept],
+        measured=measured[kept],
+    )

@@ -1,0 +1,88 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Readings that cannot be true are left out before anything is fitted to both encoders."""
+
+import re
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from gear_recordings import write_csv
+
+from gear_kinematics.measurement.csv_files import Sources, read_csv
+from gear_kinematics.measurement.gate import gated
+
+RATIO = Fraction(-19)
+
+
+@pytest.fixture
+def clean(shared_path):
+    """Columns of time, rotor and output of a real motion, 25 Hz."""
+    path = shared_path('data/faults/both_encoders_clean.csv')
+    return np.loadtxt(path, delimiter=',', skiprows=1)
+
+
+@pytest.fixture
+def gate(tmp_path):
+    """Give a function that reads columns, and returns the recording before and after the gate."""
+
+    def of(columns):
+        time_s, rotor_rad, output_rad = columns.T
+        path = tmp_path / 'both.csv'
+        write_csv(path, time_s=time_s, rotor_rad=rotor_rad, output_rad=output_rad)
+        recording = read_csv(path, Sources(), RATIO)
+        return recording, gated(recording)
+
+    return of
+
+
+def test_nothing_is_left_out_of_a_clean_recording(clean, gate):
+    before, after = gate(clean)
+    assert after is before
+
+
+@pytest.mark.parametrize(
+    'wrong',
+    [{(700, 2): 3.0}, {(700, 1): 0.0}, {(100, 2): 3.0, (300, 1): 0.0, (301, 1): 9e3, (900, 2): 9}],
+    ids=['output', 'rotor', 'several'],
+)
+def test_stray_readings_are_left_out_and_named(clean, gate, wrong):
+    for place, value in wrong.items():
+        clean[place] = value
+    rows = np.delete(np.arange(len(clean)), [row for row, _ in wrong])
+    _, found = gate(clean)
+    both = found.encoders
+    assert both.measured == pytest.approx(clean[rows, 2], abs=1e-9)
+    assert both.at_measured(both.rotor.turned) == pytest.approx(clean[rows, 1], abs=1e-6)
+    (remark,) = found.remarks
+    assert f'{0.04 * min(wrong)[0]:g}' in remark
+
+
+@pytest.mark.parametrize('column', [1, 2], ids=['rotor', 'output'])
+def test_a_frozen_encoder_is_named_and_its_readings_are_left_out(clean, gate, column):
+    clean[700:760, column] = clean[700, column]
+    _, found = gate(clean)
+    assert len(found.encoders.measured) == len(clean) - 60
+    assert np.ptp(found.encoders.error(RATIO)) < np.radians(0.5)
+    (remark,) = found.remarks
+    assert 'stood still while the other moved, between 28 to 30.36 s' in remark
+
+
+@pytest.mark.parametrize(
+    ('column', 'size', 'degrees'),
+    [(2, np.radians(1.0), 1.0), (2, np.radians(12.0), 12.0), (1, 2.0 * np.pi, 360.0 / 19.0)],
+    ids=['slip by 1 degree', 'slip by a tooth', 'rotor jumps by a turn'],
+)
+def test_a_jump_divides_and_is_named_with_its_moment(clean, gate, column, size, degrees):
+    clean[900:, column] += size
+    _, found = gate(clean)
+    assert found.encoders.measured == pytest.approx(clean[:900, 2], abs=1e-9)
+    named = re.match('the output jumps by (.*)° against the rotor at 36 s', found.remarks[0])
+    assert float(named[1]) == pytest.approx(degrees, abs=0.1)  # and the gear's own error
+
+
+def test_lost_motion_within_a_sample_is_no_fault(gate):
+    wave = np.abs((np.arange(1200) + 0.3) % 300 - 150)
+    ideal = np.radians(2.0 * wave)
+    output = ideal + np.radians(0.4) * np.sign(np.gradient(wave))
+    before, after = gate(np.column_stack([0.04 * np.arange(1200), -19.0 * ideal, output]))
+    assert after is before
