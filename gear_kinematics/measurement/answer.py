@@ -25,10 +25,12 @@ def answer(report: LostMotion) -> str:
     if report.figures:
         return _of_ramps(report.figures)
     found = report.transmission
-    if found is None or not (found.forward or found.backward):
+    if found is None or not (accuracy := found.forward or found.backward):
         return 'The output does not move far enough in one direction to tell its errors.'
-    accuracy = arc_minutes(found.forward or found.backward)
-    error = f'In one direction the output deviates by {accuracy}′ peak to peak'
+    error = f'In one direction the output deviates by {arc_minutes(accuracy)}′ peak to peak'
+    lost = found.lost_motion
+    if lost and math.inf > lost.expanded > max(abs(lost.value), accuracy.value):
+        return f'{error}; what it loses on reversals cannot be told.'
     if found.lost_motion:
         return f'{error}; on reversals it loses {arc_minutes(found.lost_motion)}′.'
     if found.reversals:

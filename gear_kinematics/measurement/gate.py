@@ -26,6 +26,7 @@ _REVERSAL = 4  # samples around it in which the output may lag
 _FROZEN = math.radians(3.0)  # of the output, that one shaft does while the other stands
 _LEAST_SHARE = 0.25  # of samples that are used: else it is the ratio that is not understood
 _MOST_FAULTS = 0.02  # of samples: more are a unit or a range that is not understood
+_RANGE = 0.9  # of the rotor's travel, by which it steps where it wraps
 _NAMED = 3  # faults of a kind that are named with their moments
 
 
@@ -37,8 +38,11 @@ def gated(recording: Recording) -> Recording:
     both = recording.encoders
     if both is None or len(both.measured) < _FEWEST:
         return recording
-    slope = _slope(both)
-    rotor = both.at_measured(both.rotor.turned)
+    turned = both.rotor.turned
+    wraps = np.ptp(turned) <= TURN  # as of one turn, or not further than that
+    turned = np.unwrap(turned) if wraps else turned
+    rotor = both.at_measured(turned)
+    slope = _slope(rotor, np.unwrap(both.measured))
     if np.array_equal(both.measured, np.round(both.measured)):  # counts, whose unit is not known
         return recording
     if slope is None or abs(slope) * np.ptp(rotor) < _LEAST_TRAVEL:
@@ -48,14 +52,20 @@ def gated(recording: Recording) -> Recording:
     rows = np.flatnonzero(~frozen)
     if len(rows) < _FEWEST:
         return recording
-    error[rows] -= TURN * np.cumsum(np.round(np.diff(error[rows], prepend=error[rows[0]]) / TURN))
+    periods = (TURN, abs(slope) * TURN) if wraps else (TURN,)
+    for period in periods:
+        steps = np.diff(error[rows], prepend=error[rows[0]])
+        error[rows] -= period * np.cumsum(np.round(steps / period))
     steps, ideal = np.diff(error[rows]), slope * np.diff(rotor[rows])
     limit = max(_STEPS * float(np.quantile(np.abs(steps), 0.98)), _LEAST_STEP)
     impossible = (np.abs(steps) > limit) & ~_lost_motion(steps, ideal)
     if np.mean(impossible) > _MOST_FAULTS:
         return recording
-    kept, jumps = _followed(error[rows], rows, limit, impossible)
+    kept, jumps = _followed(error[rows], rows, limit, impossible, periods[-1])
     kept = rows[kept]
+    own = [abs(rotor[rows[k]] - rotor[rows[k - 1]]) for k in jumps]
+    if own and max(own) > _RANGE * np.ptp(rotor):  # an encoder of another range than a turn
+        return recording
     if len(kept) == len(error) or len(kept) < _LEAST_SHARE * len(error):
         return recording
     first, last = kept[0], kept[-1]
@@ -86,13 +96,12 @@ def gated(recording: Recording) -> Recording:
     if first or last + 1 < len(error):
         span = f'{number(time[first], 6)} to {number(time[last], 6)}{unit}'
         remarks.append(f'only the longest part without a fault is used, {span}')
-    encoders = _without(both, kept, stray, slope)
+    encoders = _without(both, slope * turned, kept, stray)
     return replace(recording, encoders=encoders, remarks=(*recording.remarks, *remarks))
 
 
-def _slope(both: Encoders) -> float | None:
+def _slope(rotor: Array, measured: Array) -> float | None:
     """Output angle by rotor angle, whatever a few readings say; None if it does not show."""
-    rotor, measured = both.at_measured(both.rotor.turned), np.unwrap(both.measured)
     lag = max(len(rotor) // 40, 1)
     moved, followed = rotor[lag:] - rotor[:-lag], measured[lag:] - measured[:-lag]
     enough = np.abs(moved) >= max(0.5 * float(np.quantile(np.abs(moved), 0.8)), 1e-9)
@@ -122,7 +131,7 @@ def _lost_motion(steps: Array, ideal: Array) -> NDArray[np.bool_]:
 
 
 def _followed(
-    error: Array, rows: Array, limit: float, impossible: NDArray[np.bool_]
+    error: Array, rows: Array, limit: float, impossible: NDArray[np.bool_], period: float
 ) -> tuple[Array, list[int]]:
     """Follow the error, rad, both ways from its longest part without an impossible step.
 
@@ -131,6 +140,7 @@ def _followed(
         rows: (n,), their numbers.
         limit: rad, of a step; after a longer gap, the error may have changed by its range, too.
         impossible: (n - 1,), steps that are.
+        period: rad, of the error: what wraps of an encoder add to it.
 
     Returns:
         The indices that are reached with stray readings left out, and those before which it jumps
@@ -146,7 +156,7 @@ def _followed(
         for begin, end in others:
             near, far = (begin, end - 1) if way > 0 else (end - 1, begin)
             gap = abs(rows[near] - rows[last]) > _STAYS
-            if abs(error[near] - error[last]) <= limit + spread * gap:
+            if abs(math.remainder(error[near] - error[last], period)) <= limit + spread * gap:
                 kept.append(np.arange(begin, end))
                 last = far
             elif end - begin >= _STAYS:
@@ -155,9 +165,9 @@ def _followed(
     return np.sort(np.concatenate(kept)), sorted(jumps)
 
 
-def _without(both: Encoders, kept: Array, stray: Array, slope: float) -> Encoders:
+def _without(both: Encoders, rotor: Array, kept: Array, stray: Array) -> Encoders:
     """Keep rows, and the rotor's samples of their span but those that are stray themselves."""
-    rotor, measured = slope * both.rotor.turned, both.measured
+    measured = both.measured
     bad = np.zeros(len(rotor), bool)
     for row in stray.tolist():
         place = int(np.searchsorted(kept, row))

@@ -176,3 +176,23 @@ def test_recordings_that_cannot_be_read_are_all_told_and_do_not_stop_the_check(
     told = capsys.readouterr()
     assert told.err == errors
     assert 'of the measured angles are within the 95 % interval' in told.out
+
+
+@pytest.mark.parametrize(
+    ('name', 'said'),
+    [
+        ('one_corrupt_rotor_reading_calibrate', '1 reading that contradicts both neighbours'),
+        ('output_slips_by_20_degrees', 'the output jumps by 20° against the rotor at 27.04 s'),
+    ],
+)
+def test_readings_that_cannot_be_true_are_not_calibrated(
+    shared_path, tmp_path, capsys, name, said
+):
+    target = tmp_path / 'calibration.yaml'
+    path = shared_path(f'data/faults/{name}.csv')
+    assert main(['calibrate', '-v', str(path), '-o', str(target)]) == 0
+    # By the same gear without a fault: ± 0.68 arcmin.
+    assert 60.0 * math.degrees(Calibration.load(target).half_width) == pytest.approx(
+        0.68, abs=0.02
+    )
+    assert said in capsys.readouterr().out

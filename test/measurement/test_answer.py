@@ -2,6 +2,7 @@
 """What a report says of a recording: its answer, its remarks, and what became of limits."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -146,3 +147,11 @@ def test_figures_that_their_uncertainty_exceeds_stand_out():
 def test_values_are_written_to_the_second_digit_of_their_uncertainty(value, spread, written):
     normal = Estimate.of_mean([value] * 9, Component(spread / 1.959964))
     assert rounded(normal, 1.0) == written
+
+
+def test_lost_motion_is_not_told_where_its_uncertainty_says_nothing(shared_path, config):
+    report = measure(read(shared_path('data/faults/both_encoders_clean.csv'), config), config)
+    assert 'on reversals it loses 6.9' in answer(report)
+    lost = Estimate(-24.0 * ARC_MINUTE, 1000.0 * ARC_MINUTE, 5, 6)
+    report = replace(report, transmission=replace(report.transmission, lost_motion=lost))
+    assert answer(report).endswith('what it loses on reversals cannot be told.')

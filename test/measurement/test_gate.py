@@ -86,3 +86,13 @@ def test_lost_motion_within_a_sample_is_no_fault(gate):
     output = ideal + np.radians(0.4) * np.sign(np.gradient(wave))
     before, after = gate(np.column_stack([0.04 * np.arange(1200), -19.0 * ideal, output]))
     assert after is before
+
+
+def test_wraps_of_encoders_of_one_turn_are_no_faults(clean, gate):
+    clean[:, 1:] = np.remainder(clean[:, 1:], 2.0 * np.pi)
+    before, after = gate(clean)
+    assert after is before
+    clean[700, 1] = (clean[700, 1] + 1.3) % (2.0 * np.pi)
+    _, found = gate(clean)
+    assert len(found.encoders.measured) == len(clean) - 1
+    assert found.remarks[0].endswith('left out, at 28 s')

@@ -49,7 +49,8 @@ def document(fit: Fit, target: str) -> Document:
         'calibration.'
         if fit.helps
         else f'No correction helps: with the best one the error is {after} arcmin rms instead of '
-        f'{before} in what was left out of the fit, no more than by chance. Nothing is written.'
+        f'{before} in what was left out of the fit, of which {100.0 * errors.coverage:.1f} % is '
+        f'within the {PERCENT} interval. Nothing is written.'
     )
     terms = Table.of_items(
         {

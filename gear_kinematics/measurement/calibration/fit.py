@@ -45,6 +45,7 @@ from gear_kinematics.share import version
 _FEWEST = 100  # samples of a recording
 _SHIFTS = 4  # corrections of the delays, each for what the ones before left
 _SETTLED = 1e-5  # s to which a delay is corrected
+_LEAST_COVERAGE = 0.9  # of samples left out, by the interval that should have 95 % of them
 _MARGIN = 0.1  # share of the span of speed and torque beyond which they are not calibrated
 
 
@@ -80,7 +81,7 @@ class Fit:
     calibration: Calibration
     """Its constant makes the mean deviation zero; its errors are of samples left out."""
     helps: bool
-    """Whether the correction reduces the error by more than a standard error."""
+    """Whether it reduces the error by more than a standard error, and its interval holds."""
     terms: tuple[FittedTerm, ...]
     recordings: tuple[FittedRecording, ...]
     refused: Mapping[str, str]
@@ -286,13 +287,15 @@ def _result(
             float(np.sqrt(np.mean(before**2))), float(np.sqrt(np.mean(after**2))), coverage
         ),
     )
+    found = calibration.validation
+    falls = found.rms_after < found.rms_before and found.coverage >= _LEAST_COVERAGE
     recordings = (
         FittedRecording(of, delay, s.recording.sentences)
         for of, delay, s in zip(used, delays, samples, strict=True)
     )
     return Fit(
         calibration,
-        model.helps(),
+        falls and model.helps(),
         tuple(terms),
         tuple(recordings),
         refused,
