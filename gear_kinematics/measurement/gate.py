@@ -84,7 +84,7 @@ def gated(recording: Recording) -> Recording:
     if len(still := np.flatnonzero(frozen)):
         span = f'{number(time[still[0]], 6)} to {number(time[still[-1]], 6)}{unit}'
         remarks.append(
-            f'an encoder stood still while the other moved, between {span}: '
+            f'an encoder stood still while the other moved, from {span}: '
             f'{len(still)} readings left out'
         )
     for before, after in ((rows[k - 1], rows[k]) for k in jumps):
@@ -153,12 +153,16 @@ def _followed(
     spread = float(np.ptp(error[kept[0]]))
     for way, others in ((1, parts[longest + 1 :]), (-1, parts[:longest][::-1])):
         last = parts[longest][1] - 1 if way > 0 else parts[longest][0]
+        reached = error[slice(*parts[longest])]
         for begin, end in others:
             near, far = (begin, end - 1) if way > 0 else (end - 1, begin)
             gap = abs(rows[near] - rows[last]) > _STAYS
-            if abs(math.remainder(error[near] - error[last], period)) <= limit + spread * gap:
+            # Neighbours of a stray reading of the rotor are interpolated to it a little.
+            level = np.median(error[begin:end][::way][:_STAYS])
+            before = np.median(reached[::-way][:_STAYS])
+            if abs(math.remainder(level - before, period)) <= limit + spread * gap:
                 kept.append(np.arange(begin, end))
-                last = far
+                last, reached = far, error[begin:end]
             elif end - begin >= _STAYS:
                 jumps.append(begin if way > 0 else end)
                 break

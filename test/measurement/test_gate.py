@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from gear_recordings import write_csv
 
+from gear_kinematics.measurement.calibration import fit
 from gear_kinematics.measurement.csv_files import Sources, read_csv
 from gear_kinematics.measurement.gate import gated
 
@@ -64,7 +65,7 @@ def test_a_frozen_encoder_is_named_and_its_readings_are_left_out(clean, gate, co
     assert len(found.encoders.measured) == len(clean) - 60
     assert np.ptp(found.encoders.error(RATIO)) < np.radians(0.5)
     (remark,) = found.remarks
-    assert 'stood still while the other moved, between 28 to 30.36 s' in remark
+    assert 'stood still while the other moved, from 28 to 30.36 s' in remark
 
 
 @pytest.mark.parametrize(
@@ -96,3 +97,9 @@ def test_wraps_of_encoders_of_one_turn_are_no_faults(clean, gate):
     _, found = gate(clean)
     assert len(found.encoders.measured) == len(clean) - 1
     assert found.remarks[0].endswith('left out, at 28 s')
+
+
+def test_a_calibration_does_not_help_where_the_error_rises(shared_path):
+    path = shared_path('data/faults/one_corrupt_rotor_reading_calibrate.csv')
+    recording = read_csv(path, Sources(), RATIO)  # without the gate
+    assert not fit([(recording, recording.encoders)], RATIO).helps
