@@ -81,6 +81,8 @@ setup(
         'plot': ['matplotlib>=3.6', 'pillow'],
         # `gearkin lost-motion` and `calibrate`, and the load spectrum of `gearkin loads`
         'measure': ['scipy>=1.11', 'rainflow>=3.1'],
+        # `--scheduler` of `gearkin validate` and `gearkin loads`
+        'cluster': ['distributed>=2024.1'],
         # `gearkin urdf --meshes`
         'mesh': MESH,
         # `gearkin mjcf` and gear_simulator, which do with less without it; Ubuntu has no package.

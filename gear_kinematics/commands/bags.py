@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_kinematics.bag import fleet
+from gear_kinematics.bag.cluster import on_cluster
 from gear_kinematics.commands import arguments
 from gear_kinematics.commands.output import message_progress, progress
 from gear_kinematics.correction.calibration_file import Calibration
@@ -74,10 +75,13 @@ def load_calibration(
     return Calibration.load(path, gear) if path else None
 
 
-def add_jobs(ways: argparse._ActionsContainer) -> None:
-    """Add the option that distributes many recordings; see `results`."""
+def add_jobs(ways: argparse._MutuallyExclusiveGroup) -> None:
+    """Add the options that distribute many recordings; see `results`."""
     ways.add_argument(
         '--jobs', type=arguments.between(1, kind=int), default=1, metavar='N', help='processes'
+    )
+    ways.add_argument(
+        '--scheduler', metavar='ADDRESS', help='of a Dask cluster that works, as tcp://HOST:8786'
     )
 
 
@@ -91,8 +95,11 @@ def results(
 
     Several processes have one progress bar in the unit; otherwise, each recording has its own.
     """
-    if options.jobs > 1:
-        done = fleet.on_this_machine(work, tasks, options.jobs)
+    if options.jobs > 1 or options.scheduler:
+        if options.scheduler:
+            done = on_cluster(work, tasks, options.scheduler)
+        else:
+            done = fleet.on_this_machine(work, tasks, options.jobs)
         with progress(unit, quiet=options.quiet) as bars:
             tracked = bars.track(done, total=len(tasks), description=unit)
             return {task.bag: report for task, report in tracked}

@@ -12,6 +12,7 @@ EXTRAS = {
     'scipy': 'measure',
     'rainflow': 'measure',
     'rosbags': 'rosbags',
+    'distributed': 'cluster',
 }
 """The extra that installs a package; setup.py defines the extras."""
 _MESSAGES = '_msgs', '_srvs', '_interfaces'

@@ -35,7 +35,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='MU',
         help='coefficient of friction of the slots, for an estimate of their loss',
     )
-    bags.add_jobs(arguments.group(parser, 'several recordings'))
+    way = arguments.group(parser, 'several recordings').add_mutually_exclusive_group()
+    bags.add_jobs(way)
     add_report_forms(parser)
     arguments.add_verbose(parser, 'print tables and remarks in a pipe, too')
 

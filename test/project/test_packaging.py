@@ -37,7 +37,7 @@ ROSDEP_KEYS = {
     'yaml': 'python3-yaml',
 }
 # Extras, libraries of compressed recordings, and what Python itself has from 3.14 on.
-WITHOUT_KEY = {'compression', 'mapbox_earcut', 'mujoco', 'plotly', 'rainflow'}
+WITHOUT_KEY = {'compression', 'distributed', 'mapbox_earcut', 'mujoco', 'plotly', 'rainflow'}
 WITHOUT_KEY |= {'backports', 'lz4', 'rosbags', 'zstandard'}
 PYPI_NAMES = {'PIL': 'pillow', 'yaml': 'pyyaml', 'backports': 'backports.zstd'}
 

@@ -132,6 +132,7 @@ TENANTS = {
     'scipy': ['measurement'],
     'rainflow': ['measurement'],
     'mujoco': ['twin'],
+    'distributed': ['bag'],
 }
 """Libraries, and the only rooms that import them."""
 

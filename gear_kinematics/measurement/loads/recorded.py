@@ -29,7 +29,8 @@ _STEPS = 64  # of the range of a force, below one of which a cycle is not counte
 _LONGEST_STEP = SECOND  # ns, of a sample without a next one to show how long it lasted
 
 
-class Task(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Task:
     """A recording, and how to report its loads."""
 
     bag: Path
