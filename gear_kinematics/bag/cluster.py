@@ -1,6 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Works through many recordings on the workers of a Dask scheduler."""
 
+import logging
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -30,6 +31,8 @@ def on_cluster(
     """
     from distributed import Client, KilledWorker, as_completed  # noqa: PLC0415, an extra
 
+    # It would warn of each recording that is begun again because a result died with its worker.
+    logging.getLogger('distributed.client').setLevel(logging.ERROR)
     try:
         parts = urlsplit(scheduler)
         if (
