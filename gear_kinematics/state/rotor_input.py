@@ -15,6 +15,7 @@ from gear_kinematics.parameters import PARAMETERS, NodeParameters
 from gear_kinematics.wire.batches import Array, decode_joint_states
 from gear_kinematics.wire.cdr import LATEST, SECOND
 from gear_kinematics.wire.joint_reader import (
+    ARRAY_SIZES,
     CLOCK_RESET,
     GREATEST,
     JOINT_MISSING,
@@ -201,6 +202,7 @@ class RotorInput:
             (states.malformed, MALFORMED),
             (states.stamp > LATEST, STAMP_OUT_OF_RANGE),
             (~states.joint_found, JOINT_MISSING),
+            (~states.arrays_fit, ARRAY_SIZES),
             (~states.present[:, 0], POSITION_MISSING),
             (~np.isfinite(states.values[:, 0]), POSITION_NOT_FINITE),
             (np.abs(states.values[:, 0]) > LARGEST_ANGLE, POSITION_TOO_LARGE),

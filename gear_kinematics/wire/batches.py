@@ -18,6 +18,7 @@ from gear_kinematics.wire.cdr import (
     Layout,
     MalformedMessageError,
     Template,
+    arrays_fit,
     joint_index,
     joint_state_layout,
     pose_array_layout,
@@ -40,6 +41,8 @@ class JointStates:
     """(n,): no such message; its other values have no meaning."""
     joint_found: Array
     """(n,): whether the joint is in the message."""
+    arrays_fit: Array
+    """(n,): whether each array is empty or as long as `name`."""
     present: Array
     """(n, 3): whether the message has the joint's position, velocity and effort."""
     values: Array
@@ -68,7 +71,7 @@ def decode_joint_states(messages: Sequence[bytes], joint: str) -> JointStates:
     """Decode the values of one joint, which `joint_index` looks up."""
     count = len(messages)
     stamp, unnormalised = np.zeros(count, np.int64), np.zeros(count, bool)
-    malformed, joint_found = np.ones(count, bool), np.zeros(count, bool)
+    malformed, joint_found, fit = np.ones(count, bool), *np.zeros((2, count), bool)
     present, values = np.zeros((count, 3), bool), np.full((count, 3), np.nan)
     without = ''
     for rows, layout, table in _tables(messages, joint_state_layout):
@@ -79,12 +82,12 @@ def decode_joint_states(messages: Sequence[bytes], joint: str) -> JointStates:
         if index is None:
             without = without or describe_missing(joint, messages[rows[0]])
             continue
-        joint_found[rows] = True
+        joint_found[rows], fit[rows] = True, arrays_fit(layout)
         for field, (offset, size) in enumerate(layout.arrays):
             if index < size:
                 present[rows, field] = True
                 values[rows, field] = _doubles(table, layout, offset + 8 * index, 1)[:, 0]
-    return JointStates(stamp, unnormalised, malformed, joint_found, present, values, without)
+    return JointStates(stamp, unnormalised, malformed, joint_found, fit, present, values, without)
 
 
 def decode_pose_arrays(messages: Sequence[bytes], count_of_poses: int) -> PoseArrays:

@@ -72,6 +72,12 @@ def joint_index(layout: Layout, joint: bytes) -> int | None:
     return 0 if len(names) == 1 else None
 
 
+def arrays_fit(layout: Layout) -> bool:
+    """Whether each array of a JointState is empty or has a value for each of its joints."""
+    joints = len(joint_names(layout))
+    return all(count in {0, joints} for _, count in layout.arrays)
+
+
 def header_stamp(data: bytes) -> int:
     """Return the stamp of any message that begins with a std_msgs/Header, ns; -1 without one."""
     if len(data) < STAMP_OFFSET + STAMP.size:

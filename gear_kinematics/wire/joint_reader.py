@@ -15,6 +15,7 @@ from gear_kinematics.wire.cdr import (
     STAMP_OFFSET,
     Layout,
     MalformedMessageError,
+    arrays_fit,
     joint_index,
     joint_names,
     joint_state_layout,
@@ -24,6 +25,7 @@ from gear_kinematics.wire.nearest import among, listed
 MALFORMED = 'not a JointState'
 STAMP_OUT_OF_RANGE = 'stamp out of range'
 JOINT_MISSING = 'joint missing'
+ARRAY_SIZES = 'array sizes'
 POSITION_MISSING = 'position missing'
 POSITION_NOT_FINITE = 'position not finite'
 POSITION_TOO_LARGE = 'position too large'
@@ -104,8 +106,8 @@ class JointReader:
         if stamp > LATEST:
             raise RejectedInputError(STAMP_OUT_OF_RANGE)
         if position is None:
-            if self._fault == POSITION_MISSING:
-                raise RejectedInputError(POSITION_MISSING)
+            if self._fault != JOINT_MISSING:
+                raise RejectedInputError(self._fault)
             joint = self._joint.decode(errors='backslashreplace')
             raise RejectedInputError(JOINT_MISSING, partial(describe_missing, joint, data))
         if not abs(position) <= LARGEST_ANGLE:  # NaN compares false
@@ -121,8 +123,9 @@ class JointReader:
         """Keep the layout of a message for the next ones."""
         layout = joint_state_layout(data)
         index = joint_index(layout, self._joint)
+        fit = arrays_fit(layout)
         offsets = [
-            offset + 8 * index if index is not None and index < count else None
+            offset + 8 * index if fit and index is not None and count else None
             for offset, count in layout.arrays
         ]
         present = [offset for offset in offsets if offset is not None]
@@ -136,7 +139,9 @@ class JointReader:
         spans = [(start, f'{end - start}s') for start, end in layout.fixed]
         self._fixed_of = _unpacker(layout, spans)
         self._fixed = self._fixed_of(data)
-        self._fault = JOINT_MISSING if index is None else POSITION_MISSING
+        self._fault = POSITION_MISSING if fit else ARRAY_SIZES
+        if index is None:
+            self._fault = JOINT_MISSING
         self._size = layout.size if layout.size <= _MAX_KEPT else -1
 
 

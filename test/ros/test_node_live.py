@@ -167,7 +167,8 @@ def test_every_valid_input_has_one_output_with_its_stamp(shared):
 REJECTED = [
     ('joint missing', rotor_state(START, ['wheel', 'rotor_1'], [1.0, 2.0])),
     ('joint missing', rotor_state(START, [], [])),
-    ('position missing', rotor_state(START, ['a', 'rotor'], [1.0])),
+    ('position missing', rotor_state(START, ['a', 'rotor'], [])),
+    ('array sizes', rotor_state(START, ['a', 'rotor'], [1.0])),
     ('position not finite', rotor_state(START, position=[math.nan])),
     ('position too large', rotor_state(START, position=[1e17])),
     ('not a JointState', b'\xde\xad\xbe\xef' * 40),

@@ -58,7 +58,10 @@ def expected(data, joint):
     found = [k for k, name in enumerate(joints) if (name == joint if joint else len(joints) == 1)]
     if not found:
         return 'joint missing'
-    if found[0] >= len(message.position):
+    arrays = message.position, message.velocity, message.effort
+    if any(len(array) not in {0, len(joints)} for array in arrays):
+        return 'array sizes'
+    if not len(message.position):
         return 'position missing'
     position, *rates = (
         values[found[0]] if found[0] < len(values) else None
