@@ -26,6 +26,7 @@ float64 holds every integer exactly."""
 _MANY_TURNS = 2**25 * TURN  # rad; products of fewer with _TURN_HIGH or _TURN_LOW fit into 53 bits
 _TURN_HIGH = math.floor(TURN * 2.0**24) / 2.0**24
 _TURN_LOW = TURN - _TURN_HIGH
+_NOISE = 0.05  # rad, of any encoder
 _BELOW_HALF = math.nextafter(math.pi, 0.0)  # rad; any smaller angle is 0 turns, however rounded
 
 
@@ -150,6 +151,7 @@ class RotorTurns:
         self.max_speed = max_speed
         self.max_acceleration = max_acceleration
         self.longest_silence = longest_silence
+        self._lost = False
         self.unknown_gaps = 0
         """In which the rotor could have turned half a turn or more unseen."""
         self.reset()
@@ -164,8 +166,13 @@ class RotorTurns:
 
     def forget_turns(self) -> None:
         """Make the turns as unknown as at the start; counting goes on."""
-        self.referenced = not (self.single_turn or self.longest_silence)
+        self.referenced = not (self.single_turn or self.longest_silence or self._lost)
         self.unseen_travel = math.inf  # rad, at most between the known and the counted turns
+
+    def lose(self) -> None:
+        """Take the turns as unknown until a reference, as the encoder has jumped."""
+        self._lost = True
+        self.forget_turns()
 
     def update(self, position: float, stamp: int, velocity: float | None = None) -> None:
         """Process the encoder's next sample.
@@ -178,13 +185,18 @@ class RotorTurns:
         split = split_turns(position)
         if self.single_turn and self.position is not None:
             elapsed = (stamp - self._stamp) * 1e-9
-            expected, known = self._expected_turn(elapsed, velocity)
-            if not known:
+            low, high = self._possible_turn(elapsed, velocity)
+            apparent, expected = split.angle - self.position.angle, 0.5 * (low + high)
+            more = round((expected - apparent) / TURN)
+            # Stamps that are early or late put the turn outside of what is possible: it is the
+            # right one only if any other were far less possible.
+            width = high - low
+            outside = abs(apparent + TURN * more - expected) - 0.5 * width
+            if width >= TURN or outside > _NOISE + (TURN - width - outside) / 8.0:
                 self.referenced = False
                 self.unknown_gaps += 1
                 self.unseen_travel += self.max_speed * elapsed + math.pi
-            apparent = split.angle - self.position.angle
-            turns = self.position.turns + round((expected - apparent) / TURN)
+            turns = self.position.turns + more
             split = RotorPosition(turns, split.angle)
         elif self.longest_silence and self.position and stamp - self._stamp > self.longest_silence:
             self.referenced = False
@@ -192,8 +204,8 @@ class RotorTurns:
         self.position = split
         self._reading, self._stamp, self._velocity = position, stamp, velocity
 
-    def _expected_turn(self, elapsed: float, velocity: float | None) -> tuple[float, bool]:
-        """Expected turn of the rotor in a gap, rad, and whether only one turn count is possible.
+    def _possible_turn(self, elapsed: float, velocity: float | None) -> tuple[float, float]:
+        """The least and the greatest turn of the rotor in a gap, rad.
 
         Within `elapsed` the rotor reaches at most ±max_speed·elapsed. Where that is ambiguous,
         the speeds v0 and v1 at both ends narrow it: with accelerations of at most A, the turn is
@@ -209,7 +221,7 @@ class RotorTurns:
             spread -= change * change / (4.0 * self.max_acceleration)
             if spread >= 0.0 and abs(middle) <= reach:  # else the limits or the speeds are wrong
                 low, high = max(low, middle - spread), min(high, middle + spread)
-        return 0.5 * (low + high), high - low < TURN
+        return low, high
 
     def relative_to(self, zero: RotorPosition, direction: int) -> RotorPosition:
         """Return the rotor angle φ2 = direction·(position - zero), without cancellation.
@@ -238,7 +250,7 @@ class RotorTurns:
 
     def refer(self) -> None:
         """Take the turns counted as known from now on."""
-        self.referenced, self.unseen_travel = True, 0.0
+        self.referenced, self.unseen_travel, self._lost = True, 0.0, False
 
     def zero_for(self, rotor_angle: float, direction: int) -> float:
         """Return the zero that `home` would give, and change nothing.

@@ -23,6 +23,9 @@ OK, WARN, ERROR = 0, 1, 2
 _NO_INPUT = 'Check that the driver is running, and that its topic is remapped.'
 _NOT_REFERENCED = 'Move the output to its home angle, then call ~/home.'
 _WAS_UNREFERENCED = 'Do not use the outputs of that time.'
+_JUMPED = 'Check whether the drive restarted, and the encoder and its cable.'
+_BEYOND = 'Raise the limit to what the motor can do, or check that positions are in rad.'
+_UNSTAMPED = 'Let the driver stamp its messages: the turns of a single-turn encoder rest on time.'
 _UNEXPLAINED = 'Check gear_ratio, the directions and zeros of both encoders, and the gear.'
 _AMBIGUOUS = 'Stop the output; or calibrate the gear, or lower transmission_error_limit.'
 _DISAGREES = 'Check whether an encoder has slipped; then call ~/home, or restart the node.'
@@ -122,6 +125,7 @@ class InputMonitor(DriverMonitor):
     _received: int = 0
     _unsent: int = 0
     _unreferenced: int = 0
+    _zero_stamps: int = 0
 
     def report(
         self, rotor_input: RotorInput, now: float, reference: TurnReference | None = None
@@ -142,11 +146,19 @@ class InputMonitor(DriverMonitor):
         if overdue:
             errors.append(Fault(f'no input for {age:.1f} s', _NO_INPUT))
         if not rotor_input.referenced:
+            if rotor_input.jumped:
+                errors.append(Fault(rotor_input.jumped, _JUMPED))
             errors.append(_not_referenced(reference))
         elif reference and reference.disagreement:
             errors.append(Fault(reference.disagreement, _DISAGREES))
         errors += self.graph.errors
         warnings = self._new_faults(rotor_input.rejected)
+        if rotor_input.beyond_limits:
+            warnings.append(Fault(rotor_input.beyond_limits, _BEYOND))
+        if rotor_input.parameters.single_turn and rotor_input.zero_stamps > self._zero_stamps:
+            unstamped = rotor_input.zero_stamps - self._zero_stamps
+            warnings.append(Fault(f'zero stamps {unstamped}', _UNSTAMPED))
+        self._zero_stamps = rotor_input.zero_stamps
         if newly_unsent:
             advice = 'Look for a listener that is stuck.'
             warnings.append(Fault(f'not sent {newly_unsent}', advice))

@@ -10,14 +10,16 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from gear_kinematics.kinematics import RotorPosition, RotorSample, RotorTurns, split_turns
-from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
+from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.parameters import PARAMETERS, NodeParameters
+from gear_kinematics.state.plausibility import Plausibility, Verdict
 from gear_kinematics.wire.batches import Array, decode_joint_states
 from gear_kinematics.wire.cdr import LATEST, SECOND
 from gear_kinematics.wire.joint_reader import (
     ARRAY_SIZES,
     CLOCK_RESET,
     GREATEST,
+    IMPLAUSIBLE,
     JOINT_MISSING,
     MALFORMED,
     OUT_OF_ORDER,
@@ -93,6 +95,8 @@ class RotorInput:
             longest_silence=_longest_silence(parameters),
         )
         """Follows the encoder."""
+        self.plausibility = Plausibility(*_limits(parameters))
+        """Judges whether it can be believed."""
 
     @property
     def parameters(self) -> NodeParameters:
@@ -105,6 +109,8 @@ class RotorInput:
         self.turns.max_acceleration = parameters.max_rotor_acceleration
         self.turns.longest_silence = _longest_silence(parameters)
         before = self._parameters
+        if _limits(parameters) != _limits(before):
+            self.plausibility.restrict(*_limits(parameters))
         if any(getattr(parameters, name) != getattr(before, name) for name in _ENCODERS):
             self.zero = split_turns(parameters.rotor_zero)
             self._restarts += 1
@@ -114,6 +120,7 @@ class RotorInput:
         if (joint, kind) != (before.rotor_joint, before.rotor_encoder):
             self.turns.single_turn = parameters.single_turn
             self.turns.reset()
+            self.plausibility.reset()
             self._reader = JointReader(parameters.rotor_joint)
             self.missing_joint = ''
         self._parameters = parameters
@@ -136,9 +143,27 @@ class RotorInput:
         return causes + hint
 
     @property
+    def jumped(self) -> str:
+        """The last jump of the encoder, with its size and time; '' if there was none."""
+        if not (jump := self.plausibility.jump):
+            return ''
+        stamp = f'{jump.stamp / SECOND:.3f} s'
+        return f"the rotor's encoder jumped by {jump.size:.4g} rad at {stamp}"
+
+    @property
+    def beyond_limits(self) -> str:
+        """How the rotor has moved beyond its limits, and which these are; '' if it has not."""
+        judge, found = self.plausibility, []
+        if judge.seen_speed:
+            found.append(f'{judge.seen_speed:.4g} rad/s exceed max_rotor_speed')
+        if judge.seen_acceleration:
+            found.append(f'{judge.seen_acceleration:.4g} rad/s² exceed max_rotor_acceleration')
+        return ', '.join(found)
+
+    @property
     def segment(self) -> int:
         """Number that rises where the turn count restarts, is uncertain or is referenced."""
-        return self.turns.unknown_gaps + self.resets + self._restarts
+        return self.turns.unknown_gaps + self.resets + self._restarts + self.plausibility.jumps
 
     def accept(self, data: bytes, now: Callable[[], int]) -> RotorSample:
         """Process the next message.
@@ -218,7 +243,12 @@ class RotorInput:
         clock = np.asarray(received, np.int64)[rows]
         rejected = states.stamp[~(usable | states.malformed)]
         parameters = self._parameters
-        if parameters.single_turn or parameters.absolute or not self._in_order(stamps):
+        if (
+            parameters.single_turn
+            or parameters.absolute
+            or not self._in_order(stamps)
+            or not self.plausibility.believes(stamps, values[:, 0])
+        ):
             return self._one_by_one(rows, stamps, values, clock, rejected)
         return self._all_at_once(rows, stamps, values, clock, rejected)
 
@@ -287,6 +317,10 @@ class RotorInput:
     ) -> RotorSample:
         if self.last is not None and stamp <= self.last.stamp:
             self._check_order(stamp, self.last.stamp)
+        if (verdict := self.plausibility.judge(position, stamp)) is not Verdict.BELIEVED:
+            if verdict is Verdict.IMPLAUSIBLE:
+                raise RejectedInputError(IMPLAUSIBLE)
+            self.turns.lose()
         self.turns.update(position, stamp, velocity)
         direction = self._parameters.rotor_direction
         self.last = RotorSample(
@@ -305,11 +339,17 @@ class RotorInput:
         else:
             self.resets += 1
             self.turns.reset()
+            self.plausibility.reset()
 
 
 def _longest_silence(parameters: NodeParameters) -> float:
     """ns; diagnostics, too, call the driver silent after so long."""
     return parameters.input_timeout * SECOND if parameters.absolute else 0.0
+
+
+def _limits(parameters: NodeParameters) -> tuple[float, float, float]:
+    period = TURN if parameters.single_turn else 0.0
+    return parameters.max_rotor_speed, parameters.max_rotor_acceleration, period
 
 
 def _number_or_none(value: float) -> float | None:

@@ -76,7 +76,9 @@ class InputHealth:
             overspeed=self._overspeed,
             max_speed=self._fastest,
             longest_gaps=tuple(self._longest),
-            referenced=not rotor_input.turns.unknown_gaps,
+            referenced=not (rotor_input.turns.unknown_gaps or rotor_input.jumped),
+            jumped=rotor_input.jumped,
+            beyond_limits=rotor_input.beyond_limits,
         )
 
 
@@ -102,6 +104,8 @@ def _counted(rotor: InputReport) -> Iterator[Finding]:
 _SENTENCES = {
     'jumps': '{rotor.jumps} gaps of {rotor.topic} could hide a turn of the rotor: after each, '
     'its turns are taken from the outputs',
+    'jumped': '{rotor.jumped}: what follows has another zero',
+    'beyond_limits': '{rotor.beyond_limits}',
     'overspeed': '{rotor.overspeed} steps of {rotor.topic} are faster than max_rotor_speed, at '
     'most {rotor.max_speed:.4g} rad/s',
     'zero_stamps': '{rotor.zero_stamps} messages of {rotor.topic} have no stamp: the node stamped '

@@ -138,6 +138,10 @@ class InputReport:
     """Gaps longer than 5 median periods."""
     jumps: int = 0
     """Gaps in which the rotor could have turned half a turn or more unseen."""
+    jumped: str = ''
+    """The last jump of the encoder; '' if there was none."""
+    beyond_limits: str = ''
+    """What speed and acceleration exceed the limits over several samples; '' if none do."""
     overspeed: int = 0
     """Steps faster than `max_rotor_speed`."""
     max_speed: float = 0.0

@@ -30,6 +30,7 @@ POSITION_MISSING = 'position missing'
 POSITION_NOT_FINITE = 'position not finite'
 POSITION_TOO_LARGE = 'position too large'
 OUT_OF_ORDER = 'out of order'
+IMPLAUSIBLE = 'implausible'
 CLOCK_RESET = 1_000_000_000
 """ns: a stamp that is older than the last by more is in order; the clock has been set back."""
 

@@ -214,6 +214,7 @@ def test_velocities_narrow_a_gap_to_what_is_reachable(speeds, elapsed):
         return tracker
 
     assert not after_gap(1.01 * high, ways[0]).referenced
+    ways = [reachable(*speeds, 0.99 * low, elapsed, side) for side in (-1, 1)]
     for way in (0.99 * ways[0] + 0.01 * ways[1], 0.01 * ways[0] + 0.99 * ways[1]):
         tracker = after_gap(0.99 * low, way)
         assert tracker.referenced

@@ -13,6 +13,7 @@ from live import SECOND, rotor_bytes
 
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.diagnostics import ERROR, OK, WARN, Fault, GraphFaults, InputMonitor
+from gear_kinematics.state.plausibility import Jump
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
@@ -155,11 +156,13 @@ def test_every_fault_is_documented_with_its_level():
     bench = Bench(replace(SETTINGS, rotor_encoder='single_turn'))
     bench.feed(START + 0.8, good(), *12 * [NO_JOINT])
     bench.monitor.drivers, bench.monitor.lost, bench.monitor.unsent = 2, 3, 1
+    bench.input.zero_stamps = 12
+    bench.input.plausibility.jump = Jump(1_700_000_000_500_000_000, 100.0)
     report = bench.report(START + 4.0)
     assert report.message.split('; ') == [
         message for message, _ in documented if not re.search('QoS|/|was not referenced', message)
     ]
-    assert len(re.findall(r'\.(?: |$)', report.values['advice'])) == 6
+    assert len(re.findall(r'\.(?: |$)', report.values['advice'])) == 8
 
 
 def test_values_count_what_happened(bench):

@@ -1,0 +1,174 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Readings that the rotor cannot have reached, injected into motions within its limits."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from live import SECOND, rotor_bytes
+
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.wire.joint_reader import RejectedInputError
+
+MULTI = NodeParameters.load()
+SINGLE = replace(MULTI, rotor_encoder='single_turn')
+TURN = 2.0 * math.pi
+START = 100 * SECOND
+LIMITS = 650.0, 6500.0  # rad/s and rad/s², the defaults
+RATES = (10, 25, 50, 100, 200, 500, 1000)
+KINDS = ('exact', 'quantised', 'hall', 'early', 'late', 'held', 'noisy', 'gaps')
+
+
+def motion(rate: int, count: int, generator) -> tuple[np.ndarray, np.ndarray]:
+    """Times, s, and angles, rad, of random accelerations within the limits."""
+    inner = max(1, math.ceil(1000 / rate))
+    step, speed, angle = 1.0 / rate / inner, 0.0, 0.0
+    angles, acceleration = [], 0.0
+    for n in range(count * inner):
+        if n % 40 == 0:
+            acceleration = generator.choice([-1.0, 0.0, 1.0]) * LIMITS[1] * generator.random()
+        faster = float(np.clip(speed + acceleration * step, -LIMITS[0], LIMITS[0]))
+        angle += 0.5 * (speed + faster) * step
+        speed = faster
+        if n % inner == 0:
+            angles.append(angle)
+    return np.arange(count) / rate, np.array(angles)
+
+
+def disturbed(kind, times, angles, rate, generator) -> tuple[np.ndarray, np.ndarray]:
+    """What real drivers do with them."""
+    count = len(times)
+    if kind == 'quantised':
+        angles = np.round(angles / 0.01) * 0.01
+    elif kind == 'hall':
+        angles = np.floor(angles * 6.0 / TURN) * TURN / 6.0
+    elif kind == 'early':
+        times = times + generator.uniform(0.0, min(0.9 / rate, 2e-3), count)
+    elif kind == 'late':
+        times = np.maximum.accumulate(times + (generator.random(count) < 0.05) * 3e-3)
+    elif kind == 'held':
+        angles = angles[np.arange(count) // max(1, rate // 100) * max(1, rate // 100)]
+    elif kind == 'noisy':
+        angles = angles + generator.normal(0.0, 0.01, count)
+    elif kind == 'gaps':
+        kept = generator.random(count) < 0.8
+        times, angles = times[kept], angles[kept]
+    return times, angles
+
+
+def messages(times, angles) -> list[bytes]:
+    stamps = START + np.round(np.asarray(times) * SECOND).astype(np.int64)
+    return [rotor_bytes(int(s), position=[float(a)]) for s, a in zip(stamps, angles, strict=True)]
+
+
+def fed(settings, batch) -> tuple[RotorInput, list]:
+    """The input after the messages, and its samples; None for one that was rejected."""
+    rotor, samples = RotorInput(settings), []
+    for data in batch:
+        try:
+            samples.append(rotor.accept(data, int))
+        except RejectedInputError:
+            samples.append(None)
+    assert set(rotor.rejected) <= {'implausible'}
+    return rotor, samples
+
+
+@pytest.mark.parametrize('kind', KINDS)
+@pytest.mark.parametrize('rate', RATES)
+def test_no_motion_within_the_limits_is_doubted(kind, rate):
+    for seed in range(3):
+        generator = np.random.default_rng([seed, rate])
+        times, angles = disturbed(kind, *motion(rate, 300, generator), rate, generator)
+        rotor, _ = fed(MULTI, messages(times, angles))
+        assert (rotor.rejected, rotor.jumped, rotor.beyond_limits) == ({}, '', '')
+        rotor, _ = fed(SINGLE, messages(times, np.mod(angles, TURN)))
+        assert (rotor.rejected, rotor.jumped, rotor.beyond_limits) == ({}, '', '')
+
+
+@given(
+    st.sampled_from([10, 100, 1000]),
+    st.integers(0, 2**32),
+    st.sampled_from([-1e9, -1500.0, -150.0, 150.0, 1e5]),
+)
+def test_a_corrupt_reading_gives_no_output_and_changes_nothing(rate, seed, size):
+    generator = np.random.default_rng(seed)
+    times, angles = motion(rate, 40, generator)
+    bad = int(generator.integers(5, 38))
+    right, expected = fed(MULTI, messages(times, angles))
+    angles[bad] += size
+    rotor, samples = fed(MULTI, messages(times, angles))
+    assert rotor.rejected == {'implausible': 1}
+    assert samples[bad] is None
+    assert [s for s in samples if s] == expected[:bad] + expected[bad + 1 :]
+    assert rotor.referenced
+    assert rotor.segment == right.segment
+
+
+@pytest.mark.parametrize('size', [1.0, -2.0, 3.0, 0.5])
+def test_a_corrupt_reading_of_a_single_turn_encoder_loses_no_turn(size):
+    times, angles = motion(1000, 400, np.random.default_rng(5))
+    batch = messages(times, np.mod(angles, TURN))
+    rotor, samples = RotorInput(SINGLE), []
+    for n, data in enumerate(batch):
+        if n % 50 == 49:
+            wrong = messages(times[n : n + 1], np.mod(angles[n : n + 1] + 4.0 * size, TURN))
+            with pytest.raises(RejectedInputError, match='implausible'):
+                rotor.accept(wrong[0], int)
+            continue
+        samples.append((rotor.accept(data, int), angles[n]))
+        if n == 0:
+            rotor.home(0.0)
+    assert rotor.referenced
+    for sample, angle in samples[1:]:
+        position = TURN * sample.position.turns + sample.position.angle
+        assert position == pytest.approx(angle - angles[0], abs=1e-9)
+
+
+@pytest.mark.parametrize('rate', [10, 100, 1000])
+@pytest.mark.parametrize('size', [100.0, -1000.0])
+def test_a_jump_that_stays_is_named_and_ends_the_reference(rate, size):
+    times = np.arange(30) / rate
+    angles = np.where(np.arange(30) < 20, 1.0, 1.0 + size)
+    rotor, samples = fed(MULTI, messages(times, angles))
+    assert rotor.rejected == {'implausible': 2}
+    assert [n for n, sample in enumerate(samples) if sample is None] == [20, 21]
+    stamp = 100.0 + times[20]
+    assert rotor.jumped == f"the rotor's encoder jumped by {size:g} rad at {stamp:.3f} s"
+    assert not rotor.referenced
+    assert rotor.segment == 1
+    rotor.home(0.0)
+    assert rotor.referenced
+
+
+@pytest.mark.parametrize('speed', [900.0, -5000.0])
+def test_a_motor_beyond_the_limits_is_named_once_and_not_rejected_for_ever(speed):
+    times = np.arange(500) / 1000
+    start = 1e-3 * (np.arange(50) % 2)  # the resolution is known then
+    rotor, _ = fed(MULTI, messages(times, np.concatenate([start, speed * times[:450]])))
+    assert rotor.rejected['implausible'] <= 4
+    assert f'{abs(speed):g} rad/s exceed max_rotor_speed' in rotor.beyond_limits
+    assert rotor.jumped == ''
+    assert rotor.referenced
+
+
+@given(st.integers(0, 2**32), st.lists(st.integers(1, 99), max_size=4), st.sampled_from(KINDS))
+def test_batches_are_judged_as_one_by_one(seed, bad, kind):
+    generator = np.random.default_rng(seed)
+    times, angles = disturbed(kind, *motion(500, 100, generator), 500, generator)
+    for n in bad:
+        angles[n % len(angles) :] += 1000.0 if n % 2 else 0.0
+        angles[n % len(angles)] -= 300.0
+    data = messages(times, angles)
+    single, samples = fed(MULTI, data)
+    batched = RotorInput(MULTI)
+    parts = [data[:1], data[1:30], data[30:31], data[31:]]
+    found = [batched.accept_batch(part, [0] * len(part)) for part in parts]
+    assert batched.rejected == single.rejected
+    assert vars(batched.plausibility) == vars(single.plausibility)
+    assert (batched.last, batched.segment) == (single.last, single.segment)
+    positions = [(t, a) for part in found for t, a in zip(part.turns, part.angle, strict=True)]
+    assert positions == [sample.position for sample in samples if sample]
