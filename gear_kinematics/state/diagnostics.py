@@ -24,6 +24,7 @@ _NO_INPUT = 'Check that the driver is running, and that its topic is remapped.'
 _NOT_REFERENCED = 'Move the output to its home angle, then call ~/home.'
 _WAS_UNREFERENCED = 'Do not use the outputs of that time.'
 _JUMPED = 'Check whether the drive restarted, and the encoder and its cable.'
+_VELOCITY = 'Let the driver send rad/s of the rotor, or no velocities.'
 _BEYOND = 'Raise the limit to what the motor can do, or check that positions are in rad.'
 _UNSTAMPED = 'Let the driver stamp its messages: the turns of a single-turn encoder rest on time.'
 _UNEXPLAINED = 'Check gear_ratio, the directions and zeros of both encoders, and the gear.'
@@ -153,6 +154,8 @@ class InputMonitor(DriverMonitor):
             errors.append(Fault(reference.disagreement, _DISAGREES))
         errors += self.graph.errors
         warnings = self._new_faults(rotor_input.rejected)
+        if rotor_input.velocity_is:
+            warnings.append(Fault(rotor_input.velocity_is, _VELOCITY))
         if rotor_input.beyond_limits:
             warnings.append(Fault(rotor_input.beyond_limits, _BEYOND))
         if rotor_input.parameters.single_turn and rotor_input.zero_stamps > self._zero_stamps:

@@ -77,7 +77,8 @@ class Plausibility:
         self._changed = 0  # ns, when a believed reading was the first with that position
         self._step, self._span = 0.0, 0  # rad and ns, between the last two of those
         self._former = 0  # ns, the span before
-        self._finest = _COARSEST  # rad, the smallest step of all
+        self.finest = _COARSEST
+        """rad, the smallest step of all."""
 
     def judge(self, position: float, stamp: int) -> Verdict:
         """Take the next reading, rad, with a stamp, ns, not before the last believed one."""
@@ -122,7 +123,7 @@ class Plausibility:
         former = np.concatenate([[self._step], steps[:-1]])
         spans = np.concatenate([[self._former, self._span], when - before])
         sizes = np.where(np.abs(steps) > _EQUAL, np.abs(steps), _COARSEST)
-        finest = np.minimum.accumulate(np.concatenate([[self._finest], sizes]))
+        finest = np.minimum.accumulate(np.concatenate([[self.finest], sizes]))
         last = np.concatenate([[self._stamp], stamps[:-1]])[changed]
         far = np.abs(steps - former) > FLOOR
         columns = (steps, when, before, last, former, spans[1:-1], spans[:-2], finest[:-1])
@@ -133,14 +134,14 @@ class Plausibility:
         if len(when):
             self._changed, self._step = int(when[-1]), float(steps[-1])
             self._former, self._span = spans[-2:].tolist()
-            self._finest = float(finest[-1])
+            self.finest = float(finest[-1])
         self._position, self._stamp = float(positions[-1]), int(stamps[-1])
         return True
 
     def _note(self, step: float, stamp: int) -> None:
         size = abs(step)
-        if _EQUAL < size < self._finest:
-            self._finest = size
+        if _EQUAL < size < self.finest:
+            self.finest = size
         if stamp == self._changed:
             self._step += step
         else:
@@ -153,7 +154,7 @@ class Plausibility:
             self._restart(position, stamp)
             return Verdict.BELIEVED, 0.0
         state = self._changed, self._stamp, self._step, self._span, self._former
-        low, high = self._reach(stamp, *state, self._finest)
+        low, high = self._reach(stamp, *state, self.finest)
         if self.period:
             middle = 0.5 * (low + high)
             step = middle + math.remainder(step - middle, self.period)
@@ -224,7 +225,7 @@ class Plausibility:
         spans = [(b - a) * 1e-9 for a, b in pairwise(times)]
         steps = [self._wrapped(b - a) for a, b in pairwise(positions)]
         stale = min(STALEST, max(spans))
-        noise = max(FLOOR, 2.0 * self._finest)
+        noise = max(FLOOR, 2.0 * self.finest)
         total = sum(spans)
         if total < 0.0:
             return Verdict.IMPLAUSIBLE
@@ -253,9 +254,9 @@ class Plausibility:
         else:
             self.jumps += 1
             self.jump = Jump(times[0], self._wrapped(first - before * elapsed))
-        finest = self._finest
+        finest = self.finest
         self._restart(position, stamp)
-        self._finest = finest
+        self.finest = finest
         if spans[-1]:
             self._step, self._span = steps[-1], times[-1] - times[-2]
         return Verdict.BELIEVED if continuous else Verdict.JUMP

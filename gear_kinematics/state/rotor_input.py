@@ -13,6 +13,7 @@ from gear_kinematics.kinematics import RotorPosition, RotorSample, RotorTurns, s
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.parameters import PARAMETERS, NodeParameters
 from gear_kinematics.state.plausibility import Plausibility, Verdict
+from gear_kinematics.state.velocity_field import VelocityField
 from gear_kinematics.wire.batches import Array, decode_joint_states
 from gear_kinematics.wire.cdr import LATEST, SECOND
 from gear_kinematics.wire.joint_reader import (
@@ -95,6 +96,8 @@ class RotorInput:
             longest_silence=_longest_silence(parameters),
         )
         """Follows the encoder."""
+        self.velocity_field = VelocityField(float(1 / parameters.gear.gear_ratio))
+        """Finds what the velocities are."""
         self.plausibility = Plausibility(*_limits(parameters))
         """Judges whether it can be believed."""
 
@@ -121,6 +124,7 @@ class RotorInput:
             self.turns.single_turn = parameters.single_turn
             self.turns.reset()
             self.plausibility.reset()
+            self.velocity_field = VelocityField(float(1 / parameters.gear.gear_ratio))
             self._reader = JointReader(parameters.rotor_joint)
             self.missing_joint = ''
         self._parameters = parameters
@@ -149,6 +153,14 @@ class RotorInput:
             return ''
         stamp = f'{jump.stamp / SECOND:.3f} s'
         return f"the rotor's encoder jumped by {jump.size:.4g} rad at {stamp}"
+
+    @property
+    def velocity_is(self) -> str:
+        """What the velocities seem to be; '' unless they contradict the positions."""
+        field = self.velocity_field
+        if not field.contradicts:
+            return ''
+        return f'the velocities contradict the positions: they seem to be {field.finding}'
 
     @property
     def beyond_limits(self) -> str:
@@ -261,13 +273,14 @@ class RotorInput:
         self, rows: Array, stamps: Array, values: Array, received: Array, rejected: Array
     ) -> RotorSamples:
         turns, angle = split_turns(values[:, 0])
+        velocity = self._compare_all(stamps, values)
         zero_turns, zero_angle = self.zero
         direction = self._parameters.rotor_direction
         samples = RotorSamples(
             stamps,
             direction * (turns - zero_turns) + 0.0,  # turns that are int have no -0.0
             direction * (angle - zero_angle),
-            direction * values[:, 1],
+            direction * velocity,
             direction * values[:, 2],
             rows,
             received,
@@ -281,6 +294,19 @@ class RotorInput:
             self.last = None
             self._take_row(int(stamps[-1]), values[-1].tolist())
         return samples
+
+    def _compare_all(self, stamps: Array, values: Array) -> Array:
+        """The velocities, NaN where they are found to contradict the positions."""
+        field, velocity, start = self.velocity_field, values[:, 1].copy(), 0
+        finest = self.plausibility.finest
+        while (row := int(np.searchsorted(stamps, field.due))) < len(stamps):
+            if field.contradicts:
+                velocity[start:row] = np.nan
+            start = row
+            field.note(int(stamps[row]), *values[row, :2].tolist(), finest)
+        if field.contradicts:
+            velocity[start:] = np.nan
+        return velocity
 
     def _one_by_one(
         self, rows: Array, stamps: Array, values: Array, received: Array, rejected: Array
@@ -315,13 +341,18 @@ class RotorInput:
     def _take(
         self, stamp: int, position: float, velocity: float | None, effort: float | None
     ) -> RotorSample:
+        given = velocity
         if self.last is not None and stamp <= self.last.stamp:
             self._check_order(stamp, self.last.stamp)
         if (verdict := self.plausibility.judge(position, stamp)) is not Verdict.BELIEVED:
             if verdict is Verdict.IMPLAUSIBLE:
                 raise RejectedInputError(IMPLAUSIBLE)
             self.turns.lose()
+        if self.velocity_field.contradicts:
+            velocity = None
         self.turns.update(position, stamp, velocity)
+        if stamp >= self.velocity_field.due:
+            velocity = self._compare(stamp, position, given)
         direction = self._parameters.rotor_direction
         self.last = RotorSample(
             stamp,
@@ -330,6 +361,14 @@ class RotorInput:
             None if effort is None else direction * effort,
         )
         return self.last
+
+    def _compare(self, stamp: int, position: float, velocity: float | None) -> float | None:
+        """Compare a velocity with the positions; returns it unless they contradict it."""
+        if self._parameters.single_turn and self.turns.position:
+            position = TURN * self.turns.position.turns + self.turns.position.angle
+        given = math.nan if velocity is None else velocity
+        self.velocity_field.note(stamp, position, given, self.plausibility.finest)
+        return None if self.velocity_field.contradicts else velocity
 
     def _check_order(self, stamp: int, last: int) -> None:
         if stamp == last:
@@ -340,6 +379,7 @@ class RotorInput:
             self.resets += 1
             self.turns.reset()
             self.plausibility.reset()
+            self.velocity_field.restart()
 
 
 def _longest_silence(parameters: NodeParameters) -> float:

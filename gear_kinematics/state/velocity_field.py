@@ -1,0 +1,97 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Compares the velocities in a driver's messages with the slope of its positions."""
+
+import math
+from enum import StrEnum
+from itertools import pairwise
+
+SPAN = 100_000_000
+"""ns, between the readings that are compared; four of them decide."""
+_READINGS = 4
+_STEADY = 0.1  # of the speed: what it may vary by in a comparison
+_AGREES = 0.25  # of the slope: delays of filters and the rest of the acceleration
+_ALIKE = 0.1  # of a factor that has a name
+_TRAVEL = 3.0  # rad, at least, in a comparison
+_STEPS = 20  # of the encoder, at least, in a comparison
+
+
+class Finding(StrEnum):
+    """What a field with velocities has."""
+
+    UNDECIDED = ''
+    RIGHT = 'rad/s'
+    ZERO = '0'
+    RPM = 'rpm'
+    TURNS = 'turns/s'
+    DEGREES = 'deg/s'
+    OUTPUT = 'the velocity of the output'
+    OPPOSITE = 'the velocity with the opposite sign'
+    UNKNOWN = 'an unknown quantity'
+
+
+class VelocityField:
+    """Follows positions and velocities of the rotor, and finds what the velocities are."""
+
+    def __init__(self, output_factor: float) -> None:
+        """Take the velocity of the output for one of the rotor, which times a factor gives it."""
+        self._factors = {
+            Finding.RPM: 30.0 / math.pi,
+            Finding.TURNS: 0.5 / math.pi,
+            Finding.DEGREES: 180.0 / math.pi,
+            Finding.OUTPUT: output_factor,
+            Finding.OPPOSITE: -1.0,
+        }
+        self.finding = Finding.UNDECIDED
+        self.factor = math.nan
+        """The velocities in the messages as a multiple of the slope of the positions."""
+        self._candidate = Finding.UNDECIDED
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget the readings, but not what was found."""
+        self.due = 0
+        """ns, the stamp from which on the next reading is wanted."""
+        self._readings: list[tuple[int, float, float]] = []
+
+    @property
+    def contradicts(self) -> bool:
+        """Whether the velocities contradict the positions."""
+        return self.finding not in {Finding.UNDECIDED, Finding.RIGHT}
+
+    def note(self, stamp: int, position: float, velocity: float, finest: float) -> None:
+        """Take a reading: ns, rad, rad/s or NaN, and the smallest step of the encoder, rad."""
+        self.due = stamp + SPAN
+        if math.isnan(velocity) or (self._readings and stamp > self._readings[-1][0] + 2 * SPAN):
+            self._readings.clear()
+        if not math.isnan(velocity):
+            self._readings.append((stamp, position, velocity))
+        if len(self._readings) < _READINGS:
+            return
+        (first, start, _), *_, (last, end, _) = self._readings
+        slope = (end - start) / (last - first) * 1e9
+        slopes = [(q - p) / (t - s) * 1e9 for (s, p, _), (t, q, _) in pairwise(self._readings)]
+        speeds = [reading[2] for reading in self._readings]
+        mean = sum(speeds) / len(speeds)
+        del self._readings[0]
+        if abs(end - start) < max(_TRAVEL, _STEPS * finest):
+            return
+        if any(abs(each - slope) > _STEADY * abs(slope) for each in slopes):
+            return
+        if any(abs(each - mean) > _STEADY * abs(mean) for each in speeds):
+            return
+        self._decide(mean / slope)
+
+    def _decide(self, factor: float) -> None:
+        """Change the finding if two comparisons in a row find the same."""
+        found = Finding.UNKNOWN
+        if factor == 0.0:
+            found = Finding.ZERO
+        elif abs(factor - 1.0) <= _AGREES:
+            found = Finding.RIGHT
+        else:
+            for name, known in self._factors.items():
+                if abs(factor - known) <= _ALIKE * abs(known):
+                    found = name
+        if found is self._candidate:
+            self.finding, self.factor = found, factor
+        self._candidate = found

@@ -1,0 +1,61 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Velocities that contradict the positions, as drivers send them."""
+
+import math
+
+import numpy as np
+import pytest
+from live import SECOND, rotor_bytes
+
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.rotor_input import RotorInput
+
+SETTINGS = NodeParameters.load()
+
+
+def messages(factor, speed=100.0, rate=500, scatter=0.0) -> list[bytes]:
+    generator = np.random.default_rng(1)
+    times = np.arange(rate) / rate
+    return [
+        rotor_bytes(
+            SECOND + round(t * SECOND),
+            position=[speed * t],
+            velocity=[factor * speed + scatter * generator.normal()],
+        )
+        for t in times
+    ]
+
+
+@pytest.mark.parametrize(
+    ('factor', 'meaning'),
+    [
+        (0.0, '0'),
+        (30.0 / math.pi, 'rpm'),
+        (0.5 / math.pi, 'turns/s'),
+        (180.0 / math.pi, 'deg/s'),
+        (-1.0 / 19.0, 'the velocity of the output'),
+        (-1.0, 'the velocity with the opposite sign'),
+        (3.0, 'an unknown quantity'),
+    ],
+)
+def test_wrong_velocities_are_named_and_not_passed_on(factor, meaning):
+    rotor, batched, batch = RotorInput(SETTINGS), RotorInput(SETTINGS), messages(factor)
+    samples = [rotor.accept(data, int) for data in batch]
+    assert rotor.velocity_is.endswith(f': they seem to be {meaning}')
+    assert rotor.velocity_field.factor == pytest.approx(factor, abs=1e-6)
+    assert samples[-1].velocity is None
+    parts = [batched.accept_batch(part, [0] * len(part)) for part in (batch[:77], batch[77:])]
+    velocity = np.concatenate([part.velocity for part in parts])
+    expected = [math.nan if each.velocity is None else each.velocity for each in samples]
+    np.testing.assert_array_equal(velocity, expected)
+    assert batched.velocity_is == rotor.velocity_is
+
+
+@pytest.mark.parametrize(
+    ('factor', 'speed', 'scatter'), [(1.0, 100.0, 3.0), (1.0, -100.0, 0.0), (0.0, 0.5, 0.0)]
+)
+def test_right_velocities_and_slow_motion_raise_no_alarm(factor, speed, scatter):
+    rotor = RotorInput(SETTINGS)
+    samples = [rotor.accept(data, int) for data in messages(factor, speed, scatter=scatter)]
+    assert rotor.velocity_is == ''
+    assert all(sample.velocity is not None for sample in samples)
