@@ -12,7 +12,7 @@ import numpy as np
 from gear_kinematics.kinematics import RotorPosition, RotorSample, RotorTurns, split_turns
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.parameters import PARAMETERS, NodeParameters
-from gear_kinematics.state.plausibility import Plausibility, Verdict
+from gear_kinematics.state.plausibility import BELIEVED, Plausibility, Verdict
 from gear_kinematics.state.velocity_field import VelocityField
 from gear_kinematics.wire.batches import Array, decode_joint_states
 from gear_kinematics.wire.cdr import LATEST, SECOND
@@ -303,7 +303,8 @@ class RotorInput:
             if field.contradicts:
                 velocity[start:row] = np.nan
             start = row
-            field.note(int(stamps[row]), *values[row, :2].tolist(), finest)
+            position, given = float(values[row, 0]), float(values[row, 1])
+            field.note(int(stamps[row]), position, given, finest)
         if field.contradicts:
             velocity[start:] = np.nan
         return velocity
@@ -344,7 +345,7 @@ class RotorInput:
         given = velocity
         if self.last is not None and stamp <= self.last.stamp:
             self._check_order(stamp, self.last.stamp)
-        if (verdict := self.plausibility.judge(position, stamp)) is not Verdict.BELIEVED:
+        if (verdict := self.plausibility.judge(position, stamp)) is not BELIEVED:
             if verdict is Verdict.IMPLAUSIBLE:
                 raise RejectedInputError(IMPLAUSIBLE)
             self.turns.lose()

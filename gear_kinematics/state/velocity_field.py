@@ -44,6 +44,8 @@ class VelocityField:
         self.finding = Finding.UNDECIDED
         self.factor = math.nan
         """The velocities in the messages as a multiple of the slope of the positions."""
+        self.contradicts = False
+        """Whether the velocities contradict the positions."""
         self._candidate = Finding.UNDECIDED
         self.restart()
 
@@ -52,11 +54,6 @@ class VelocityField:
         self.due = 0
         """ns, the stamp from which on the next reading is wanted."""
         self._readings: list[tuple[int, float, float]] = []
-
-    @property
-    def contradicts(self) -> bool:
-        """Whether the velocities contradict the positions."""
-        return self.finding not in {Finding.UNDECIDED, Finding.RIGHT}
 
     def note(self, stamp: int, position: float, velocity: float, finest: float) -> None:
         """Take a reading: ns, rad, rad/s or NaN, and the smallest step of the encoder, rad."""
@@ -94,4 +91,5 @@ class VelocityField:
                     found = name
         if found is self._candidate:
             self.finding, self.factor = found, factor
+            self.contradicts = found is not Finding.RIGHT
         self._candidate = found

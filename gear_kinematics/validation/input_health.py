@@ -78,6 +78,7 @@ class InputHealth:
             longest_gaps=tuple(self._longest),
             referenced=not (rotor_input.turns.unknown_gaps or rotor_input.jumped),
             jumped=rotor_input.jumped,
+            velocity_is=rotor_input.velocity_is,
             beyond_limits=rotor_input.beyond_limits,
         )
 
@@ -105,6 +106,7 @@ _SENTENCES = {
     'jumps': '{rotor.jumps} gaps of {rotor.topic} could hide a turn of the rotor: after each, '
     'its turns are taken from the outputs',
     'jumped': '{rotor.jumped}: what follows has another zero',
+    'velocity_is': '{rotor.velocity_is}',
     'beyond_limits': '{rotor.beyond_limits}',
     'overspeed': '{rotor.overspeed} steps of {rotor.topic} are faster than max_rotor_speed, at '
     'most {rotor.max_speed:.4g} rad/s',

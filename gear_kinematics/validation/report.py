@@ -140,6 +140,8 @@ class InputReport:
     """Gaps in which the rotor could have turned half a turn or more unseen."""
     jumped: str = ''
     """The last jump of the encoder; '' if there was none."""
+    velocity_is: str = ''
+    """What velocities that contradict the positions seem to be; '' if none do."""
     beyond_limits: str = ''
     """What speed and acceleration exceed the limits over several samples; '' if none do."""
     overspeed: int = 0

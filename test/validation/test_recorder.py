@@ -51,6 +51,12 @@ def traffic() -> dict[int, list[Message]]:
     return {rate: at(*source) for rate, source in RATES.items()}
 
 
+@pytest.fixture(scope='module')
+def config() -> NodeParameters:
+    """Without limits, as the rotor is taken back in no time where a recording is repeated."""
+    return replace(NodeParameters.load(), max_rotor_speed=1e6, max_rotor_acceleration=1e9)
+
+
 def shifted(message: Message, nanoseconds: int) -> Message:
     """The same message at another time."""
     stamp = stamp_of(message) + nanoseconds
