@@ -147,17 +147,17 @@ class InputMonitor(DriverMonitor):
         if overdue:
             errors.append(Fault(f'no input for {age:.1f} s', _NO_INPUT))
         if not rotor_input.referenced:
-            if rotor_input.jumped:
-                errors.append(Fault(rotor_input.jumped, _JUMPED))
+            if rotor_input.plausibility.jumped:
+                errors.append(Fault(rotor_input.plausibility.jumped, _JUMPED))
             errors.append(_not_referenced(reference))
         elif reference and reference.disagreement:
             errors.append(Fault(reference.disagreement, _DISAGREES))
         errors += self.graph.errors
         warnings = self._new_faults(rotor_input.rejected)
-        if rotor_input.velocity_is:
-            warnings.append(Fault(rotor_input.velocity_is, _VELOCITY))
-        if rotor_input.beyond_limits:
-            warnings.append(Fault(rotor_input.beyond_limits, _BEYOND))
+        if rotor_input.velocity_field.meaning:
+            warnings.append(Fault(rotor_input.velocity_field.meaning, _VELOCITY))
+        if rotor_input.plausibility.beyond_limits:
+            warnings.append(Fault(rotor_input.plausibility.beyond_limits, _BEYOND))
         if rotor_input.parameters.single_turn and rotor_input.zero_stamps > self._zero_stamps:
             unstamped = rotor_input.zero_stamps - self._zero_stamps
             warnings.append(Fault(f'zero stamps {unstamped}', _UNSTAMPED))

@@ -83,6 +83,24 @@ class Plausibility:
         self.finest = _COARSEST
         """rad, the smallest step of all."""
 
+    @property
+    def jumped(self) -> str:
+        """The last jump of the encoder, with its size and time; '' if there was none."""
+        if not (jump := self.jump):
+            return ''
+        stamp = f'{jump.stamp / 1e9:.3f} s'
+        return f"the rotor's encoder jumped by {jump.size:.4g} rad at {stamp}"
+
+    @property
+    def beyond_limits(self) -> str:
+        """How the rotor has moved beyond its limits, and which these are; '' if it has not."""
+        found = []
+        if self.seen_speed:
+            found.append(f'{self.seen_speed:.4g} rad/s exceed max_rotor_speed')
+        if self.seen_acceleration:
+            found.append(f'{self.seen_acceleration:.4g} rad/s² exceed max_rotor_acceleration')
+        return ', '.join(found)
+
     def judge(self, position: float, stamp: int) -> Verdict:
         """Take the next reading, rad, with a stamp, ns, not before the last believed one."""
         step = position - self._position

@@ -95,11 +95,8 @@ class RotorInput:
             max_acceleration=parameters.max_rotor_acceleration,
             longest_silence=_longest_silence(parameters),
         )
-        """Follows the encoder."""
         self.velocity_field = VelocityField(float(1 / parameters.gear.gear_ratio))
-        """Finds what the velocities are."""
         self.plausibility = Plausibility(*_limits(parameters))
-        """Judges whether it can be believed."""
 
     @property
     def parameters(self) -> NodeParameters:
@@ -145,32 +142,6 @@ class RotorInput:
         causes = ', '.join(f'{cause} {count}' for cause, count in self.rejected.items())
         hint = f': {self.missing_joint}; name it with --joint' if self.missing_joint else ''
         return causes + hint
-
-    @property
-    def jumped(self) -> str:
-        """The last jump of the encoder, with its size and time; '' if there was none."""
-        if not (jump := self.plausibility.jump):
-            return ''
-        stamp = f'{jump.stamp / SECOND:.3f} s'
-        return f"the rotor's encoder jumped by {jump.size:.4g} rad at {stamp}"
-
-    @property
-    def velocity_is(self) -> str:
-        """What the velocities seem to be; '' unless they contradict the positions."""
-        field = self.velocity_field
-        if not field.contradicts:
-            return ''
-        return f'the velocities contradict the positions: they seem to be {field.finding}'
-
-    @property
-    def beyond_limits(self) -> str:
-        """How the rotor has moved beyond its limits, and which these are; '' if it has not."""
-        judge, found = self.plausibility, []
-        if judge.seen_speed:
-            found.append(f'{judge.seen_speed:.4g} rad/s exceed max_rotor_speed')
-        if judge.seen_acceleration:
-            found.append(f'{judge.seen_acceleration:.4g} rad/s² exceed max_rotor_acceleration')
-        return ', '.join(found)
 
     @property
     def segment(self) -> int:
@@ -255,14 +226,10 @@ class RotorInput:
         clock = np.asarray(received, np.int64)[rows]
         rejected = states.stamp[~(usable | states.malformed)]
         parameters = self._parameters
-        if (
-            parameters.single_turn
-            or parameters.absolute
-            or not self._in_order(stamps)
-            or not self.plausibility.believes(stamps, values[:, 0])
-        ):
-            return self._one_by_one(rows, stamps, values, clock, rejected)
-        return self._all_at_once(rows, stamps, values, clock, rejected)
+        simple = not (parameters.single_turn or parameters.absolute) and self._in_order(stamps)
+        if simple and self.plausibility.believes(stamps, values[:, 0]):
+            return self._all_at_once(rows, stamps, values, clock, rejected)
+        return self._one_by_one(rows, stamps, values, clock, rejected)
 
     def _in_order(self, stamps: Array) -> bool:
         in_order = np.all(stamps != 0) and np.all(np.diff(stamps) >= 0)
@@ -273,7 +240,7 @@ class RotorInput:
         self, rows: Array, stamps: Array, values: Array, received: Array, rejected: Array
     ) -> RotorSamples:
         turns, angle = split_turns(values[:, 0])
-        velocity = self._compare_all(stamps, values)
+        velocity = self.velocity_field.believed(stamps, values, self.plausibility.finest)
         zero_turns, zero_angle = self.zero
         direction = self._parameters.rotor_direction
         samples = RotorSamples(
@@ -294,20 +261,6 @@ class RotorInput:
             self.last = None
             self._take_row(int(stamps[-1]), values[-1].tolist())
         return samples
-
-    def _compare_all(self, stamps: Array, values: Array) -> Array:
-        """The velocities, NaN where they are found to contradict the positions."""
-        field, velocity, start = self.velocity_field, values[:, 1].copy(), 0
-        finest = self.plausibility.finest
-        while (row := int(np.searchsorted(stamps, field.due))) < len(stamps):
-            if field.contradicts:
-                velocity[start:row] = np.nan
-            start = row
-            position, given = float(values[row, 0]), float(values[row, 1])
-            field.note(int(stamps[row]), position, given, finest)
-        if field.contradicts:
-            velocity[start:] = np.nan
-        return velocity
 
     def _one_by_one(
         self, rows: Array, stamps: Array, values: Array, received: Array, rejected: Array
@@ -365,7 +318,7 @@ class RotorInput:
 
     def _compare(self, stamp: int, position: float, velocity: float | None) -> float | None:
         """Compare a velocity with the positions; returns it unless they contradict it."""
-        if self._parameters.single_turn and self.turns.position:
+        if self.turns.position and self.turns.single_turn:
             position = TURN * self.turns.position.turns + self.turns.position.angle
         given = math.nan if velocity is None else velocity
         self.velocity_field.note(stamp, position, given, self.plausibility.finest)

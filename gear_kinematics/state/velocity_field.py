@@ -5,6 +5,10 @@ import math
 from enum import StrEnum
 from itertools import pairwise
 
+import numpy as np
+
+from gear_kinematics.wire.batches import Array
+
 SPAN = 100_000_000
 """ns, between the readings that are compared; four of them decide."""
 _READINGS = 4
@@ -54,6 +58,34 @@ class VelocityField:
         self.due = 0
         """ns, the stamp from which on the next reading is wanted."""
         self._readings: list[tuple[int, float, float]] = []
+
+    @property
+    def meaning(self) -> str:
+        """What the velocities seem to be; '' unless they contradict the positions."""
+        if not self.contradicts:
+            return ''
+        return f'the velocities contradict the positions: they seem to be {self.finding}'
+
+    def believed(self, stamps: Array, values: Array, finest: float) -> Array:
+        """Note readings in order of time.
+
+        Args:
+            stamps: (n,), ns.
+            values: (n, 3): position, velocity and effort.
+            finest: rad, the smallest step of the encoder.
+
+        Returns:
+            The velocities, (n,); NaN where they are found to contradict the positions.
+        """
+        velocity, start = values[:, 1].copy(), 0
+        while (row := int(np.searchsorted(stamps, self.due))) < len(stamps):
+            if self.contradicts:
+                velocity[start:row] = np.nan
+            start = row
+            self.note(int(stamps[row]), float(values[row, 0]), float(values[row, 1]), finest)
+        if self.contradicts:
+            velocity[start:] = np.nan
+        return velocity
 
     def note(self, stamp: int, position: float, velocity: float, finest: float) -> None:
         """Take a reading: ns, rad, rad/s or NaN, and the smallest step of the encoder, rad."""

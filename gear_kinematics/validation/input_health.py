@@ -76,10 +76,10 @@ class InputHealth:
             overspeed=self._overspeed,
             max_speed=self._fastest,
             longest_gaps=tuple(self._longest),
-            referenced=not (rotor_input.turns.unknown_gaps or rotor_input.jumped),
-            jumped=rotor_input.jumped,
-            velocity_is=rotor_input.velocity_is,
-            beyond_limits=rotor_input.beyond_limits,
+            referenced=not (rotor_input.turns.unknown_gaps or rotor_input.plausibility.jumped),
+            jumped=rotor_input.plausibility.jumped,
+            velocity_is=rotor_input.velocity_field.meaning,
+            beyond_limits=rotor_input.plausibility.beyond_limits,
         )
 
 

@@ -77,6 +77,11 @@ def fed(settings, batch) -> tuple[RotorInput, list]:
     return rotor, samples
 
 
+def complaints(rotor) -> tuple:
+    judge = rotor.plausibility
+    return rotor.rejected, judge.jumped, judge.beyond_limits
+
+
 @pytest.mark.parametrize('kind', KINDS)
 @pytest.mark.parametrize('rate', RATES)
 def test_no_motion_within_the_limits_is_doubted(kind, rate):
@@ -84,9 +89,9 @@ def test_no_motion_within_the_limits_is_doubted(kind, rate):
         generator = np.random.default_rng([seed, rate])
         times, angles = disturbed(kind, *motion(rate, 300, generator), rate, generator)
         rotor, _ = fed(MULTI, messages(times, angles))
-        assert (rotor.rejected, rotor.jumped, rotor.beyond_limits) == ({}, '', '')
+        assert complaints(rotor) == ({}, '', '')
         rotor, _ = fed(SINGLE, messages(times, np.mod(angles, TURN)))
-        assert (rotor.rejected, rotor.jumped, rotor.beyond_limits) == ({}, '', '')
+        assert complaints(rotor) == ({}, '', '')
 
 
 @given(
@@ -137,7 +142,8 @@ def test_a_jump_that_stays_is_named_and_ends_the_reference(rate, size):
     assert rotor.rejected == {'implausible': 2}
     assert [n for n, sample in enumerate(samples) if sample is None] == [20, 21]
     stamp = 100.0 + times[20]
-    assert rotor.jumped == f"the rotor's encoder jumped by {size:g} rad at {stamp:.3f} s"
+    jumped = f"the rotor's encoder jumped by {size:g} rad at {stamp:.3f} s"
+    assert rotor.plausibility.jumped == jumped
     assert not rotor.referenced
     assert rotor.segment == 1
     rotor.home(0.0)
@@ -150,8 +156,8 @@ def test_a_motor_beyond_the_limits_is_named_once_and_not_rejected_for_ever(speed
     start = 1e-3 * (np.arange(50) % 2)  # the resolution is known then
     rotor, _ = fed(MULTI, messages(times, np.concatenate([start, speed * times[:450]])))
     assert rotor.rejected['implausible'] <= 4
-    assert f'{abs(speed):g} rad/s exceed max_rotor_speed' in rotor.beyond_limits
-    assert rotor.jumped == ''
+    assert f'{abs(speed):g} rad/s exceed max_rotor_speed' in rotor.plausibility.beyond_limits
+    assert rotor.plausibility.jumped == ''
     assert rotor.referenced
 
 

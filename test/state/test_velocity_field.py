@@ -41,14 +41,14 @@ def messages(factor, speed=100.0, rate=500, scatter=0.0) -> list[bytes]:
 def test_wrong_velocities_are_named_and_not_passed_on(factor, meaning):
     rotor, batched, batch = RotorInput(SETTINGS), RotorInput(SETTINGS), messages(factor)
     samples = [rotor.accept(data, int) for data in batch]
-    assert rotor.velocity_is.endswith(f': they seem to be {meaning}')
+    assert rotor.velocity_field.meaning.endswith(f': they seem to be {meaning}')
     assert rotor.velocity_field.factor == pytest.approx(factor, abs=1e-6)
     assert samples[-1].velocity is None
     parts = [batched.accept_batch(part, [0] * len(part)) for part in (batch[:77], batch[77:])]
     velocity = np.concatenate([part.velocity for part in parts])
     expected = [math.nan if each.velocity is None else each.velocity for each in samples]
     np.testing.assert_array_equal(velocity, expected)
-    assert batched.velocity_is == rotor.velocity_is
+    assert batched.velocity_field.meaning == rotor.velocity_field.meaning
 
 
 @pytest.mark.parametrize(
@@ -57,5 +57,5 @@ def test_wrong_velocities_are_named_and_not_passed_on(factor, meaning):
 def test_right_velocities_and_slow_motion_raise_no_alarm(factor, speed, scatter):
     rotor = RotorInput(SETTINGS)
     samples = [rotor.accept(data, int) for data in messages(factor, speed, scatter=scatter)]
-    assert rotor.velocity_is == ''
+    assert rotor.velocity_field.meaning == ''
     assert all(sample.velocity is not None for sample in samples)
