@@ -275,11 +275,6 @@ class NodeParameters:
         return self.rotor_encoder == 'single_turn'
 
     @property
-    def withholds(self) -> bool:
-        """Whether there is no output while the turns of the rotor are not known."""
-        return self.unreferenced_outputs == 'withhold'
-
-    @property
     def absolute(self) -> bool:
         """Whether the encoder at the output finds the turns of the rotor."""
         return self.output_encoder_reference == 'absolute'

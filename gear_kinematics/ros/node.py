@@ -198,7 +198,7 @@ class GearStatePublisher(PublishingNode):
             self._publish_referenced()
         if not referenced:
             self._monitor.unreferenced += 1
-        published = referenced or not self._settings.withholds
+        published = referenced or self._settings.unreferenced_outputs == 'publish'
         if published:
             self._outputs.send(self._messages.encode(sample, self._subscribed_states))
         correction = None

@@ -264,7 +264,7 @@ class Validator:
         Outputs begin somewhere in a segment, which a recording of the rotor does not show.
         """
         withheld = np.zeros(len(samples), bool)
-        if self._parameters.withholds:
+        if self._parameters.unreferenced_outputs == 'withhold':
             given = self.output.answered(samples)
             for segment in np.unique(samples['segment']).tolist():
                 rows = np.flatnonzero(samples['segment'] == segment)
