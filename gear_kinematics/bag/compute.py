@@ -18,7 +18,8 @@ from gear_kinematics.correction.corrector import Correction, Corrector
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.loads import Loads
 from gear_kinematics.state.output_encoder import OutputEncoder
-from gear_kinematics.state.rotor_input import RotorInput, RotorSamples
+from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.rotor_samples import RotorSamples
 from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.state.turn_reference import TurnReference
 from gear_kinematics.wire.joint_reader import RejectedInputError

@@ -10,6 +10,7 @@ from gear_kinematics.bag.errors import BagError, DamagedBagError
 from gear_kinematics.bag.reading import Bag, ReportProgress
 from gear_kinematics.bag.roles import find_rotor_topic, joints_on
 from gear_kinematics.wire.cdr import SECOND, header_stamp
+from gear_kinematics.wire.joint_reader import JOINT_MISSING, JointReader, RejectedInputError
 from gear_kinematics.wire.topics import (
     BODY_POSES,
     JOINT_STATE,
@@ -48,6 +49,8 @@ class TopicSummary(NamedTuple):
     """Periods longer than five median ones."""
     longest_gap: float
     """s."""
+    of_others: int = 0
+    """Messages without the rotor's joint, which rate and gaps leave out."""
 
 
 class Summary(NamedTuple):
@@ -81,12 +84,18 @@ def summarise(
         if rotor_topic:
             raise
         unclear = str(error).removeprefix(f'{bag.path}: ')
+    others, reader = 0, None
+    if rotor and (named := joint or next(iter(joints_on(bag, [rotor]).get(rotor, ())), '')):
+        reader = JointReader(named)
     times = {topic: list[int]() for topic in bag.topics}
     ends: list[int] = []
     stamped = {topic for topic, kind in bag.topics.items() if kind in _WITH_STAMPS}
     try:
         for batch in bag.batches(bag.topics, progress):
             for topic, received, data in batch:
+                if topic == rotor and not _has_joint(reader, data):
+                    others += 1
+                    continue
                 stamp = header_stamp(data) if topic in stamped else 0
                 times[topic].append(received if stamp in _UNSET else stamp)
             ends = [*ends[:1], batch[0][1], batch[-1][1]]
@@ -100,6 +109,7 @@ def summarise(
             'rotor' if name == rotor else _PARTS.get(base_name(name), ''),
             joints.get(name, []),
             times[name],
+            others if name == rotor else 0,
         )
         for name, kind in bag.topics.items()
     ]
@@ -109,7 +119,19 @@ def summarise(
     return Summary(duration, tuple(topics), unclear, damage)
 
 
-def _summary(name: str, kind: str, part: str, joints: list[str], times: list[int]) -> TopicSummary:
+def _has_joint(reader: JointReader | None, data: bytes) -> bool:
+    """Whether a message has the joint of a reader, or there is none to look for."""
+    try:
+        if reader:
+            reader.read(data)
+    except RejectedInputError as rejection:
+        return str(rejection) != JOINT_MISSING
+    return True
+
+
+def _summary(
+    name: str, kind: str, part: str, joints: list[str], times: list[int], others: int
+) -> TopicSummary:
     periods = np.diff(np.array(times, np.int64)).astype(np.float64) / SECOND
     periods = periods[periods > 0.0]  # the clock may be set back
     rate, gaps, longest = None, 0, 0.0
@@ -117,4 +139,6 @@ def _summary(name: str, kind: str, part: str, joints: list[str], times: list[int
         median = float(np.median(periods))
         long = periods[periods > _GAP * median]
         rate, gaps, longest = 1.0 / median, len(long), float(long.max(initial=0.0))
-    return TopicSummary(name, kind, part, len(times), tuple(joints), rate, gaps, longest)
+    return TopicSummary(
+        name, kind, part, len(times) + others, tuple(joints), rate, gaps, longest, others
+    )

@@ -88,7 +88,7 @@ def _print_summary(out: Path, result: ComputeResult) -> None:
     rotor = result.rotor_input
     rejected = ', '.join(f'{cause} {number}' for cause, number in rotor.rejected.items())
     print(
-        f'{out}: {result.computed} outputs for {rotor.received} rotor states'
+        f'{out}: {result.computed} outputs for {rotor.received - rotor.of_others} rotor states'
         + (f' (rejected: {rejected})' if rejected else '')
         + f', {result.copied} other messages copied'
     )

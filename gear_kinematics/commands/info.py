@@ -66,6 +66,8 @@ def _parts(summary: Summary, *, verbose: bool) -> Iterator[str]:
         joints = described(topic.joints, most=_JOINTS)
         kind = f' {topic.type},' if verbose else ''
         yield f'{topic.part} {topic.name}{joints}{kind} {often}'.lstrip()
+        if topic.of_others:
+            yield f'{topic.of_others} messages on {topic.name} are of other joints'
     if summary.unclear:
         yield summary.unclear
     if others := len(summary.topics) - len(shown):

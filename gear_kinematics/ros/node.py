@@ -39,7 +39,7 @@ from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.state.turn_reference import TurnReference
 from gear_kinematics.wire import topics
-from gear_kinematics.wire.joint_reader import RejectedInputError
+from gear_kinematics.wire.joint_reader import JOINT_MISSING, RejectedInputError
 
 _MESSAGE_TYPES = {
     topics.JOINT_STATE: JointState,
@@ -247,6 +247,9 @@ class GearStatePublisher(PublishingNode):
         return int(self.get_clock().now().nanoseconds)
 
     def _warn_of(self, topic: str, rejection: RejectedInputError) -> None:
+        others = topic == topics.ROTOR_STATE and JOINT_MISSING not in self._input.rejected
+        if str(rejection) == JOINT_MISSING and others:
+            return  # a message of another driver on a shared topic
         if time.monotonic() >= self._next_warning:
             detail = f': {rejection.detail}' if rejection.detail else ''
             self._warn(f'{topic} rejected: {rejection}{detail}')

@@ -126,6 +126,7 @@ class InputMonitor(DriverMonitor):
     _received: int = 0
     _unsent: int = 0
     _unreferenced: int = 0
+    _of_others: int = 0
     _zero_stamps: int = 0
 
     def report(
@@ -137,6 +138,7 @@ class InputMonitor(DriverMonitor):
         newly_unsent = self.unsent - self._unsent
         newly_unreferenced = self.unreferenced - self._unreferenced
         self._unreferenced = self.unreferenced
+        shared, self._of_others = rotor_input.of_others > self._of_others, rotor_input.of_others
         self._reported, self._received = now, rotor_input.received
         self._unsent = self.unsent
         rate = received / elapsed if elapsed > 0.0 else 0.0
@@ -168,13 +170,14 @@ class InputMonitor(DriverMonitor):
         if newly_unreferenced and rotor_input.referenced:
             text = f'was not referenced for {newly_unreferenced} inputs'
             warnings.append(Fault(text, _WAS_UNREFERENCED))
-        if self.drivers > 1:
+        if self.drivers > 1 and not shared:  # with drivers of other joints
             warnings.append(Fault(f'{self.drivers} drivers', 'Stop all drivers but one.'))
         warnings += self.graph.warnings
         values = {
             'rate (Hz)': f'{rate:.1f}',
             'received': str(rotor_input.received),
             'published': str(self.published),
+            'of others': str(rotor_input.of_others),
             **_by_cause('rejected', rotor_input.rejected),
             'lost messages': str(self.lost),
             'not sent': str(self.unsent),

@@ -20,7 +20,7 @@ from gear_kinematics.kinematics.motion import BranchPosition, closed_form
 from gear_kinematics.kinematics.preload import Pair
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.diagnostics import OK, WARN, Report
-from gear_kinematics.state.rotor_input import RotorSamples
+from gear_kinematics.state.rotor_samples import RotorSamples
 from gear_kinematics.wire.batches import Array, encode
 from gear_kinematics.wire.cdr import SECOND, JointStateTemplate, Template, WrenchesTemplate
 from gear_kinematics.wire.topics import BRANCH_LOADS, JOINT_LOADS, LOAD_TOPICS

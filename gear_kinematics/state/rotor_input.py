@@ -5,7 +5,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any, NamedTuple, Self
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from gear_kinematics.kinematics import RotorPosition, RotorSample, RotorTurns, s
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.parameters import PARAMETERS, NodeParameters
 from gear_kinematics.state.plausibility import BELIEVED, Plausibility, Verdict
+from gear_kinematics.state.rotor_samples import RotorSamples
 from gear_kinematics.state.velocity_field import VelocityField
 from gear_kinematics.wire.batches import Array, decode_joint_states
 from gear_kinematics.wire.cdr import LATEST, SECOND
@@ -32,39 +33,8 @@ from gear_kinematics.wire.joint_reader import (
     RejectedInputError,
 )
 
-
-class RotorSamples(NamedTuple):
-    """Valid rotor states as arrays (n,), and the stamps of rejected ones."""
-
-    stamp: Array
-    """ns."""
-    turns: Array
-    angle: Array
-    """rad: the rotor angle φ2 is 2π turns + angle."""
-    velocity: Array
-    """rad/s; NaN if the message has none."""
-    effort: Array
-    """N·m; NaN if the message has none."""
-    row: Array
-    """Index of the message."""
-    received: Array
-    """Time of reception, ns."""
-    segment: Array
-    """Number that rises where the rotor's turn count restarts, is uncertain or is referenced."""
-    rejected: Array
-    """(m,), ns: the stamps of rejected messages that have one."""
-
-    @classmethod
-    def of(cls, rows: Sequence[tuple[Any, ...]], rejected: Array) -> Self:
-        """Make them of samples one by one; None becomes NaN."""
-        table = np.array(rows, _COLUMNS)
-        return cls._make([*(table[name].copy() for name in table.dtype.names or ()), rejected])
-
-
 _ENCODERS = tuple(n for n in PARAMETERS if n.startswith(('rotor_', 'output_encoder_')))
 """The parameters that turns from an absolute encoder at the output rest on."""
-_COLUMNS = np.dtype('i8, f8, f8, f8, f8, i8, i8, i8')
-"""Of `RotorSamples`, without the last."""
 
 
 class RotorInput:
@@ -73,6 +43,8 @@ class RotorInput:
     def __init__(self, parameters: NodeParameters) -> None:
         self.received = 0
         self.rejected: Counter[str] = Counter()
+        self.of_others = 0
+        """Messages without the joint beside others with it, as of a shared /joint_states."""
         self.duplicates = 0
         self.zero_stamps = 0
         self.unnormalised_stamps = 0
@@ -123,7 +95,7 @@ class RotorInput:
             self.plausibility.reset()
             self.velocity_field = VelocityField(float(1 / parameters.gear.gear_ratio))
             self._reader = JointReader(parameters.rotor_joint)
-            self.missing_joint = ''
+            self.missing_joint, self.last = '', None
         self._parameters = parameters
 
     @property
@@ -134,7 +106,7 @@ class RotorInput:
     @property
     def mostly_rejected(self) -> bool:
         """Whether more messages were rejected than accepted."""
-        return 2 * self.rejected.total() > self.received
+        return 2 * self.rejected.total() > self.received - self.of_others
 
     @property
     def why_rejected(self) -> str:
@@ -165,8 +137,9 @@ class RotorInput:
             return self._take(stamp or self._clock(now), position, velocity, effort)
         except RejectedInputError as rejection:
             self.rejected[str(rejection)] += 1
-            if not self.missing_joint:
-                self.missing_joint = rejection.detail
+            self.missing_joint = self.missing_joint or rejection.detail
+            if self.last:
+                self._leave_others()
             raise
 
     def home(self, rotor_angle: float) -> float:
@@ -219,17 +192,24 @@ class RotorInput:
                 self.rejected[cause] += count
             usable &= ~faulty
         self.missing_joint = self.missing_joint or states.missing_joint
+        if self.last or usable.any():
+            self._leave_others()
         self.unnormalised_stamps += int(np.count_nonzero(states.unnormalised & usable))
         rows = np.flatnonzero(usable)
         stamps, values = states.stamp[rows], states.values[rows]
         values[~(np.abs(values) <= GREATEST)] = np.nan
         clock = np.asarray(received, np.int64)[rows]
-        rejected = states.stamp[~(usable | states.malformed)]
+        rejected = states.stamp[states.joint_found & ~usable]
         parameters = self._parameters
         simple = not (parameters.single_turn or parameters.absolute) and self._in_order(stamps)
         if simple and self.plausibility.believes(stamps, values[:, 0]):
             return self._all_at_once(rows, stamps, values, clock, rejected)
         return self._one_by_one(rows, stamps, values, clock, rejected)
+
+    def _leave_others(self) -> None:
+        """Count messages without the joint, which is in others, as no fault."""
+        self.of_others += self.rejected.pop(JOINT_MISSING, 0)
+        self.missing_joint = ''
 
     def _in_order(self, stamps: Array) -> bool:
         in_order = np.all(stamps != 0) and np.all(np.diff(stamps) >= 0)
@@ -296,7 +276,9 @@ class RotorInput:
         self, stamp: int, position: float, velocity: float | None, effort: float | None
     ) -> RotorSample:
         given = velocity
-        if self.last is not None and stamp <= self.last.stamp:
+        if self.last is None:
+            self._leave_others()
+        elif stamp <= self.last.stamp:
             self._check_order(stamp, self.last.stamp)
         if (verdict := self.plausibility.judge(position, stamp)) is not BELIEVED:
             if verdict is Verdict.IMPLAUSIBLE:

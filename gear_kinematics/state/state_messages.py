@@ -15,7 +15,7 @@ from gear_kinematics.kinematics.motion import BranchPosition, closed_form
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.shape.urdf import joint_names
-from gear_kinematics.state.rotor_input import RotorSamples
+from gear_kinematics.state.rotor_samples import RotorSamples
 from gear_kinematics.wire.batches import Array, encode
 from gear_kinematics.wire.cdr import JointStateTemplate, PoseArrayTemplate
 from gear_kinematics.wire.topics import (

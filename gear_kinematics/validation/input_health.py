@@ -62,7 +62,8 @@ class InputHealth:
             topic=topic,
             joint=rotor_input.parameters.rotor_joint,
             messages=rotor_input.received,
-            valid=rotor_input.received - rotor_input.rejected.total(),
+            of_others=rotor_input.of_others,
+            valid=rotor_input.received - rotor_input.of_others - rotor_input.rejected.total(),
             rejected=dict(rotor_input.rejected),
             duplicates=rotor_input.duplicates,
             zero_stamps=rotor_input.zero_stamps,
@@ -86,7 +87,7 @@ class InputHealth:
 def _mostly_rejected(rotor: InputReport) -> Iterator[Finding]:
     """Fail a bag of which the node rejects most inputs."""
     rejected = sum(rotor.rejected.values())
-    if 2 * rejected > rotor.messages:
+    if 2 * rejected > rotor.messages - rotor.of_others:
         causes = ', '.join(f'{cause} {count}' for cause, count in rotor.rejected.items())
         yield Finding(
             f'{rejected} of {rotor.messages} messages of {rotor.topic} were rejected '
@@ -110,6 +111,7 @@ _SENTENCES = {
     'beyond_limits': '{rotor.beyond_limits}',
     'overspeed': '{rotor.overspeed} steps of {rotor.topic} are faster than max_rotor_speed, at '
     'most {rotor.max_speed:.4g} rad/s',
+    'of_others': '{rotor.of_others} messages of {rotor.topic} are of other joints: no fault',
     'zero_stamps': '{rotor.zero_stamps} messages of {rotor.topic} have no stamp: the node stamped '
     'their outputs itself, and they cannot be matched',
 }

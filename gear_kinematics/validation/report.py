@@ -124,6 +124,8 @@ class InputReport:
     valid: int = 0
     rejected: dict[str, int] = field(default_factory=dict)
     """Numbers of rejected messages by cause."""
+    of_others: int = 0
+    """Messages without the joint beside others with it, which are neither valid nor rejected."""
     duplicates: int = 0
     zero_stamps: int = 0
     unnormalised_stamps: int = 0

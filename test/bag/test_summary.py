@@ -67,3 +67,11 @@ def test_what_is_before_the_damage_is_summarised(tmp_path):
     found = summary(path)
     assert 0 < found.topics[0].messages < 3000
     assert found.damage.startswith(str(path))
+
+
+def test_rate_and_gaps_are_those_of_the_joint_on_a_shared_topic(shared_path):
+    found = summary(shared_path('data/faults/grippers_share_joint_states.mcap'), None, 'm1')
+    (topic,) = found.topics
+    # As the file is described: 200 Hz for 1.5 s, and two grippers beside it.
+    assert (topic.part, topic.messages, topic.of_others) == ('rotor', 900, 600)
+    assert (topic.rate, topic.gaps) == (pytest.approx(200.0, rel=1e-3), 0)

@@ -21,6 +21,7 @@ from shipped_bags import CONFIGS, JOINT_STATE, POSE_ARRAY
 
 from gear_kinematics.bag import Bag
 from gear_kinematics.bag.writing import BagWriter
+from gear_kinematics.commands.cli import main
 from gear_kinematics.parameters import NodeParameters
 
 SERVO, SINGLE_TURN = BAGS / 'servo_point_to_point', BAGS / 'single_turn_encoder'
@@ -175,3 +176,11 @@ def test_what_cannot_be_computed_gets_one_line_and_code_2(name, out, cause, bags
     (tmp_path / 'there').mkdir()
     assert cause in refusal('compute', bags / name, tmp_path / out)
     assert list(tmp_path.rglob('*')) == [tmp_path / 'there']
+
+
+def test_other_joints_on_the_topic_are_no_fault(shared_path, tmp_path, capsys):
+    bag, out = shared_path('data/faults/grippers_share_joint_states.mcap'), tmp_path / 'out'
+    assert main(['compute', str(bag), str(out), '--joint', 'm1']) == 0
+    assert '300 outputs for 300 rotor states, 0 other' in capsys.readouterr().out
+    assert main(['validate', str(out)]) == 0
+    assert '600 messages of /joint_states are of other joints' in capsys.readouterr().out

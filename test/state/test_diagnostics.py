@@ -67,11 +67,11 @@ def test_levels_are_those_of_diagnostic_status():
 
 
 def test_rejects_and_losses_are_a_warning_in_the_next_report_alone(bench):
-    bench.feed(START + 0.5, good(), BAD, NO_JOINT, BAD)
+    bench.feed(START + 0.5, good(), BAD, b'', BAD)
     bench.monitor.lost += 3
     bench.monitor.unsent += 2
     report = bench.report(START + 1.0)
-    rejected = 'rejected: position not finite 2, joint missing 1'
+    rejected = 'rejected: position not finite 2, not a JointState 1'
     assert (report.level, report.message) == (WARN, f'{rejected}; lost 3; not sent 2')
     bench.feed(START + 1.5, good(2))
     report = bench.report(START + 2.0)
@@ -94,6 +94,16 @@ def test_more_than_one_driver_is_a_warning(bench, drivers, message):
     bench.monitor.drivers = drivers
     report = bench.report(START + 1.0)
     assert (report.message, report.values['drivers']) == (message, str(drivers))
+
+
+def test_drivers_of_other_joints_are_no_fault(bench):
+    bench.feed(START + 0.5, NO_JOINT, good(1), NO_JOINT, good(2))
+    bench.monitor.drivers = 3
+    report = bench.report(START + 1.0)
+    assert (report.level, report.message) == (OK, 'ok')
+    assert report.values['of others'] == '2'
+    bench.feed(START + 1.5, good(3))  # the others are silent, and one of them sends the joint
+    assert bench.report(START + 2.0).message == '3 drivers'
 
 
 def test_silence_beyond_the_timeout_is_an_error(bench):
@@ -155,7 +165,7 @@ def test_every_fault_is_documented_with_its_level():
     page = (ROOT / 'docs/diagnostics.md').read_text('utf-8')
     documented = re.findall(r'^\| `([^`]+)` \| (WARN|ERROR) \|', page, re.MULTILINE)
     bench = Bench(replace(SETTINGS, rotor_encoder='single_turn'))
-    bench.feed(START + 0.8, good(), *12 * [NO_JOINT])
+    bench.feed(START + 0.8, *12 * [NO_JOINT])
     bench.monitor.drivers, bench.monitor.lost, bench.monitor.unsent = 2, 3, 1
     bench.input.zero_stamps = 12
     bench.input.velocity_field.contradicts = True
@@ -192,6 +202,7 @@ def test_values_count_what_happened(bench):
         'rejected: position not finite': '1',
         'rejected: position too large': '1',
         'lost messages': '0',
+        'of others': '0',
         'not sent': '0',
         'not referenced': '0',
         'drivers': '0',

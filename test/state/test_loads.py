@@ -17,7 +17,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.diagnostics import OK, WARN
 from gear_kinematics.state.loads import Acceleration, Loads, PreloadMonitor
-from gear_kinematics.state.rotor_input import RotorSamples
+from gear_kinematics.state.rotor_samples import RotorSamples
 
 DEFAULT = NodeParameters.load()
 BRACED = replace(DEFAULT, preload=3.0, branch_stiffness=(2000.0, 1000.0), shaft_stiffness=5000.0)

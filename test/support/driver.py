@@ -19,8 +19,8 @@ _ENDLESS = Duration(seconds=-1)
 
 
 def rotor_position(stamp: int) -> float:
-    """Where the rotor is at a stamp, rad: elsewhere a millisecond later, never far from before."""
-    return 0.03 * (stamp // MILLISECOND % 101 - 50)
+    """Where the rotor is at a stamp, rad: to and fro, elsewhere a millisecond later."""
+    return 0.02 * (abs(stamp // MILLISECOND % 202 - 101) - 50)
 
 
 def drive(topic: str, start: int, go, acknowledged) -> None:
