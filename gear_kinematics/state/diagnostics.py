@@ -168,7 +168,7 @@ class InputMonitor(DriverMonitor):
             advice = 'Look for a listener that is stuck.'
             warnings.append(Fault(f'not sent {newly_unsent}', advice))
         if newly_unreferenced and rotor_input.referenced:
-            text = f'was not referenced for {newly_unreferenced} inputs'
+            text = f'turns unknown for {newly_unreferenced} inputs'
             warnings.append(Fault(text, _WAS_UNREFERENCED))
         if self.drivers > 1 and not shared:  # with drivers of other joints
             warnings.append(Fault(f'{self.drivers} drivers', 'Stop all drivers but one.'))

@@ -136,7 +136,7 @@ def test_time_without_a_reference_is_told_once_with_a_count(bench):
     bench.feed(START + 0.5, good())
     bench.monitor.unreferenced += 77
     report = bench.report(START + 1.0)
-    assert (report.level, report.message) == (WARN, 'was not referenced for 77 inputs')
+    assert (report.level, report.message) == (WARN, 'turns unknown for 77 inputs')
     assert bench.report(START + 1.5).message == 'ok'
 
 
@@ -173,7 +173,7 @@ def test_every_fault_is_documented_with_its_level():
     bench.input.plausibility.jump = Jump(1_700_000_000_500_000_000, 100.0)
     report = bench.report(START + 4.0)
     assert report.message.split('; ') == [
-        message for message, _ in documented if not re.search('QoS|/|was not referenced', message)
+        message for message, _ in documented if not re.search('QoS|/|turns unknown', message)
     ]
     assert len(re.findall(r'\.(?: |$)', report.values['advice'])) == 9
 
