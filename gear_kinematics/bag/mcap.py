@@ -3,13 +3,14 @@
 
 import os
 import struct
+from bisect import bisect_left
 from collections.abc import Collection, Iterator
 from operator import itemgetter
 from pathlib import Path
 from zlib import crc32
 
 from gear_kinematics.bag.codecs import CODECS, Limits
-from gear_kinematics.bag.storage import Message, Storage, Topic, check_encoding
+from gear_kinematics.bag.storage import Message, Storage, Topic, UnsortedError, check_encoding
 
 MCAP_MAGIC = b'\x89MCAP0\r\n'
 _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _DATA_END = 2, 3, 4, 5, 6, 15
@@ -17,18 +18,20 @@ _DATA = frozenset({_SCHEMA, _CHANNEL, _MESSAGE, _CHUNK})
 _NO_SCHEMA = ('', '', '')  # type, syntax, definition
 _RECORD = struct.Struct('<BQ')  # opcode and length of the body
 _MESSAGE_START = struct.Struct('<BQH4xQ')  # and channel and time
+_CHUNK_START = struct.Struct('<BQQQQ')  # and times of its first and last message, and its size
 _PADDING = bytes(_MESSAGE_START.size)  # behind the last record, which may be shorter
-_CUT_OFF = 'cut off within a record'
+_CUT_OFF = 'cut off within a record; mcap recover makes a sound file of what is before'
 _LATEST = 2**63 - 1  # ns
 _PIECE, _PIECE_SIZE = 4096, 2**22  # messages outside of chunks that are read at once, bytes
+_MAX_OPEN = 2**28  # bytes of chunks that overlap in time
 _RECEIVED = itemgetter(1)
 
 
 class Mcap(Storage):
-    """An mcap file, read from front to back: https://mcap.dev/spec.
+    """An mcap file: https://mcap.dev/spec.
 
-    The index only gives the topics without reading everything, so a file without an index is read
-    like any other.
+    It is read from front to back, unless its chunks overlap in time. The index only gives the
+    topics without reading everything, so a file without an index is read like any other.
     """
 
     def __init__(self, path: Path, limits: Limits) -> None:
@@ -59,17 +62,33 @@ class Mcap(Storage):
             except Exception:
                 if not self._channels:
                     raise
+        if self._channels and all(topic.encoding == 'ros1' for topic in self._channels.values()):
+            raise ValueError('it holds messages of ROS 1; give the .bag that it was made from')
         return list(self._channels.values())
 
     def pieces(self, topics: Collection[str]) -> Iterator[list[Message]]:
-        """Read messages, sorted if they are out of order by at most a chunk."""
-        # Recorders with several threads or several open chunks write messages out of order by up
-        # to a chunk: a chunk is held back to sort them.
-        held: list[Message] = []
+        """Read messages, sorted by the times of their chunks, or by up to a piece without chunks.
+
+        Raises:
+            UnsortedError: if they are further out of order.
+        """
         self._read_summary()
+        chunks = self._overlapping_chunks()
+        if chunks:
+            self.topics()  # a channel may be described in a chunk that is read later
         self._wanted = topics
         for channel, topic in self._channels.items():
             self._want(channel, topic)
+        last = 0
+        for piece in filter(None, self._merged(chunks) if chunks else self._nearly_sorted()):
+            if piece[0][1] < last:
+                raise UnsortedError
+            last = piece[-1][1]
+            yield piece
+
+    def _nearly_sorted(self) -> Iterator[list[Message]]:
+        """Yield the messages from front to back; a piece is held back to sort them."""
+        held: list[Message] = []
         try:
             for piece in filter(None, self._unsorted()):
                 piece.sort(key=_RECEIVED)
@@ -80,16 +99,65 @@ class Mcap(Storage):
                     yield held
                 held = piece
         except Exception:
-            if held:
-                yield held
-            raise
-        if held:
             yield held
+            raise
+        yield held
 
-    def _unsorted(self) -> Iterator[list[Message]]:
+    def _overlapping_chunks(self) -> list[tuple[int, int, int, int]]:
+        """Return the time of the first message, position, length and size of each whole chunk.
+
+        There are none if none overlap in time, or if there are messages outside of chunks.
+        """
+        chunks, latest, overlap = list[tuple[int, int, int, int]](), 0, False
+        offset = self._stream.seek(len(MCAP_MAGIC))
+        while len(header := self._stream.read(_CHUNK_START.size)) == _CHUNK_START.size:
+            opcode, length, start, end, size = _CHUNK_START.unpack(header)
+            after = offset + _RECORD.size + length
+            if opcode in {0, _FOOTER, _DATA_END} or after > self._size:
+                break
+            if opcode == _MESSAGE:
+                return []
+            if opcode == _CHUNK:
+                chunks.append((start, offset, length, size))
+                overlap |= bool(end) and start < latest  # the times of an empty chunk are 0
+                latest = max(latest, end)
+            offset = self._stream.seek(after)
+        return chunks if overlap else []
+
+    def _merged(self, chunks: list[tuple[int, int, int, int]]) -> Iterator[list[Message]]:
+        """Merge chunks by time; of the same time, the message that is first in the file."""
+        opened, sizes = dict[int, list[Message]](), dict[int, int]()
+        chunks.sort()
+        whole = max(offset + _RECORD.size + length for _, offset, length, _ in chunks)
+        starts = [start for start, *_ in chunks]
+        for (_, offset, length, size), until in zip(
+            chunks, [*starts[1:], _LATEST + 1], strict=True
+        ):
+            sizes[offset] = size
+            if sum(map(sizes.__getitem__, opened), size) > _MAX_OPEN:
+                raise UnsortedError
+            if length > self.limits.max_record:
+                raise ValueError(f'a record of {length} bytes is too large')
+            self._offset = offset
+            self._stream.seek(offset + _RECORD.size)
+            opened[offset] = piece = list[Message]()
+            self._walk(self._chunk_records(self._stream.read(length)), piece)
+            piece.sort(key=_RECEIVED)
+            ready: list[Message] = []
+            for position in sorted(opened):
+                messages = opened[position]
+                before = bisect_left(messages, until, key=_RECEIVED)
+                ready += messages[:before]
+                del messages[:before]
+            opened = {position: messages for position, messages in opened.items() if messages}
+            ready.sort(key=_RECEIVED)
+            yield ready
+        yield from self._unsorted(whole)  # finds how the file ends
+
+    def _unsorted(self, start: int = len(MCAP_MAGIC)) -> Iterator[list[Message]]:
         """Yield the messages as they are in the file; on damage, those before it, then raise."""
         stream, piece, size = self._stream, list[Message](), 0
-        self._offset = stream.seek(len(MCAP_MAGIC))
+        self._offset = stream.seek(start)
         try:
             while header := stream.read(_RECORD.size):  # an unfinished file has no footer
                 if len(header) < _RECORD.size:

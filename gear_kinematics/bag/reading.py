@@ -15,7 +15,14 @@ from gear_kinematics.bag.errors import BagError, DamagedBagError, bag_errors, ca
 from gear_kinematics.bag.finding import find_contents
 from gear_kinematics.bag.mcap import MCAP_MAGIC, Mcap
 from gear_kinematics.bag.sqlite import Sqlite
-from gear_kinematics.bag.storage import Message, Storage, Topic, in_batches, missing_topic
+from gear_kinematics.bag.storage import (
+    Message,
+    Storage,
+    Topic,
+    UnsortedError,
+    in_batches,
+    missing_topic,
+)
 
 ReportProgress = Callable[[int, int | None], None]
 """Called repeatedly with the number of messages done, and the total if known."""
@@ -233,7 +240,8 @@ def _opened(file: Path, limits: Limits, read: int = 0) -> Iterator[Storage]:
     except Exception as error:
         where, here = (storage.position(), storage.read) if storage else ('', 0)
         text = f'{file}: {where}{broken or cause(error)}'
-        raise (DamagedBagError if read + here else BagError)(text) from error
+        damaged = read + here and not isinstance(error, UnsortedError)
+        raise (DamagedBagError if damaged else BagError)(text) from error
 
 
 def _start(source: IO[bytes], size: int) -> bytes:

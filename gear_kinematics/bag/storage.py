@@ -50,6 +50,17 @@ class Topic(NamedTuple):
         return topic
 
 
+class UnsortedError(ValueError):
+    """Messages of an mcap that are too far out of order to be sorted while they are read."""
+
+    def __init__(self) -> None:
+        """Say how to sort them."""
+        super().__init__(
+            'messages are too far out of order in time; sort them: mcap recover IN.mcap -o '
+            'INDEXED.mcap, then mcap sort INDEXED.mcap -o SORTED.mcap'
+        )
+
+
 class Storage:
     """A file of a bag."""
 

@@ -26,13 +26,16 @@ from made_bags import (
     single_file,
     split,
 )
-from mcap.writer import CompressionType
+from mcap.writer import CompressionType, Writer
 from shipped_bags import BAGS, TYPES
 
 from gear_kinematics.bag import Bag, BagError, DamagedBagError, Message
 from gear_kinematics.bag.codecs import Limits
 
 CORPUS = BAGS.parent / 'test' / 'corpus' / 'bags'
+
+
+CUT_OFF = 'cut off within a record; mcap recover makes a sound file of what is before'
 
 
 def read_up_to_damage(path: Path) -> tuple[list[Message], BagError | None]:
@@ -89,7 +92,7 @@ def test_a_cut_mcap_gives_every_whole_record_before_the_cut(recorded, tmp_path, 
         assert (error is None) == (size in boundaries)
         clean += error is None
         if messages and error:
-            assert str(error) == f'{path}: at byte {whole}: cut off within a record'
+            assert str(error) == f'{path}: at byte {whole}: {CUT_OFF}'
     assert clean > 0
 
 
@@ -264,6 +267,17 @@ def without_index(path: Path, messages: list[Message]) -> Path:
     return edited(path, data.index(b'index_pos=') + len(b'index_pos='), bytes(8))
 
 
+def mcap_of_ros1(path: Path, messages: list[Message]) -> Path:
+    with path.open('wb') as stream:
+        writer = Writer(stream)
+        writer.start(profile='ros1')
+        schema = writer.register_schema('sensor_msgs/JointState', 'ros1msg', b'')
+        channel = writer.register_channel('/rotor_state', 'ros1', schema)
+        writer.add_message(channel, messages[0][1], messages[0][2], messages[0][1])
+        writer.finish()
+    return path
+
+
 NO_CDR = (('/json', 'T', 'json', '', b''),)
 NOT_A_BAG = 'not a bag of a known kind'
 UNREADABLE = {
@@ -325,6 +339,7 @@ UNREADABLE = {
         r'b: it expands to more than 3\d{7} bytes',
         partial(content, data=zstandard.compress(bytes(2**27))),
     ),
+    'mcap of ROS 1': ('it holds messages of ROS 1; give the .bag', mcap_of_ros1),
     'no CDR': ("messages on /json are 'json', not CDR", partial(mcap_file, others=NO_CDR)),
 }
 

@@ -25,11 +25,12 @@ from made_bags import (
     split,
     split_without_metadata,
 )
+from mcap.reader import make_reader
 from mcap.writer import CompressionType, IndexType
 from rosbags import rosbag1, rosbag2
 from shipped_bags import TYPES, write_bag
 
-from gear_kinematics.bag import Bag
+from gear_kinematics.bag import Bag, BagError
 
 OTHERS = (
     ('/a', 'my_msgs/msg/Odd', 'cdr', 'ros2msg', b'!! no [definition\xff'),
@@ -155,6 +156,38 @@ def test_messages_of_an_mcap_are_in_the_order_of_reception(recorded, tmp_path, c
     overlap = any(end > start for (_, end), (start, _) in pairwise(times))
     assert overlap == (chunk_size == 20_000)
     assert read(path) == recorded
+
+
+@pytest.mark.parametrize('options', [{}, NO_INDEX, {'finish': False}])
+def test_chunks_that_overlap_are_merged_in_the_order_of_reception(recorded, tmp_path, options):
+    by_topic = sorted(recorded, key=lambda message: message[0])
+    assert by_topic != recorded
+    path = mcap_file(tmp_path / 'b.mcap', by_topic, **options)
+    assert read(path) == sorted(by_topic, key=lambda message: message[1])
+
+
+def test_chunks_of_a_rewritten_file_are_merged_as_mcap_does(shared_path):
+    path = shared_path('data/faults/chunks_not_in_log_order.mcap')
+    with path.open('rb') as stream:
+        expected = [
+            (channel.topic, message.log_time, message.data)
+            for _, channel, message in make_reader(stream).iter_messages()
+        ]
+    assert [received for _, received, _ in expected] == sorted(m[1] for m in expected)
+    assert read(path, ['/rotor_state', '/output_encoder']) == expected
+
+
+@pytest.mark.parametrize('use_chunking', [True, False])
+def test_messages_that_are_too_far_out_of_order_are_refused(
+    recorded, tmp_path, monkeypatch, use_chunking
+):
+    monkeypatch.setattr('gear_kinematics.bag.mcap._MAX_OPEN', 50_000)
+    monkeypatch.setattr('gear_kinematics.bag.mcap._PIECE', 100)
+    by_topic = sorted(recorded, key=lambda message: message[0])
+    path = mcap_file(tmp_path / 'b.mcap', by_topic, use_chunking=use_chunking)
+    with pytest.raises(BagError, match=r'mcap sort INDEXED\.mcap') as raised:
+        read(path)
+    assert type(raised.value) is BagError
 
 
 @pytest.mark.slow
