@@ -13,10 +13,11 @@ from gear_kinematics.bag.storage import Topic
 from gear_kinematics.parameters.yaml_file import Loader, load_yaml, read_yaml
 
 BAG_NAME = re.compile(r'\.(mcap|db3|bag)(\.(zstd|zst|lz4))?$')
-_STORAGE_NAME = re.compile(r'(_\d+)?\.(mcap|db3)(\.(zstd|zst|lz4))?$')
-
-_NUMBER = re.compile(r'_\d+(?=\.(mcap|db3))')
-"""Number of a file of a split recording."""
+_STORAGE_NAME = re.compile(
+    r'(?:(?P<counter>\d+)_(?P<prefix>.+)_\d{4}(_\d\d){2}-\d\d(_\d\d){2}|(?P<name>.+?)(_(?P<number>\d+))?)'
+    r'\.(?P<kind>mcap|db3)(\.(zstd|zst|lz4))?$'
+)
+"""Name of a file of a recording; since Lyrical, of a split one, a counter and the date."""
 _METADATA = 'metadata.yaml'
 _TABLES = {'.csv', '.tsv'}
 
@@ -81,11 +82,21 @@ def _bags_below(path: Path, faults: dict[Path, str]) -> Iterator[Path]:
         faults[path] = f'{path}: {cause(error)}'
         return
     files = [child for child in children if not child.is_dir()]
-    if len(files) > 1 and len({_NUMBER.sub('', file.name) for file in files}) == 1:
+    if len(files) > 1 and _in_order(files):
         yield path  # a split recording whose recorder was killed
         children = [child for child in children if child.is_dir()]
     for child in children:
         yield from _bags_below(child, faults)
+
+
+def _in_order(files: list[Path]) -> list[Path]:
+    """Return the files of a split recording in their order; empty if they are several ones."""
+    found = [_STORAGE_NAME.match(file.name) for file in files]
+    names = [match and (match['prefix'], match['name'], match['kind']) for match in found]
+    numbers = [match and int(match['counter'] or match['number'] or -1) for match in found]
+    if None in names or len(set(names)) > 1 or len(set(numbers)) < len(files):
+        return []
+    return [file for _, file in sorted(zip(numbers, files, strict=True))]
 
 
 def _leads_astray(path: Path) -> bool:
@@ -124,12 +135,12 @@ def find_contents(path: Path) -> Contents:
         with bag_errors(metadata):
             return _listed_contents(path, read_yaml(metadata, BagError, _Loader))
     # A recorder that is killed writes no metadata.
-    files = [file for file in path.iterdir() if _STORAGE_NAME.search(file.name)]
+    files = [file for file in path.iterdir() if _STORAGE_NAME.match(file.name)]
     if not files:
         raise ValueError('the folder holds neither metadata.yaml nor a .mcap or .db3 file')
-    if len({_STORAGE_NAME.sub('', file.name) for file in files}) > 1:
+    if not (ordered := _in_order(files)):
         raise ValueError('several recordings without a metadata.yaml; name one of its files')
-    return Contents(sorted(files, key=lambda file: (len(file.name), file.name)), {}, None)
+    return Contents(ordered, {}, None)
 
 
 class _Loader(Loader):
@@ -160,6 +171,12 @@ def _listed_contents(path: Path, metadata: Any) -> Contents:
     names = information['relative_file_paths']
     if not names:
         raise ValueError('no files are listed')
+    starts = {
+        file['path']: file['starting_time']['nanoseconds_since_epoch']
+        for file in information.get('files') or ()
+    }
+    if starts.keys() >= set(names):  # tools list files by name: _10 before _2
+        names = sorted(names, key=starts.__getitem__)
     files = [_listed_file(path, name) for name in names]
     if len(set(files)) < len(files):
         raise ValueError('a file is listed more than once')

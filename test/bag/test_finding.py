@@ -4,9 +4,10 @@
 from pathlib import Path
 
 import pytest
+from made_bags import change_metadata, read, split, split_without_metadata
 from shipped_bags import BAGS
 
-from gear_kinematics.bag import Bag
+from gear_kinematics.bag import Bag, BagError
 from gear_kinematics.bag.finding import find_bags
 
 
@@ -100,3 +101,35 @@ def test_metadata_stands_for_its_folder():
     assert find_bags([str(folder / 'metadata.yaml')]) == find_bags([str(folder)])
     with Bag(folder / 'metadata.yaml') as given, Bag(folder) as expected:
         assert given.topics == expected.topics
+
+
+def test_files_that_are_listed_by_name_are_read_in_the_order_of_their_starts(recorded, tmp_path):
+    path = split(tmp_path / 'bag', recorded, 'sqlite3')
+    names = [f'bag_{number}.db3' for number in range(11)]
+    starts = [recorded[number * 82][1] for number in range(11)]  # split: 900 messages in 11 files
+    files = [
+        {'path': name, 'starting_time': {'nanoseconds_since_epoch': start}}
+        for name, start in zip(names, starts, strict=True)
+    ]
+    assert sorted(names) != names
+    change_metadata(path, relative_file_paths=sorted(names), files=files[::-1])
+    assert read(path) == recorded
+
+
+@pytest.mark.parametrize('prefix', ['rosbag2', '3_runs'])
+def test_split_files_with_dates_are_in_the_order_of_their_counters(recorded, tmp_path, prefix):
+    """As Lyrical names them; the clock was set back in between."""
+    path = split_without_metadata(tmp_path / 'bag', recorded, 'mcap')
+    for number in range(11):
+        date = f'2026_05_23-10_{30 - number}_00'
+        (path / f'bag_{number}.mcap').rename(path / f'{number}_{prefix}_{date}.mcap')
+    assert find_bags([str(tmp_path)]).bags == [path]
+    assert read(path) == recorded
+
+
+def test_files_of_two_storages_are_two_recordings(recorded, tmp_path):
+    path = split_without_metadata(tmp_path / 'bag', recorded, 'mcap')
+    (path / 'bag_3.mcap').rename(path / 'bag_3.db3')
+    with pytest.raises(BagError, match='several recordings'):
+        read(path)
+    assert len(find_bags([str(tmp_path)]).bags) == 11
