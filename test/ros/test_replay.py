@@ -387,8 +387,12 @@ def test_environment_is_as_before_after_a_validation_of_a_live_node(monkeypatch)
     assert dict(os.environ) == before
 
 
-def test_node_that_does_not_end_is_killed(monkeypatch):
+def test_node_that_does_not_end_is_killed(monkeypatch, tmp_path):
+    program = tmp_path / 'python'  # in place of the interpreter: it ignores SIGTERM
+    program.write_text("#!/bin/sh\ntrap '' TERM\necho ready\nexec sleep 600\n")
+    program.chmod(0o755)
+    monkeypatch.setattr('sys.executable', str(program))
     monkeypatch.setattr(live, '_STOP_TIMEOUT', 0.2)
-    with live.running_node(['--ros-args', '-r', '__ns:=/stopped']) as process:
-        process.send_signal(signal.SIGSTOP)
+    with live.running_node(stdout=subprocess.PIPE) as process, process.stdout as told:
+        assert told.readline() == 'ready\n'
     assert process.returncode == -signal.SIGKILL
