@@ -148,16 +148,16 @@ def test_output_angle_is_the_same_after_the_node_was_killed(tmp_path):
         first.peer.answer(rotor_state(first.peer.stamp(), position=[TURNED]))
         answer = first.peer.home()
         assert f'kept in {tmp_path}/home.yaml' in answer.message, answer.message
-        angles.append(first.peer.answer(rotor_state(first.peer.stamp(), position=[3.3]))[0])
+        angles.append(first.peer.answer(rotor_state(first.peer.stamp(), position=[-20.3]))[0])
         first.process.kill()
         first.process.wait()
         first.process.returncode = 0  # that is no failure here
     with live_node(tmp_path, *arguments, namespace=first.peer.namespace) as second:
         second.peer.connect()
-        angles.append(second.peer.answer(rotor_state(second.peer.stamp(), position=[3.3]))[0])
+        angles.append(second.peer.answer(rotor_state(second.peer.stamp(), position=[-20.3]))[0])
         assert 'restored from' in second.text()
-    # By hand: φ5 = -(3.3 + 20.394)/19.
-    assert [angle.position[0] for angle in angles] == pytest.approx(2 * [-23.694 / 19.0])
+    # By hand: φ5 = -(-20.3 + 20.394)/19.
+    assert [angle.position[0] for angle in angles] == pytest.approx(2 * [-0.094 / 19.0])
     (tmp_path / 'home.yaml').write_text('rotor_zero: 1.0')
     with running_node(['--ros-args', *arguments], stderr=-1) as process:
         _, error = process.communicate(timeout=60.0)
