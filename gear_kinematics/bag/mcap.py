@@ -10,7 +10,7 @@ from pathlib import Path
 from zlib import crc32
 
 from gear_kinematics.bag.codecs import CODECS, Limits
-from gear_kinematics.bag.storage import Message, Storage, Topic, UnsortedError, check_encoding
+from gear_kinematics.bag.storage import Message, Storage, Topic, UnsortedError
 
 MCAP_MAGIC = b'\x89MCAP0\r\n'
 _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _DATA_END = 2, 3, 4, 5, 6, 15
@@ -237,7 +237,7 @@ class Mcap(Storage):
 
     def _want(self, channel: int, topic: Topic) -> None:
         if topic.name in self._wanted:
-            check_encoding(topic)
+            self.check_encoding(topic)
             self._wanted_channels[channel] = topic.name
 
     def _read_summary(self) -> None:

@@ -61,6 +61,8 @@ class Bag:
 
     topics: Mapping[str, str]
     """Types by name, such as sensor_msgs/msg/JointState."""
+    not_cdr: frozenset[str]
+    """Topics whose messages are of another encoding."""
     message_count: int | None
     """On all topics; None without metadata.yaml."""
 
@@ -79,6 +81,7 @@ class Bag:
             self._describe()
         known = self._listed or self._described
         self.topics = MappingProxyType({topic.name: topic.type for topic in known.values()})
+        self.not_cdr = frozenset(name for name, topic in known.items() if topic.encoding != 'cdr')
 
     def __enter__(self) -> Self:
         return self
@@ -98,14 +101,19 @@ class Bag:
         return chain.from_iterable(self._pieces(topics))
 
     def batches(
-        self, topics: Collection[str], progress: ReportProgress | None = None
+        self,
+        topics: Collection[str],
+        progress: ReportProgress | None = None,
+        *,
+        any_encoding: bool = False,
     ) -> Iterator[list[Message]]:
         """Read raw messages as `messages` does, many at a time, which is faster.
 
-        The total that `progress` is told after each batch counts all topics of the bag.
+        The total that `progress` is told after each batch counts all topics of the bag. With
+        `any_encoding`, messages that are not CDR are read, too.
         """
         done = 0
-        for batch in _joined(self._pieces(topics)):
+        for batch in _joined(self._pieces(topics, any_encoding=any_encoding)):
             yield batch
             done += len(batch)
             if progress:
@@ -156,15 +164,20 @@ class Bag:
             if self._listed and self._listed.keys() <= self._described.keys():
                 return
 
-    def _pieces(self, topics: Collection[str]) -> Iterator[list[Message]]:
-        reading = self._read(frozenset(topics))
+    def _pieces(
+        self, topics: Collection[str], *, any_encoding: bool = False
+    ) -> Iterator[list[Message]]:
+        reading = self._read(frozenset(topics), any_encoding=any_encoding)
         self._readings.callback(reading.close)
         return reading
 
-    def _read(self, topics: frozenset[str]) -> Generator[list[Message], None, None]:
+    def _read(
+        self, topics: frozenset[str], *, any_encoding: bool
+    ) -> Generator[list[Message], None, None]:
         read, limits = 0, self._limits()
         for file in self._files:
             with _opened(file, limits, read) as storage:
+                storage.any_encoding = any_encoding
                 for piece in _plain(storage.pieces(topics), limits):
                     storage.read += len(piece)
                     yield piece

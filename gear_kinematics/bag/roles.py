@@ -72,7 +72,7 @@ def find_topics(
     left_out = {'output': not outputs, 'poses': not (outputs and poses)}
     parts = [part for part in _PARTS if not left_out.get(part)]
     found = {part: topic for part in parts if (topic := given.get(part))}
-    left = dict(bag.topics)
+    left = {topic: kind for topic, kind in bag.topics.items() if topic not in bag.not_cdr}
     for part, topic in found.items():
         if left.get(topic) != (wanted := TOPICS[_PARTS[part]].type):
             raise missing_topic(bag.path, left, topic, wanted)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_kinematics.bag.codecs import Limits
-from gear_kinematics.bag.storage import Message, Storage, Topic, check_encoding, in_batches
+from gear_kinematics.bag.storage import Message, Storage, Topic, in_batches
 
 _STEPS = 1000
 
@@ -69,7 +69,7 @@ class Sqlite(Storage):
         """Read messages in the order of reception."""
         wanted = {key: topic for key, topic in self._topics().items() if topic.name in topics}
         for topic in wanted.values():
-            check_encoding(topic)
+            self.check_encoding(topic)
         names = {key: topic.name for key, topic in wanted.items()}
         return in_batches(self._messages(names))
 

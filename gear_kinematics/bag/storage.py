@@ -69,6 +69,8 @@ class Storage:
         self.limits = limits
         self.read = 0
         """Number of messages that the caller has taken from `pieces`."""
+        self.any_encoding = False
+        """Whether messages are read that are not CDR, too."""
 
     def topics(self) -> list[Topic]:
         """Return the topics of the file."""
@@ -84,6 +86,15 @@ class Storage:
     def close(self) -> None:
         """Close the file."""
         raise NotImplementedError
+
+    def check_encoding(self, topic: Topic) -> None:
+        """Make sure that the messages on a topic can be read.
+
+        Raises:
+            ValueError: if they are not CDR.
+        """
+        if topic.encoding != 'cdr' and not self.any_encoding:
+            raise ValueError(f'messages on {topic.name} are {topic.encoding!r}, not CDR')
 
     def position(self) -> str:
         """Position of reading, for error messages."""
@@ -111,16 +122,6 @@ def in_batches(
         raise
     if batch:
         yield batch
-
-
-def check_encoding(topic: Topic) -> None:
-    """Make sure that the messages on a topic are CDR.
-
-    Raises:
-        ValueError: if they are not.
-    """
-    if topic.encoding != 'cdr':
-        raise ValueError(f'messages on {topic.name} are {topic.encoding!r}, not CDR')
 
 
 def missing_topic(

@@ -45,6 +45,8 @@ class TopicSummary(NamedTuple):
     """Of the first message, if they are joint states."""
     rate: float | None
     """Hz, from the median period; None of a few messages."""
+    mean_rate: float | None
+    """Hz, from the first to the last message; differs from `rate` where they come in bursts."""
     gaps: int
     """Periods longer than five median ones."""
     longest_gap: float
@@ -89,9 +91,9 @@ def summarise(
         reader = JointReader(named)
     times = {topic: list[int]() for topic in bag.topics}
     ends: list[int] = []
-    stamped = {topic for topic, kind in bag.topics.items() if kind in _WITH_STAMPS}
+    stamped = {topic for topic, kind in bag.topics.items() if kind in _WITH_STAMPS} - bag.not_cdr
     try:
-        for batch in bag.batches(bag.topics, progress):
+        for batch in bag.batches(bag.topics, progress, any_encoding=True):
             for topic, received, data in batch:
                 if topic == rotor and not _has_joint(reader, data):
                     others += 1
@@ -101,7 +103,8 @@ def summarise(
             ends = [*ends[:1], batch[0][1], batch[-1][1]]
     except DamagedBagError as error:
         damage = str(error)
-    joints = joints_on(bag, [t for t in times if times[t] and bag.topics[t] == JOINT_STATE])
+    states = [t for t in stamped if times[t] and bag.topics[t] == JOINT_STATE]
+    joints = joints_on(bag, states)
     topics = [
         _summary(
             name,
@@ -134,11 +137,11 @@ def _summary(
 ) -> TopicSummary:
     periods = np.diff(np.array(times, np.int64)).astype(np.float64) / SECOND
     periods = periods[periods > 0.0]  # the clock may be set back
-    rate, gaps, longest = None, 0, 0.0
+    rate, mean, gaps, longest = None, None, 0, 0.0
     if len(times) >= _FEWEST and len(periods):
         median = float(np.median(periods))
         long = periods[periods > _GAP * median]
         rate, gaps, longest = 1.0 / median, len(long), float(long.max(initial=0.0))
-    return TopicSummary(
-        name, kind, part, len(times) + others, tuple(joints), rate, gaps, longest, others
-    )
+        mean = (len(times) - 1) / float(periods.sum())
+    numbers = rate, mean, gaps, longest, others
+    return TopicSummary(name, kind, part, len(times) + others, tuple(joints), *numbers)

@@ -60,9 +60,10 @@ def _parts(summary: Summary, *, verbose: bool) -> Iterator[str]:
     shown = summary.topics if verbose else known
     for topic in shown:
         often = counted(topic.messages, 'message')
-        if topic.rate:
+        if topic.rate and topic.mean_rate:
             rate = f'{number(topic.rate, _DIGITS)} Hz'
-            often = f'{rate}, {often}' if verbose else rate
+            mean = f'{number(topic.mean_rate, _DIGITS)} Hz on average'
+            often = f'{rate}, {mean}, {often}' if verbose else rate
         joints = described(topic.joints, most=_JOINTS)
         kind = f' {topic.type},' if verbose else ''
         yield f'{topic.part} {topic.name}{joints}{kind} {often}'.lstrip()

@@ -15,7 +15,7 @@ JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseA
 
 def described(topics: dict[str, str]) -> SimpleNamespace:
     """What a bag says about its topics, which have no messages."""
-    bag = SimpleNamespace(path=Path('some.mcap'), topics=topics)
+    bag = SimpleNamespace(path=Path('some.mcap'), topics=topics, not_cdr=())
     bag.messages = lambda _: iter(())
     bag.type_of = partial(Bag.type_of, bag)
     return bag

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from live import rotor_bytes
+from mcap.writer import Writer
 from shipped_bags import BAGS, JOINT_STATE
 
 from gear_kinematics.bag import Bag, BagError
@@ -57,6 +58,37 @@ def test_several_topics_are_told_apart_by_the_joint(tmp_path):
     found = summary(tmp_path / 'two', None, 'wheel')
     assert [(topic.part, topic.name) for topic in found.topics] == [('rotor', '/b'), ('', '/a')]
     assert [topic.rate for topic in found.topics] == [None, None]
+
+
+def test_joint_states_of_another_encoding_are_no_part(tmp_path):
+    path = tmp_path / 'bag.mcap'
+    with path.open('wb') as stream:
+        writer = Writer(stream)
+        writer.start()
+        schema = writer.register_schema(JOINT_STATE, 'ros2msg', b'')
+        channels = [
+            writer.register_channel(topic, encoding, schema)
+            for topic, encoding in (('/rotor_state', 'json'), ('/motor', 'cdr'))
+        ]
+        data = b'{"name": ["m1"]}', rotor_bytes(10**18, ['m1'], [0.0])
+        for k in range(30):
+            writer.add_message(channels[k % 3 == 0], k, data[k % 3 == 0], k)
+        writer.finish()
+    topics = summary(path).topics
+    found = [(topic.part, topic.name, topic.messages, topic.joints) for topic in topics]
+    assert found == [('rotor', '/motor', 10, ('m1',)), ('', '/rotor_state', 20, ())]
+
+
+def test_the_mean_rate_is_told_beside_that_of_the_median_period(tmp_path):
+    """Ten messages in each 0.1 s, 1 ms apart."""
+    with BagWriter(tmp_path / 'bag') as writer:
+        writer.add_topic('/motor', JOINT_STATE)
+        for k in range(101):
+            stamp = 10**18 + k // 10 * 10**8 + k % 10 * 10**6
+            writer.write('/motor', stamp, rotor_bytes(stamp, ['m1'], [0.0]))
+    (topic,) = summary(tmp_path / 'bag').topics
+    assert topic.rate == pytest.approx(1000.0)
+    assert topic.mean_rate == pytest.approx(100.0)
 
 
 def test_what_is_before_the_damage_is_summarised(tmp_path):

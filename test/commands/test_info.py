@@ -5,6 +5,7 @@ import shutil
 
 import pytest
 from blocked_bags import BAGS, gearkin, refusal
+from shipped_bags import JOINT_STATE
 from terminals import ENVIRONMENT, Terminal
 
 from gear_kinematics.commands.cli import main
@@ -55,9 +56,19 @@ def test_every_topic_is_listed_on_demand(capsys):
     assert main(['info', '-v', str(CONSTANT)]) == 0
     line, *facts = capsys.readouterr().out.splitlines()
     assert line.startswith(f'{CONSTANT}: 3.00 s')
-    kind = 'sensor_msgs/msg/JointState'
-    row = f'output /output_state (joint output_shaft) {kind}, 1000 Hz, 3000 messages'
+    rates = '1000 Hz, 1000 Hz on average'
+    row = f'output /output_state (joint output_shaft) {JOINT_STATE}, {rates}, 3000 messages'
     assert row in map(str.strip, facts)
+
+
+def test_topics_that_are_not_cdr_are_counted(shared_path, capsys):
+    """The file has 131, 35 and 34 messages of CDR, and 200 of JSON."""
+    assert main(['info', '-v', str(shared_path('data/faults/rec_cdr_and_json.mcap'))]) == 0
+    line, rotor, output, poses, battery, *_ = capsys.readouterr().out.splitlines()
+    assert line.endswith(': 2.60 s, 400 messages')
+    counts = [row.rpartition(', ')[2] for row in (rotor, output, poses, battery)]
+    assert counts == ['131 messages', '35 messages', '34 messages', '200 messages']
+    assert battery.startswith('  /battery ')
 
 
 @pytest.mark.slow
