@@ -87,6 +87,7 @@ class Matcher:
     def match(self, stamps: Array, received: Array, window: Array) -> Array:
         """Find the sample of each message, (n,), as its index in the window or -1, and mark it."""
         index = np.full(len(stamps), -1, np.intp)
+        resets = np.flatnonzero(np.diff(window['stamp']) < -CLOCK_RESET) + 1
         k = 0
         while k < len(stamps):
             longest = min(len(stamps) - k, len(window) - self._next)
@@ -94,12 +95,14 @@ class Matcher:
             alike = _alike(stamps[k : k + longest], received[k : k + longest], window[ahead])
             alike &= ~self.matched[ahead]
             run = longest if alike.all() else int(np.argmin(alike))
+            if run and _of_later_clock(stamps[k], received[k], self._next, window, resets):
+                run = 0
             index[k : k + run] = np.arange(self._next, self._next + run)
             self.matched[self._next : self._next + run] = True
             self._next += run
             k += run
             if k < len(stamps):
-                index[k] = self._look_up(stamps[k], received[k], window)
+                index[k] = self._look_up(stamps[k], received[k], window, resets)
                 k += 1
         self.compared += int(np.count_nonzero(index >= 0))
         return index
@@ -109,8 +112,10 @@ class Matcher:
         self.matched = self.matched[count:]
         self._next = max(self._next - count, 0)
 
-    def _look_up(self, stamp: int, received: int, window: Array) -> int:
-        found = np.flatnonzero(_alike(stamp, received, window) & ~self.matched)
+    def _look_up(self, stamp: int, received: int, window: Array, resets: Array) -> int:
+        alike = np.flatnonzero(_alike(stamp, received, window) & ~self.matched)
+        later = [_of_later_clock(stamp, received, row, window, resets) for row in alike.tolist()]
+        found = alike[~np.array(later, bool)]
         if not len(found):
             return -1
         # If a stamp occurs again after a restart, take the next sample that has it.
@@ -124,6 +129,20 @@ class Matcher:
 def _alike(stamp: Array | int, received: Array | int, window: Array) -> Array:
     """Whether messages can be those of samples: not of the same stamps after a later restart."""
     return np.asarray((stamp == window['stamp']) & (window['received'] - CLOCK_RESET <= received))
+
+
+def _of_later_clock(stamp: int, received: int, row: int, window: Array, resets: Array) -> bool:
+    """Whether a message answers an input, perhaps not recorded, behind the reset after a sample.
+
+    That is so if it was received nearer to when the input must have been, by its neighbour.
+    """
+    after = resets[np.searchsorted(resets, row, 'right') :]
+    if not len(after):
+        return False
+    later = window[after[0] :]
+    nearest = later[np.argmin(np.abs(later['stamp'] - stamp))]
+    due = nearest['received'] - (nearest['stamp'] - stamp)
+    return bool(abs(received - due) < abs(received - window['received'][row]))
 
 
 def rotor_angle(samples: Array) -> Array:

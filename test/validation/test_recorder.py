@@ -5,15 +5,18 @@ import math
 import random
 import struct
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 import replaying
+from made_bags import read
 from replaying import SECOND
 from rosbag2_recorder import Message, record
 from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, read_bag
 from validating import validate
 
+from gear_kinematics.bag.roles import Topics
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.findings import findings
@@ -378,3 +381,45 @@ def test_a_loss_where_a_bag_begins_anew_at_once_fails_nothing(traffic, config, r
     report = validate(messages[:last] + messages[last + 1 :], config)
     assert report.verdict == Verdict.PASS
     assert [t.left_out for t in report.topics] == [{NO_INPUT: 1}] * 2
+
+
+@pytest.mark.parametrize('passes', [2, 3])
+@pytest.mark.parametrize('at', [0, 5, 300])
+def test_an_output_lost_in_one_pass_is_not_answered_by_another(traffic, config, passes, at):
+    """The input of the next pass, which has the same stamp, was not recorded."""
+    start = stamp_of(traffic[500][0])
+    once = [m for m in traffic[500] if stamp_of(m) < start + 2 * SECOND]
+    length = once[-1].received - once[0].received + SECOND // 100
+    messages = [
+        m._replace(received=m.received + k * length) for k in range(passes + 1) for m in once
+    ]
+    each = len(once) // 3
+
+    def nth(topic: str, turn: int) -> int:
+        return [k for k, m in enumerate(messages) if m.topic == topic][turn * each + at]
+
+    lost = {nth(OUTPUT, 1), *(nth(ROTOR, turn) for turn in range(2, passes + 1))}
+    report = validate([m for k, m in enumerate(messages) if k not in lost], config)
+    assert report.verdict == Verdict.FAIL
+    assert [t.missing for t in report.topics] == [1, 0]
+    assert [t.left_out for t in report.topics] == [{NO_INPUT: passes - 1}] * 2
+
+
+def test_losses_at_the_restart_of_a_real_loop_fail_with_a_third_behind_it(shared_path, config):
+    """The third repeats the second, but the inputs of what the second lost are not recorded."""
+    path = shared_path('data/faults/rec_loop_two_lost.mcap')
+    messages = [Message(*message) for message in read(path, [ROTOR, OUTPUT])]
+    rotor = [m for m in messages if m.topic == ROTOR]
+    restart = next(b.received for a, b in pairwise(rotor) if stamp_of(b) < stamp_of(a))
+    second = [m for m in messages if m.received >= restart]
+    outputs = [m for m in second if m.topic == OUTPUT]
+    given = {stamp_of(m) for m in outputs}
+    lost = [m for m in second if m.topic == ROTOR and stamp_of(m) not in given]
+    answers = [shifted(outputs[0], stamp_of(m) - stamp_of(outputs[0])) for m in lost]
+    third = sorted([*(m for m in second if m not in lost), *answers], key=lambda m: m.received)
+    length = messages[-1].received - restart + SECOND // 10
+    behind = [m._replace(received=m.received + length) for m in third]
+    for recorded in (messages, messages + behind):
+        report = validate(recorded, config, Topics(poses=''))
+        assert report.verdict == Verdict.FAIL
+        assert [t.missing for t in report.topics] == [2]
