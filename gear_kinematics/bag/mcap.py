@@ -23,7 +23,7 @@ _PADDING = bytes(_MESSAGE_START.size)  # behind the last record, which may be sh
 _CUT_OFF = 'cut off within a record; mcap recover makes a sound file of what is before'
 _LATEST = 2**63 - 1  # ns
 _PIECE, _PIECE_SIZE = 4096, 2**22  # messages outside of chunks that are read at once, bytes
-_MAX_OPEN = 2**28  # bytes of chunks that overlap in time
+_MAX_OPEN, _PER_CHUNK = 2**28, 2**18  # bytes of chunks that overlap in time, and for each
 _RECEIVED = itemgetter(1)
 
 
@@ -133,8 +133,8 @@ class Mcap(Storage):
         for (_, offset, length, size), until in zip(
             chunks, [*starts[1:], _LATEST + 1], strict=True
         ):
-            sizes[offset] = size
-            if sum(map(sizes.__getitem__, opened), size) > _MAX_OPEN:
+            sizes[offset] = size + _PER_CHUNK
+            if sum(map(sizes.__getitem__, opened), sizes[offset]) > _MAX_OPEN:
                 raise UnsortedError
             if length > self.limits.max_record:
                 raise ValueError(f'a record of {length} bytes is too large')

@@ -181,7 +181,9 @@ def test_chunks_of_a_rewritten_file_are_merged_as_mcap_does(shared_path):
 def test_messages_that_are_too_far_out_of_order_are_refused(
     recorded, tmp_path, monkeypatch, use_chunking
 ):
-    monkeypatch.setattr('gear_kinematics.bag.mcap._MAX_OPEN', 50_000)
+    monkeypatch.setattr(
+        'gear_kinematics.bag.mcap._MAX_OPEN', 2**19 + 50_000
+    )  # two chunks of 20 kB
     monkeypatch.setattr('gear_kinematics.bag.mcap._PIECE', 100)
     by_topic = sorted(recorded, key=lambda message: message[0])
     path = mcap_file(tmp_path / 'b.mcap', by_topic, use_chunking=use_chunking)
