@@ -8,7 +8,7 @@ from typing import Any
 from gear_kinematics.commands import arguments
 from gear_kinematics.commands.bags import add_rotor
 from gear_kinematics.kinematics import GearRatio
-from gear_kinematics.measurement.csv_files import ANGLE_UNITS, Sources
+from gear_kinematics.measurement.columns import ANGLE_UNITS, Sources
 
 _COLUMNS = {
     'angle': 'under torque',

@@ -16,7 +16,8 @@ from gear_kinematics.bag import (
 )
 from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, missing_encoder
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
-from gear_kinematics.measurement.csv_files import Sources, is_csv, read_csv
+from gear_kinematics.measurement.columns import Sources
+from gear_kinematics.measurement.csv_files import is_csv, read_csv
 from gear_kinematics.measurement.encoder_step import step_of
 from gear_kinematics.measurement.gate import gated
 from gear_kinematics.measurement.recording import (

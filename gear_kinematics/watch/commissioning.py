@@ -15,9 +15,9 @@ import numpy as np
 
 from gear_kinematics.bag import Message, by_topic
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.commissioning.analysis import Commissioning, Request, commission
 from gear_kinematics.measurement.commissioning.document import actuator_file
-from gear_kinematics.measurement.csv_files import Sources
 from gear_kinematics.measurement.reading import States
 from gear_kinematics.measurement.wording import shown
 from gear_kinematics.parameters import PARAMETERS, NodeParameters, default_config

@@ -9,7 +9,8 @@ import pytest
 from gear_recordings import write_csv
 
 from gear_kinematics.measurement.calibration import fit
-from gear_kinematics.measurement.csv_files import Sources, read_csv
+from gear_kinematics.measurement.columns import Sources
+from gear_kinematics.measurement.csv_files import read_csv
 from gear_kinematics.measurement.gate import gated
 
 RATIO = Fraction(-19)

@@ -13,7 +13,7 @@ import simulated_joint
 from gear_recordings import encoders
 
 from gear_kinematics.kinematics import GearRatio
-from gear_kinematics.measurement.csv_files import Sources
+from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.ratio import estimate_ratio, wrong_ratio
 from gear_kinematics.measurement.reading import read_encoders
 from gear_kinematics.measurement.recording import RecordingError

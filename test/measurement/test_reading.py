@@ -11,7 +11,7 @@ from gear_recordings import Gear, Samples, creep, quantised, ramps, write_csv, w
 
 from gear_kinematics.bag import BagError
 from gear_kinematics.measurement import csv_files, reading
-from gear_kinematics.measurement.csv_files import Sources
+from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.reading import read, read_encoders
@@ -41,7 +41,7 @@ def measured(config):
     ('angle_name', 'torque_name', 'scale', 'others', 'given'),
     [
         ('angle', 'torque', 1.0, [], {}),
-        ('Deflection [deg]', 'Motor Torque [Nm]', 180.0 / math.pi, [], {}),
+        ('Deflection [deg]', 'Load Torque [Nm]', 180.0 / math.pi, [], {}),
         ('position_rev', 'torque', 1.0 / TURN, [], {}),
         ('POSITION', 'TORQUE', 1.0 / TURN, ['Q_CURRENT', 'CONTROL_TORQUE'], {}),
         ('a', 'b', 1.0 / TURN, ['angle', 'torque'],
@@ -91,8 +91,8 @@ def test_real_recordings_need_no_renaming(shared_path, config):
     [('angle [µrad]', 'torque'), ('angle_urad', 'torque'), ('angle', 'torque_rad')],
 )
 def test_units_that_are_not_known_are_refused_with_the_list(tmp_path, config, angle, torque):
-    path = write_csv(tmp_path / 'r.csv', **{angle: [1.0, 2.0], torque: [1.0, 2.0]})
-    with pytest.raises(RecordingError, match=r'(known|units): .*(rad, rev|mnm)'):
+    path = write_csv(tmp_path / 'r.csv', **{angle: [0.1, 0.2], torque: [1.0, 2.0]})
+    with pytest.raises(RecordingError, match=r'(known|units): .*(radians|mnm)'):
         read(path, config)
 
 
@@ -132,17 +132,18 @@ def test_times_of_rows_are_read_if_there_are_any(tmp_path, config, name, values)
 @pytest.mark.parametrize(
     ('time', 'cause'),
     [
-        (lambda rows: -rows, 'they stand still'),
+        (lambda rows: 0.0 * rows, 'they stand still'),
+        (lambda rows: 40.0 * rows, 'whole numbers without a unit'),
         (lambda rows: 1e18 + rows, 'no numbers, or too large to be s'),
         (lambda rows: [f'12:{row // 60:02.0f}:{row % 60:02.0f}' for row in rows], 'no numbers'),
     ],
 )
-def test_times_that_cannot_be_used_are_reported_and_cost_no_angle(tmp_path, config, time, cause):
+def test_times_that_cannot_be_read_are_an_error(tmp_path, config, time, cause):
     rows = np.arange(500.0)
-    path = write_csv(tmp_path / 'r.csv', rotor=rows, output=rows, T=time(rows))
-    recording, both = read_encoders(path, config)
-    assert (len(both.measured), both.timed) == (500, False)
-    assert recording.remarks[0].startswith(f'the times in T are not used: {cause}')
+    angle = 1e-4 * rows
+    path = write_csv(tmp_path / 'r.csv', rotor=angle, output=angle, T=time(rows))
+    with pytest.raises(RecordingError, match=f'the times in T: {cause}'):
+        read_encoders(path, config)
 
 
 def test_times_that_go_back_end_the_recording_there(tmp_path, config):
@@ -178,7 +179,7 @@ def test_rows_that_are_not_finite_are_left_out_and_reported(tmp_path, config, an
     ('content', 'complaint'),
     [
         ('', 'no samples in it'),
-        ('angle,torque\n1,2\n3\n', 'line 3: too few columns'),
+        ('angle,torque\n1,2\n3\n4,5\n', 'line 3: too few columns'),
         ('angle,torque\nx,4\n', 'no usable rows'),
         ('a,b\n1,2\n', 'neither an angle and a torque nor a rotor and an output'),
         ('angle,angle,torque\n1,2,3\n', "more than one column 'angle'"),
@@ -209,8 +210,9 @@ def test_tiny_numbers_are_zero(tmp_path, config, measured, angle):
 def test_long_files_are_read_in_part(tmp_path, config, monkeypatch):
     monkeypatch.setattr(csv_files, '_MOST_ROWS', 300)
     rows = np.arange(1000.0)
-    recording = read(write_csv(tmp_path / 'r.csv', angle=rows, torque=rows, time=rows), config)
-    np.testing.assert_array_equal(recording.locked.angle, rows[::4])
+    columns = {'angle': rows / 2**12, 'torque': rows, 'time_s': rows}
+    recording = read(write_csv(tmp_path / 'r.csv', **columns), config)
+    np.testing.assert_array_equal(recording.locked.angle, rows[::4] / 2**12)
     assert recording.remarks == ('one row of 4 is used: no more are kept in memory',)
 
 

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gear_kinematics.measurement.answer import Limits
-from gear_kinematics.measurement.csv_files import Sources
+from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.document import document
 from gear_kinematics.measurement.loops import Loop, Ramps
 from gear_kinematics.measurement.lost_motion import measure
