@@ -30,7 +30,7 @@ from gear_kinematics.kinematics import (
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.state_messages import StateMessages, state_messages
-from gear_kinematics.wire.joint_reader import GREATEST
+from gear_kinematics.wire.joint_reader import GREATEST, RejectedInputError
 
 STAMP = 12_345_678_901
 NAMES = {'output_joint': 'output_shaft', 'frame_prefix': ''}
