@@ -33,7 +33,7 @@ def test_a_check_fails_a_bag_and_says_why(name, monkeypatch, capsys):
     assert cli.main(['validate', str(BAG.parent / name), '--json', '-']) == slow
     [bag] = json.loads(capsys.readouterr().out)['bags']
     assert bag['verdict'] == ('fail' if slow else 'pass')
-    assert bag['findings'] == ['/rotor_state has only 500 Hz'] * slow
+    assert ('/rotor_state has only 500 Hz' in bag['findings']) == slow
 
 
 def test_a_field_of_the_report_is_in_every_form(monkeypatch, capsys, tmp_path):
