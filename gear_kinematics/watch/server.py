@@ -126,7 +126,8 @@ class _Live(_Guarded, WebSocketHandler):
             answer = Answer('There is no such command.', done=False)
         except TimeoutError:
             answer = Answer('The node does not answer.', done=False)
-        await self.write_message({'answer': answer._asdict()})
+        with suppress(WebSocketClosedError):  # who asked may have left meanwhile
+            await self.write_message({'answer': answer._asdict()})
 
     async def _send(self) -> None:
         drawn = None

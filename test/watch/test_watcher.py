@@ -598,6 +598,9 @@ def test_page_that_is_closed_before_the_answer_leaves_no_trace(watcher, caplog):
     pending = Future()
     watcher.ask = lambda command: watcher.asked.append(command) or pending
 
+    def running(name):
+        return any(name in repr(task) for task in asyncio.all_tasks())
+
     async def until(condition):
         while not condition():  # noqa: ASYNC110, the server says nothing
             await asyncio.sleep(0.01)
@@ -607,8 +610,9 @@ def test_page_that_is_closed_before_the_answer_leaves_no_trace(watcher, caplog):
             await connection.write_message('{"do": "home"}')
             await until(lambda: watcher.asked)
             connection.protocol.stream.close()
-            await until(lambda: not any('_send' in repr(task) for task in asyncio.all_tasks()))
+            await until(lambda: not running('_send'))
             pending.set_result(Answer('done', done=True))
+            await until(lambda: not running('on_message'))
 
     asyncio.run(run())
     assert not caplog.records
