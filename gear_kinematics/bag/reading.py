@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection, Generator, Iterable, Iterator,
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass, field
 from itertools import chain
+from operator import itemgetter
 from pathlib import Path
 from types import MappingProxyType
 from typing import IO, Self
@@ -24,10 +25,11 @@ from gear_kinematics.bag.storage import (
     missing_topic,
 )
 
+_DATA = itemgetter(2)
 ReportProgress = Callable[[int, int | None], None]
 """Called repeatedly with the number of messages done, and the total if known."""
-_BATCH, _BATCH_SIZE = 4096, 2**20
-"""Messages, bytes; of 256 messages, the validation of an sqlite3 file takes four times as long."""
+_BATCH, _BATCH_SIZE = 16_384, 2**22
+"""Messages, bytes; of a quarter of them, the validation of a recording takes 1.2 times as long."""
 
 
 def _ros1(path: Path, limits: Limits) -> Storage:
@@ -212,7 +214,7 @@ def _joined(pieces: Iterable[list[Message]]) -> Iterator[list[Message]]:
     try:
         for piece in pieces:
             batch += piece
-            size += sum(len(data) for _, _, data in piece)
+            size += sum(map(len, map(_DATA, piece)))
             if len(batch) >= _BATCH or size >= _BATCH_SIZE:
                 yield batch
                 batch, size = [], 0

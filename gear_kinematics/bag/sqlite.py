@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from gear_kinematics.bag.codecs import Limits
-from gear_kinematics.bag.storage import Message, Storage, Topic, in_batches
+from gear_kinematics.bag.storage import Message, Storage, Topic
 
 _STEPS = 1000
+_PIECE, _PIECE_SIZE = 256, 2**20  # messages, bytes
 
 
 class Sqlite(Storage):
@@ -70,22 +71,30 @@ class Sqlite(Storage):
         wanted = {key: topic for key, topic in self._topics().items() if topic.name in topics}
         for topic in wanted.values():
             self.check_encoding(topic)
-        names = {key: topic.name for key, topic in wanted.items()}
-        return in_batches(self._messages(names))
+        return self._messages({key: topic.name for key, topic in wanted.items()})
 
-    def _messages(self, names: dict[int, str]) -> Iterator[Message]:
+    def _messages(self, names: dict[int, str]) -> Iterator[list[Message]]:
         places, left = ','.join('?' * len(names)), self._size
-        for key, received, data in self._database.execute(
-            'SELECT topic_id, timestamp, data FROM messages'  # noqa: S608, placeholders
-            f' WHERE topic_id IN ({places}) ORDER BY timestamp',
-            tuple(names),
-        ):
-            if type(data) is not bytes or type(received) is not int:
-                raise ValueError('a message without a time or data')
-            left -= len(data)
-            if left < 0:  # messages that share pages
-                raise ValueError('the messages are longer than the file')
-            yield names[key], received, data
+        piece, size = list[Message](), 0
+        try:
+            for key, received, data in self._database.execute(
+                'SELECT topic_id, timestamp, data FROM messages'  # noqa: S608, placeholders
+                f' WHERE topic_id IN ({places}) ORDER BY timestamp',
+                tuple(names),
+            ):
+                if type(data) is not bytes or type(received) is not int:
+                    raise ValueError('a message without a time or data')
+                size += len(data)
+                if size > left:  # messages that share pages
+                    raise ValueError('the messages are longer than the file')
+                piece.append((names[key], received, data))
+                if size >= _PIECE_SIZE or len(piece) == _PIECE:
+                    yield piece
+                    piece, size, left = [], 0, left - size
+        except Exception:
+            yield piece
+            raise
+        yield piece
 
 
 def _check_size(path: Path) -> None:

@@ -170,11 +170,12 @@ def _tables(
             except MalformedMessageError:
                 rows, table = rows[1:], table[1:]
                 continue
-            same = [table[:, start:end] == table[0, start:end] for start, end in layout.fixed]
-            if all(span.all() for span in same):
+            fixed = np.concatenate([np.arange(*span) for span in layout.fixed])
+            same = table[:, fixed] == table[0, fixed]
+            if same.all():
                 yield rows, layout, table
                 break
-            alike = np.logical_and.reduce([span.all(axis=1) for span in same])
+            alike = same.all(axis=1)
             yield rows[alike], layout, table[alike]
             rows, table = rows[~alike], table[~alike]
 

@@ -87,7 +87,7 @@ def test_a_bag_of_every_kind_is_read_whole(kind, recorded, tmp_path):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_batches_report_progress(recorded, storage, tmp_path):
-    messages = sorted(20 * recorded, key=lambda message: message[1])
+    messages = sorted(80 * recorded, key=lambda message: message[1])
     told = []
     with Bag(folder(tmp_path / 'b', messages, storage)) as bag:
         batches = list(bag.batches(TYPES, lambda *done: told.append(done)))
