@@ -14,6 +14,7 @@ Array = NDArray[np.float64]
 
 _MIN_GAP = 5.0  # median periods
 _MAX_LISTED = 10  # listed gaps
+_MANY_REPEATED = 0.25  # of all stamps: drivers that send a state twice in a while have fewer
 
 
 class InputHealth:
@@ -82,6 +83,17 @@ class InputHealth:
             velocity_is=rotor_input.velocity_field.meaning,
             beyond_limits=rotor_input.plausibility.beyond_limits,
         )
+
+
+def repeated_stamps(rotor: InputReport) -> str:
+    """Say that outputs and inputs cannot be told apart by their stamps; '' if they can."""
+    if rotor.duplicates <= _MANY_REPEATED * rotor.valid:
+        return ''
+    return (
+        f'{rotor.duplicates} of {rotor.valid} stamps of {rotor.topic} repeat the one before, as '
+        'if their nanoseconds were lost: where messages are missing, outputs are compared with '
+        'other inputs than theirs; record the stamps with their nanoseconds'
+    )
 
 
 def _mostly_rejected(rotor: InputReport) -> Iterator[Finding]:

@@ -160,6 +160,8 @@ class Validator:
         checked = [finding for check in input_health.CHECKS for finding in check(rotor)]
         findings = *self._found(), *checked
         passed = not any(finding.fails for finding in findings) and all(t.passed for t in topics)
+        if repeated := input_health.repeated_stamps(rotor):
+            findings = Finding(repeated, cause=not passed), *findings
         start = rotor.first_stamp or 0
         series = (output.series.series(output.name, start) for output in self._outputs)
         return BagReport(

@@ -265,6 +265,25 @@ def test_messages_that_were_lost_repeated_swapped_or_restamped_are_counted(
         assert report.verdict == Verdict.FAIL
 
 
+def test_stamps_that_lost_their_nanoseconds_are_named_as_the_cause(recorded, config):
+    whole = recorded
+    for topic in TYPES:
+        whole = change_all(whole, topic, lambda m: set_stamp(m, m.header.stamp.sec * SECOND))
+    seconds = {struct.unpack_from('<i', data, 4) for _, _, data in recorded}
+    text = f'{300 - len(seconds)} of 300 stamps of /rotor_state repeat the one before, as if'
+    report = validate(whole, config)
+    assert report.passed
+    assert not report.causes
+    assert text in texts(report)[0]
+    lost = range(index_of(whole, OUTPUT), index_of(whole, OUTPUT, CHANGED + 10))
+    kept = [message for k, message in enumerate(whole) if k not in lost or message[0] != OUTPUT]
+    report = validate(kept, config)
+    assert not report.passed
+    assert text in report.causes[0].text
+    assert text in texts(report)[0]
+    assert not any('repeat' in text for text in texts(validate(recorded, config)))
+
+
 @pytest.mark.parametrize(
     ('topic', 'edit', 'text'),
     [
