@@ -68,7 +68,8 @@ def compute(
     With a preload, the loads are outputs too.
 
     Each output directly follows its rotor message and has its time of reception. The same input
-    gives the same bytes. If this fails or is interrupted, no target is left.
+    gives the same bytes. From mcap to mcap, copies keep their times of publication. If this fails
+    or is interrupted, no target is left.
 
     Where an output encoder references the rotor's count, outputs are those of the node: before the
     reference those of the nearest turn, or of the configured zero, and referenced from then on.
@@ -128,7 +129,7 @@ def compute(
                 kept.append(topic)
         for topic, message_type in outputs.items():
             writer.add_topic(topic, message_type)
-        for batch in source.batches({*kept, *outputs}, progress):
+        for batch in source.batches({*kept, *outputs}, progress, publish_times=True):
             messages, correction = [each for each in batch if each[0] not in outputs], None
             rotor = [place for place, (topic, *_) in enumerate(messages) if topic == rotor_topic]
             if encoder_topic:

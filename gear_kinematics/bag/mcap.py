@@ -10,7 +10,7 @@ from pathlib import Path
 from zlib import crc32
 
 from gear_kinematics.bag.codecs import CODECS, Limits
-from gear_kinematics.bag.storage import Message, Storage, Topic, UnsortedError
+from gear_kinematics.bag.storage import Message, Published, Storage, Topic, UnsortedError
 
 MCAP_MAGIC = b'\x89MCAP0\r\n'
 _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _DATA_END = 2, 3, 4, 5, 6, 15
@@ -18,6 +18,7 @@ _DATA = frozenset({_SCHEMA, _CHANNEL, _MESSAGE, _CHUNK})
 _NO_SCHEMA = ('', '', '')  # type, syntax, definition
 _RECORD = struct.Struct('<BQ')  # opcode and length of the body
 _MESSAGE_START = struct.Struct('<BQH4xQ')  # and channel and time
+_PUBLISHED = struct.Struct('<Q')  # when, between that time and the data
 _CHUNK_START = struct.Struct('<BQQQQ')  # and times of its first and last message, and its size
 _PADDING = bytes(_MESSAGE_START.size)  # behind the last record, which may be shorter
 _CUT_OFF = 'cut off within a record; mcap recover makes a sound file of what is before'
@@ -189,6 +190,7 @@ class Mcap(Storage):
     def _walk(self, records: bytes, piece: list[Message]) -> None:
         """Append the wanted messages among records, up to the first damage."""
         wanted, unpack = self._wanted_channels.get, _MESSAGE_START.unpack_from
+        dated = self.publish_times
         end, size = 0, len(records)
         whole = size - _MESSAGE_START.size
         while end < size:
@@ -203,7 +205,11 @@ class Mcap(Storage):
                 if topic := wanted(channel):
                     if received > _LATEST:
                         raise ValueError('a time of reception is out of range')
-                    piece.append((topic, received, records[start + 22 : end]))
+                    data = records[start + 22 : end]
+                    if dated:
+                        (published,) = _PUBLISHED.unpack_from(records, start + 14)
+                        data = data if published == received else Published.at(published, data)
+                    piece.append((topic, received, data))
             elif opcode in {_SCHEMA, _CHANNEL}:
                 self._learn(opcode, records[start:end])
             elif not opcode:

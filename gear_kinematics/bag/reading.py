@@ -108,14 +108,17 @@ class Bag:
         progress: ReportProgress | None = None,
         *,
         any_encoding: bool = False,
+        publish_times: bool = False,
     ) -> Iterator[list[Message]]:
         """Read raw messages as `messages` does, many at a time, which is faster.
 
         The total that `progress` is told after each batch counts all topics of the bag. With
-        `any_encoding`, messages that are not CDR are read, too.
+        `any_encoding`, messages that are not CDR are read, too; with `publish_times`, those of an
+        mcap are `Published`.
         """
         done = 0
-        for batch in _joined(self._pieces(topics, any_encoding=any_encoding)):
+        options = {'any_encoding': any_encoding, 'publish_times': publish_times}
+        for batch in _joined(self._pieces(topics, **options)):
             yield batch
             done += len(batch)
             if progress:
@@ -166,20 +169,19 @@ class Bag:
             if self._listed and self._listed.keys() <= self._described.keys():
                 return
 
-    def _pieces(
-        self, topics: Collection[str], *, any_encoding: bool = False
-    ) -> Iterator[list[Message]]:
-        reading = self._read(frozenset(topics), any_encoding=any_encoding)
+    def _pieces(self, topics: Collection[str], **options: bool) -> Iterator[list[Message]]:
+        reading = self._read(frozenset(topics), options)
         self._readings.callback(reading.close)
         return reading
 
     def _read(
-        self, topics: frozenset[str], *, any_encoding: bool
+        self, topics: frozenset[str], options: Mapping[str, bool]
     ) -> Generator[list[Message], None, None]:
         read, limits = 0, self._limits()
         for file in self._files:
             with _opened(file, limits, read) as storage:
-                storage.any_encoding = any_encoding
+                storage.any_encoding = options.get('any_encoding', False)
+                storage.publish_times = options.get('publish_times', False)
                 for piece in _plain(storage.pieces(topics), limits):
                     storage.read += len(piece)
                     yield piece

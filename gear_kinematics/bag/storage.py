@@ -13,6 +13,20 @@ Message = tuple[str, int, bytes]
 """Topic, time of reception in ns, CDR. A named tuple would take 15 times as long to make."""
 
 
+class Published(bytes):
+    """CDR that was published at another time than it was received."""
+
+    time: int
+    """ns."""
+
+    @classmethod
+    def at(cls, time: int, data: bytes) -> Self:
+        """Make it of other bytes."""
+        published = cls(data)
+        published.time = time
+        return published
+
+
 class Topic(NamedTuple):
     """The description of a topic in a bag; a missing text is empty."""
 
@@ -71,6 +85,8 @@ class Storage:
         """Number of messages that the caller has taken from `pieces`."""
         self.any_encoding = False
         """Whether messages are read that are not CDR, too."""
+        self.publish_times = False
+        """Whether messages are `Published` where the file knows when they were."""
 
     def topics(self) -> list[Topic]:
         """Return the topics of the file."""

@@ -3,8 +3,10 @@
 
 import secrets
 import shutil
+import struct
 from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
+from io import BytesIO
 from pathlib import Path
 from types import TracebackType
 from typing import Literal, Self, cast
@@ -19,21 +21,61 @@ from rosbags.interfaces import (
 )
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.rosbag2.metadata import dump_qos_v9, parse_qos
-from rosbags.rosbag2.storage_mcap import McapWriter, Schema, write_schema
+from rosbags.rosbag2.storage_mcap import (
+    McapWriter,
+    Schema,
+    write_channel,
+    write_schema,
+    write_string,
+)
 from rosbags.rosbag2.storage_sqlite3 import Sqlite3Writer
 from rosbags.typesys import Stores, get_typestore
 
 from gear_kinematics.bag.errors import BagError, TopicError, bag_errors
 from gear_kinematics.bag.finding import parse_yaml
 from gear_kinematics.bag.reading import Bag
-from gear_kinematics.bag.storage import Message, Topic
+from gear_kinematics.bag.storage import Message, Published, Topic
 
 _MAX_ENTRIES = 4000  # of topics and QoS in the metadata; rosbags takes 3 ms to write one
+_PUBLISH_TIME = 23  # offset in the record of a message
 _FORMATS = {
     'ros2msg': MessageDefinitionFormat.MSG,
     'ros2idl': MessageDefinitionFormat.IDL,
     '': MessageDefinitionFormat.NONE,
 }
+
+
+class _McapFile(McapWriter):
+    """An mcap file as rosbag2 writes it: with hashes of types and times of publication."""
+
+    def __init__(self, path: Path, compression: CompressionMode) -> None:
+        super().__init__(path, compression)
+        self._published: list[tuple[int, int]] = []  # positions in the chunk, and times, ns
+
+    def add_connection(self, connection: Connection, offered_qos_profiles: str) -> None:
+        start = self.chunk.bio.tell()
+        super().add_connection(connection, offered_qos_profiles)
+        if connection.digest:
+            metadata = BytesIO()
+            write_string(metadata, 'topic_type_hash')
+            write_string(metadata, connection.digest)
+            channel = self.channels[-1]
+            whole = channel._replace(metadata=channel.metadata + metadata.getvalue())
+            self.channels[-1] = whole
+            self.chunk.bio.seek(start)
+            write_channel(self.chunk.bio, whole, self.schemas)
+
+    def write(self, connection: Connection, timestamp: int, data: bytes | memoryview) -> None:
+        if isinstance(data, Published):
+            self._published.append((self.chunk.bio.tell() + _PUBLISH_TIME, data.time))
+        super().write(connection, timestamp, data)
+
+    def close_chunk(self) -> None:
+        with self.chunk.bio.getbuffer() as records:
+            for place, time in self._published:
+                struct.pack_into('<Q', records, place, time)
+        self._published.clear()
+        super().close_chunk()
 
 
 class BagWriter:
@@ -80,6 +122,10 @@ class BagWriter:
             folder.mkdir(mode=0o700)
             self._partial = folder / f'{self.path.name}_0'
             self._writer = Writer(self._partial, version=9, storage_plugin=self._storage)
+            self._writer.STORAGE_PLUGINS = {
+                **Writer.STORAGE_PLUGINS,
+                StoragePlugin.MCAP: _McapFile,
+            }
             self._writer.set_compression(self._compression, CompressionFormat.ZSTD)
             self._writer.open()
             self._file = cast('McapWriter | Sqlite3Writer', self._writer.storage)

@@ -6,9 +6,12 @@ from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
+import mcap.reader
+import mcap.writer
 import pytest
 import replaying
 from live import SECOND, rotor_bytes
+from made_bags import definition_of
 from rosbags.rosbag2 import StoragePlugin, Writer
 from shipped_bags import BAGS, CONFIGS, TYPES, read_bag, write_bag
 
@@ -64,6 +67,42 @@ def rotor_only(tmp_path) -> Path:
             if number % 10 == 0:
                 writer.write(other, stamp + 600, UNKNOWN)
     return path
+
+
+@pytest.mark.parametrize('compression', ['none', 'zstd'])
+def test_copies_keep_publish_time_and_topic_type_hash(tmp_path, compression):
+    """Times that differ from those of reception, as of rosbag2, over more than a chunk."""
+    source, kind, type_hash = tmp_path / 'b.mcap', TYPES['/rotor_state'], 'RIHS01_' + 64 * 'a'
+    recorded = []
+    with source.open('wb') as stream:
+        writer = mcap.writer.Writer(stream)
+        writer.start(profile='ros2')
+        schema = writer.register_schema(kind, 'ros2msg', definition_of(kind).encode())
+        metadata = {'topic_type_hash': type_hash, 'offered_qos_profiles': ''}
+        for topic in ('/rotor_state', '/b'):
+            writer.register_channel(topic, 'cdr', schema, metadata)
+        for number in range(10_000):
+            stamp = SECOND + 1_000_000 * number
+            data = rotor_bytes(stamp, position=[0.1 * number], velocity=[100.0])
+            for channel, topic in enumerate(('/rotor_state', '/b'), 1):
+                received, published = stamp + 500, stamp + 250 * (number % 3)
+                writer.add_message(channel, received, data, published)
+                recorded.append((topic, received, published, data))
+        writer.finish()
+    run(source, tmp_path / 'copy', config(), compression=compression)
+    with (tmp_path / 'copy' / 'copy_0.mcap').open('rb') as stream:
+        reader = mcap.reader.make_reader(stream, validate_crcs=True)
+        found = list(reader.iter_messages(log_time_order=False))
+        assert len(reader.get_summary().chunk_indexes) > 1
+    hashes = {channel.topic: channel.metadata['topic_type_hash'] for _, channel, _ in found}
+    assert hashes == {'/rotor_state': type_hash, '/b': type_hash} | {
+        topic: replaying.TYPESTORE.hash_rihs01(TYPES[topic]) for topic in OUTPUTS
+    }
+    messages = [(c.topic, m.log_time, m.publish_time, m.data) for _, c, m in found]
+    assert [message for message in messages if message[0] not in OUTPUTS] == recorded
+    computed = [message for message in messages if message[0] in OUTPUTS]
+    assert len(computed) == 2 * 10_000
+    assert all(received == published for _, received, published, _ in computed)
 
 
 @pytest.mark.slow
