@@ -20,9 +20,9 @@ from rosbags.rosbag2 import Reader, StoragePlugin, Writer
 from validation import compare, repeated
 
 from gear_kinematics.bag import Bag
-from gear_kinematics.bag.compute import compute
 from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.validation.compute import compute
 from gear_kinematics.wire.topics import RECORDED_TOPICS
 
 _ROTOR = '/rotor_state'

@@ -6,13 +6,13 @@ import math
 from pathlib import Path
 
 from gear_kinematics import plotting
-from gear_kinematics.bag.trajectory import Trajectory
 from gear_kinematics.commands import ExitCode, arguments, drawing
 from gear_kinematics.commands.files import check_targets, write_file
 from gear_kinematics.commands.output import progress
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.image import check_image
+from gear_kinematics.validation.trajectory import Trajectory
 
 _SPEED = 2.0 * TURN  # rad/s: fast enough for the output, slow enough for the rotor
 _FPS = 20

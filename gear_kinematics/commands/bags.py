@@ -7,11 +7,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from gear_kinematics.bag import fleet
-from gear_kinematics.bag.cluster import on_cluster
 from gear_kinematics.commands import arguments
 from gear_kinematics.commands.output import message_progress, progress
 from gear_kinematics.correction.calibration_file import Calibration
+from gear_kinematics.fleet import processes
+from gear_kinematics.fleet.cluster import on_cluster
 from gear_kinematics.parameters import NodeParameters
 
 CALIBRATION = 'calibration.yaml'
@@ -87,10 +87,10 @@ def add_jobs(ways: argparse._MutuallyExclusiveGroup) -> None:
 
 def results(
     options: argparse.Namespace,
-    work: fleet.Work[Any, fleet.Report],
+    work: processes.Work[Any, processes.Report],
     tasks: Sequence[Any],
     unit: str,
-) -> dict[Path, fleet.Report]:
+) -> dict[Path, processes.Report]:
     """Return the reports on tasks by their `bag`; with `--jobs`, several processes compute them.
 
     Several processes have one progress bar in the unit; otherwise, each recording has its own.
@@ -99,7 +99,7 @@ def results(
         if options.scheduler:
             done = on_cluster(work, tasks, options.scheduler)
         else:
-            done = fleet.on_this_machine(work, tasks, options.jobs)
+            done = processes.on_this_machine(work, tasks, options.jobs)
         with progress(unit, quiet=options.quiet) as bars:
             tracked = bars.track(done, total=len(tasks), description=unit)
             return {task.bag: report for task, report in tracked}

@@ -6,7 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from gear_kinematics.bag import Bag
-from gear_kinematics.bag.compute import ComputeResult, compute
 from gear_kinematics.bag.roles import (
     find_encoder_topic,
     find_rotor_topic,
@@ -17,6 +16,7 @@ from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.report.document import printable
+from gear_kinematics.validation.compute import ComputeResult, compute
 from gear_kinematics.wire.nearest import listed
 
 

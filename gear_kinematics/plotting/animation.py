@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from gear_kinematics.bag.trajectory import Trajectory
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import RotorPosition
 from gear_kinematics.plotting.mechanism import FACES, BodyDrawing, CentreDrawing
@@ -16,6 +15,7 @@ from gear_kinematics.plotting.motion import rose
 from gear_kinematics.report.image import FAINT, INK, canvas
 from gear_kinematics.report.mark import MARK
 from gear_kinematics.shape.outlines import NAMES
+from gear_kinematics.validation.trajectory import Trajectory
 
 _WIDTH, _DPI = 4.0, 105  # inches: 420 pixels
 _HEIGHT = 2 / 3  # of the width: the mechanism, and beside it the centres at half its size

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, fleet, in_batches
+from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, in_batches
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.bag.roles import (
     beside,
@@ -17,6 +17,7 @@ from gear_kinematics.bag.roles import (
     only_joint,
 )
 from gear_kinematics.bag.schedule import count_due
+from gear_kinematics.fleet.processes import Work
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
@@ -135,5 +136,5 @@ def unusable(bag: Path, error: str, config: str = '') -> BagReport:
     return BagReport(str(bag), Verdict.UNUSABLE, config=config, error=error)
 
 
-WORK = fleet.Work(validate_bag, _lost)
-"""For `fleet.on_this_machine`."""
+WORK = Work(validate_bag, _lost)
+"""For `fleet.processes`."""

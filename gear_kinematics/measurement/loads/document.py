@@ -8,8 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gear_kinematics.bag import ReportProgress, fleet
+from gear_kinematics.bag import ReportProgress
 from gear_kinematics.bag.errors import unexpected
+from gear_kinematics.fleet.processes import Work
 from gear_kinematics.measurement.envelope import envelope
 from gear_kinematics.measurement.loads.recorded import (
     ANGLE_BINS,
@@ -75,8 +76,8 @@ def _lost(task: Task, cause: str) -> Report:
     return Report(None, {}, cause if str(task.bag) in cause else f'{task.bag}: {cause}')
 
 
-WORK = fleet.Work(report, _lost)
-"""For `fleet.on_this_machine`."""
+WORK = Work(report, _lost)
+"""For `fleet.processes`."""
 
 
 def _report(task: Task, loads: RecordedLoads) -> Report:

@@ -9,11 +9,11 @@ import pytest
 from gear_recordings import Samples, write_recording
 
 from gear_kinematics.bag import BagError
-from gear_kinematics.bag.trajectory import MOST_TURNS, Trajectory, read_trajectory
 from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.kinematics import matrix_method
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.share import share_directory
+from gear_kinematics.validation.trajectory import MOST_TURNS, Trajectory, read_trajectory
 from gear_kinematics.wire.cdr import JointStateTemplate
 
 MS = 1_000_000  # ns

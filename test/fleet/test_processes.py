@@ -24,7 +24,7 @@ from blocked_bags import (
 from shipped_bags import ROTOR, TYPES, write_bag
 
 from gear_kinematics.bag import Bag, BagError
-from gear_kinematics.bag.fleet import Work, on_this_machine
+from gear_kinematics.fleet.processes import Work, on_this_machine
 from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.task import Task

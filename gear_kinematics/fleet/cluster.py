@@ -9,7 +9,7 @@ from socket import gethostname
 from typing import Any
 from urllib.parse import urlsplit
 
-from gear_kinematics.bag.fleet import Report, Work
+from gear_kinematics.fleet.processes import Report, Work
 
 _PATIENCE = 30
 """Seconds for the first worker, which some clusters start only for tasks."""

@@ -16,9 +16,9 @@ from rosbags.rosbag2 import StoragePlugin, Writer
 from shipped_bags import BAGS, CONFIGS, TYPES, read_bag, write_bag
 
 from gear_kinematics.bag import Bag, BagError, DamagedBagError
-from gear_kinematics.bag.compute import ComputeResult, compute
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.validation.compute import ComputeResult, compute
 
 OUTPUTS = ('/output_state', '/body_poses')
 UNKNOWN = b'\x00\x01\x00\x00nobody knows'
