@@ -11,8 +11,8 @@ from gear_kinematics.commands.files import check_targets, write_file
 from gear_kinematics.commands.output import progress
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.plotting.trajectory import Trajectory
 from gear_kinematics.report.image import check_image
-from gear_kinematics.validation.trajectory import Trajectory
 
 _SPEED = 2.0 * TURN  # rad/s: fast enough for the output, slow enough for the rotor
 _FPS = 20

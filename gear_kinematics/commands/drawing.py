@@ -10,8 +10,8 @@ from gear_kinematics.commands.files import add_force
 from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.plotting.trajectory import Trajectory, read_trajectory
 from gear_kinematics.shape.teeth import InterferenceError, tooth_pair
-from gear_kinematics.validation.trajectory import Trajectory, read_trajectory
 
 
 def add_image(parser: argparse.ArgumentParser, formats: str) -> None:

@@ -12,10 +12,10 @@ from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import RotorPosition
 from gear_kinematics.plotting.mechanism import FACES, BodyDrawing, CentreDrawing
 from gear_kinematics.plotting.motion import rose
+from gear_kinematics.plotting.trajectory import Trajectory
 from gear_kinematics.report.image import FAINT, INK, canvas
 from gear_kinematics.report.mark import MARK
 from gear_kinematics.shape.outlines import NAMES
-from gear_kinematics.validation.trajectory import Trajectory
 
 _WIDTH, _DPI = 4.0, 105  # inches: 420 pixels
 _HEIGHT = 2 / 3  # of the width: the mechanism, and beside it the centres at half its size

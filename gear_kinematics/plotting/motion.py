@@ -7,8 +7,8 @@ import numpy as np
 
 from gear_kinematics.kinematics import Gear, Mechanism, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.plotting.trajectory import Trajectory
 from gear_kinematics.report.document import PENS, Array, Figure, Line, Panel, Pen
-from gear_kinematics.validation.trajectory import Trajectory
 
 MOST_PETALS = 1000
 """Greatest number of petals; with more, a rose looks like a disc."""

@@ -13,9 +13,9 @@ from properties import numbers_of
 
 from gear_kinematics import plotting
 from gear_kinematics.kinematics import Branch, Mechanism, matrix_method, split_turns
+from gear_kinematics.plotting.trajectory import Trajectory
 from gear_kinematics.report.image import to_image
 from gear_kinematics.shape.outlines import bodies
-from gear_kinematics.validation.trajectory import Trajectory
 
 figure_module = pytest.importorskip('matplotlib.figure', reason='matplotlib is not installed')
 

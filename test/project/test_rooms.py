@@ -100,7 +100,7 @@ ROOMS = {
         'state',
         'wire',
     ),
-    'plotting': ('kinematics', 'report', 'shape', 'validation'),
+    'plotting': ('bag', 'kinematics', 'parameters', 'report', 'shape', 'state', 'wire'),
     'twin': ('correction', 'kinematics', 'parameters', 'shape', 'wire'),
     'ros': (
         'bag',

@@ -12,8 +12,8 @@ from gear_kinematics.bag import BagError
 from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.kinematics import matrix_method
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.plotting.trajectory import MOST_TURNS, Trajectory, read_trajectory
 from gear_kinematics.share import share_directory
-from gear_kinematics.validation.trajectory import MOST_TURNS, Trajectory, read_trajectory
 from gear_kinematics.wire.cdr import JointStateTemplate
 
 MS = 1_000_000  # ns
