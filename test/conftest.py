@@ -1,6 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What every test needs: a ROS domain of its own, hypothesis profiles, mechanisms, shared data."""
 
+import atexit
 import os
 import signal
 import socket
@@ -8,15 +9,23 @@ from pathlib import Path
 
 
 def _free_domain() -> int:
-    """Find a ROS domain whose discovery port nobody on this machine has bound."""
+    """Find a ROS domain that nobody on this machine uses, and reserve it for this process.
+
+    Its discovery port is bound while it has participants. As tests have none at times, the last of
+    its ports is kept bound as well, which only its 119th participant would need.
+    """
     # Sessions that start at the same moment begin their search at different domains.
     candidates = [1 + (os.getpid() + k) % 101 for k in range(101)]
     for domain in candidates:
+        reserved = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
             try:
                 probe.bind(('127.0.0.1', 7400 + 250 * domain))
+                reserved.bind(('127.0.0.1', 7649 + 250 * domain))
             except OSError:
+                reserved.close()
                 continue
+            atexit.register(reserved.close)
             return domain
     raise RuntimeError('every ROS domain from 1 to 101 is in use on this machine')
 
