@@ -47,6 +47,8 @@ def check_targets(options: argparse.Namespace, targets: Mapping[str, str | None]
         given = Path(name)
         if given.exists() and not (given.is_file() or given.is_dir()):
             continue  # a pipe or a device, into which is written
+        if given.is_symlink() and not given.exists():
+            raise ValueError(f'{option} {name}: it is a link to nothing; name a file to write')
         path = given.resolve()
         if path in files:
             raise ValueError(f'{files[path]} and {option} are both to write {name}')

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import yaml
 
+from gear_kinematics.parameters.atomic_file import replace_file
 from gear_kinematics.parameters.files import ConfigError
 from gear_kinematics.parameters.node_parameters import NODE, default_config
 from gear_kinematics.share import PACKAGE
@@ -57,15 +58,7 @@ def start_command(topic: str, name: str, encoder: str = '') -> str:
 def write_new(path: Path, text: str) -> None:
     """Write a new file completely or not at all; raises ConfigError if that is impossible."""
     try:
-        with path.open('x', encoding='utf-8') as file:
-            try:
-                file.write(text)
-                file.flush()
-            except BaseException:
-                path.unlink()
-                raise
-    except FileExistsError as error:
-        raise ConfigError(f'{path}: exists already') from error
+        replace_file(path, text.encode(), new=True)
     except OSError as error:
         raise ConfigError(f'{path}: {error.strerror}') from error
 

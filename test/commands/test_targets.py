@@ -10,6 +10,7 @@ import pytest
 from blocked_bags import BAGS, refusal
 
 from gear_kinematics.commands.cli import main
+from gear_kinematics.parameters.atomic_file import replace_file
 from gear_kinematics.report.mark import is_report
 
 SERVO = BAGS / 'servo_point_to_point'
@@ -79,6 +80,18 @@ def test_other_files_are_replaced_only_by_force(command, work, capsys):
     assert main([*command.split(), '--force']) == 0
     assert is_report(work / 'notes.md')
     capsys.readouterr()
+
+
+@pytest.mark.parametrize('target', ['missing', 'laid'])  # nothing, or itself
+@pytest.mark.parametrize('command', ['mjcf -o', 'describe --json', 'calibrate samples.txt -o'])
+def test_nothing_is_written_through_a_link_to_nothing(command, target, work):
+    (work / 'laid').symlink_to(target)
+    assert 'laid: it is a link to nothing; name a file to write' in refusal(
+        *command.split(), 'laid', '--force'
+    )
+    assert not (work / 'missing').exists()
+    with pytest.raises(OSError, match='a link to nothing'):  # laid after the check
+        replace_file(work / 'laid', b'')
 
 
 def test_a_figure_replaces_no_other_picture(work):

@@ -103,18 +103,25 @@ def test_old_zero_is_removed_where_the_new_one_cannot_be_written(path, monkeypat
         write_home(path, replace(HOMED, rotor_zero=1.0), NODE)
 
 
-@pytest.mark.parametrize('moment', ['os.fsync', 'pathlib.Path.replace'])
-def test_process_that_is_killed_leaves_the_old_file_and_hinders_no_other(path, moment):
-    path.write_text(OLD, 'utf-8')
+@pytest.mark.parametrize(
+    ('moment', 'old', 'left'),
+    [('os.fsync', OLD, 1), ('os.fsync', '', 0), ('pathlib.Path.replace', OLD, 2)],
+)
+def test_process_that_is_killed_leaves_the_old_file_and_hinders_no_other(
+    path, tmp_path, moment, old, left
+):
+    if old:
+        path.write_text(old, 'utf-8')
     program = (
         'import os, pathlib, signal, sys\n'
         'from gear_kinematics.parameters.atomic_file import replace_file\n'
         'def kill(*_): os.kill(os.getpid(), signal.SIGKILL)\n'
         f'{moment} = kill\n'
-        "replace_file(pathlib.Path(sys.argv[1]), b'new')\n"
+        f"replace_file(pathlib.Path(sys.argv[1]), b'new', new={not old})\n"
     )
     process = subprocess.run([sys.executable, '-c', program, path], check=False)
     assert process.returncode == -signal.SIGKILL
-    assert path.read_text('utf-8') == OLD
-    replace_file(path, b'newer')
+    assert not old or path.read_text('utf-8') == old
+    assert len([*tmp_path.iterdir()]) == left
+    replace_file(path, b'newer', new=not old)
     assert path.read_bytes() == b'newer'
