@@ -52,6 +52,8 @@ class GearSimulator(PublishingNode):
         super().__init__(twin.NODE, **options)
         files = require_any(parameter_files, self.get_fully_qualified_name())
         self.add_on_set_parameters_callback(_check_parameters)
+        if fault := _check_parameters([self.get_parameter('use_sim_time')]).reason:
+            raise ValueError(fault)
         # What a file leaves out is as in gear_state_publisher with that file.
         shared = default_value if parameter_files else twin.default_value
         values = declared(
@@ -111,6 +113,9 @@ class GearSimulator(PublishingNode):
         self._compare_clocks()
         while self._due <= now:
             self._driver.advance(self._period / SECOND, self._load)
+            if self._model.notice:
+                self._warn(self._model.notice)
+                self._model.notice = ''
             stamp = max(self._due + self._offset, 0)
             self._outputs.send(
                 (topic, template.encode(stamp, read()))
@@ -188,6 +193,8 @@ def _check_parameters(changed: list[Parameter]) -> SetParametersResult:
     """Refuse values that are invalid beyond type and range, which rclpy checks."""
     known = {**PARAMETERS, **twin.PARAMETERS}
     reason = next(filter(None, (fault_of(parameter, known) for parameter in changed)), '')
+    if any(parameter.name == 'use_sim_time' and parameter.value for parameter in changed):
+        reason = 'use_sim_time must be false: gear_simulator moves the gear in real time'
     return SetParametersResult(successful=not reason, reason=reason)
 
 

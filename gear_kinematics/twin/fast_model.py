@@ -30,6 +30,7 @@ class FastModel:
     """
 
     def __init__(self, gear: TwinGear) -> None:
+        self.notice = ''
         self.rotor_angle = self.rotor_velocity = self.output_velocity = 0.0
         self.output_angle = gear.error(0.0)
         self.rotor_locked = self.output_locked = False

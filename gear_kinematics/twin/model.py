@@ -25,6 +25,8 @@ class Model(Protocol):
     """Whether the output shaft is locked."""
     rotor_locked: bool
     """Whether the rotor is locked."""
+    notice: str
+    """How the motion was not that of the gear since this was emptied; '' if it was."""
 
     def advance(self, duration: float, rotor_torque: float, load_torque: float) -> None:
         """Advance the time.

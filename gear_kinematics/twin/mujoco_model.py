@@ -6,6 +6,10 @@ import mujoco
 from gear_kinematics.twin.gear import TwinGear
 from gear_kinematics.twin.mjcf import mjcf
 
+_FASTEST = 0.14
+"""Greatest turn of the rotor in a time step, rad; beyond, closing the loops feeds in energy."""
+mujoco.set_mju_user_warning(lambda _: None)  # else MUJOCO_LOG.TXT in the current folder
+
 
 class MujocoModel:
     """Implements `Model` with MuJoCo; it begins at rest, without load, at φ2 = 0.
@@ -15,6 +19,7 @@ class MujocoModel:
     """
 
     def __init__(self, gear: TwinGear) -> None:
+        self.notice = ''
         self.rotor_locked = self.output_locked = False
         self._owed = 0.0  # s that have been asked for and not simulated yet
         self._build(gear)
@@ -48,7 +53,18 @@ class MujocoModel:
                 mujoco.mj_step(self.model, self.data)
         elif steps:
             mujoco.mj_step(self.model, self.data, steps)
+        self._bound()
         self._read()
+
+    def _bound(self) -> None:
+        """Keep the speed within what MuJoCo follows: all velocities at once, as the loops ask."""
+        data, fastest = self.data, _FASTEST / self.model.opt.timestep
+        if any(stat.number for stat in data.warning):
+            self.notice = 'the motion was beyond what MuJoCo follows, and has begun anew'
+            mujoco.mj_resetData(self.model, data)
+        elif (speed := abs(data.qvel[self._rotor])) > fastest:
+            self.notice = f'the rotor is held at the {fastest:.0f} rad/s that MuJoCo follows'
+            data.qvel *= fastest / speed
 
     def _build(self, gear: TwinGear) -> None:
         self._gear = gear

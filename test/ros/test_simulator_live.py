@@ -227,20 +227,42 @@ def test_wear_takes_the_preload_and_then_leaves_play(bench):
     )
 
 
+@pytest.mark.parametrize('notice', ['', 'the rotor is held'])
+def test_motion_that_is_not_that_of_the_gear_is_a_warning(notice):
+    warnings, model = [], SimpleNamespace(notice=notice)
+    node = SimpleNamespace(
+        _due=time.monotonic_ns(),
+        _period=10**12,
+        _compare_clocks=lambda: None,
+        _driver=SimpleNamespace(advance=lambda *_: None),
+        _load=0.0,
+        _model=model,
+        _offset=0,
+        _outputs=SimpleNamespace(send=tuple),
+        _joints=(),
+        _warn=warnings.append,
+    )
+    GearSimulator._step(node)
+    assert (warnings, model.notice) == ([notice] * bool(notice), '')
+
+
 def test_all_parameters_but_wear_are_read_only(context):
     node = GearSimulator(context=context, namespace='/read_only')
-    given = {'preload': 1.0, 'rotor_zero': 1.0, 'rate': 10.0, 'wear': 0.001}
+    given = {'preload': 1.0, 'rotor_zero': 1.0, 'rate': 10.0, 'use_sim_time': True, 'wear': 0.001}
     results = node.set_parameters([Parameter(name, value=given[name]) for name in given])
-    assert [result.successful for result in results] == [False, False, False, True]
+    assert [result.successful for result in results] == [False, False, False, False, True]
+    assert not node.get_clock().ros_time_is_active
     node.destroy_node()
 
 
 def test_parameters_that_cannot_be_are_refused(context, tmp_path):
-    for name, cause in {
-        'drop_out': 'did you mean `dropout`?',
-        'loads.rotor_inertia': 'loads.rotor_inertia must be',
-    }.items():
-        given = [Parameter(name, value=0.0)]
+    for name, value, cause in (
+        ('drop_out', 0.0, 'did you mean `dropout`?'),
+        ('loads.rotor_inertia', 0.0, 'loads.rotor_inertia must be'),
+        # The steps of a simulated clock would set stamps back.
+        ('use_sim_time', True, 'use_sim_time must be false: gear_simulator moves the gear in'),
+    ):
+        given = [Parameter(name, value=value)]
         with pytest.raises(ValueError, match=re.escape(cause)):
             GearSimulator(context=context, namespace='/refused', parameter_overrides=given)
     file = tmp_path / 'other.yaml'

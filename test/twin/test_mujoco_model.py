@@ -175,7 +175,7 @@ def test_a_ramp_is_that_of_the_fast_model(gear, values):
 
 
 def test_a_fast_rotor_is_as_fast_as_that_of_the_fast_model():
-    """Up to 3600 rad/s, as the reference says; faster, MuJoCo's loops feed in energy."""
+    """Up to 3600 rad/s, as the reference says; faster, it is held, else loops feed in energy."""
     gear = TwinGear.load(default_config())
     mujocos, fast = MujocoModel(gear), FastModel(gear)
     for _ in range(400):
@@ -183,6 +183,25 @@ def test_a_fast_rotor_is_as_fast_as_that_of_the_fast_model():
             model.advance(1e-3, 0.0, 5.0)
     assert abs(fast.rotor_velocity) > 3600.0
     assert mujocos.rotor_velocity == pytest.approx(fast.rotor_velocity, rel=5e-3)
+    assert mujocos.notice == ''
+    mujocos.data.qvel *= 3.0
+    mujocos.advance(1e-3, 0.0, 0.0)
+    assert mujocos.notice == 'the rotor is held at the 3780 rad/s that MuJoCo follows'
+    for _ in range(100):
+        mujocos.advance(1e-3, 0.0, 0.0)
+    assert abs(mujocos.rotor_velocity) < 3780.0  # without load, friction slows it down
+
+
+def test_a_load_beyond_all_bounds_leaves_a_gear_that_works_and_no_file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # MuJoCo writes its warnings into the current folder
+    model = MujocoModel(TwinGear.load(default_config()))
+    notices = set()
+    for _ in range(10):
+        model.advance(1e-3, 0.0, 1e6)
+        notices.add(model.notice)
+    assert 'the motion was beyond what MuJoCo follows, and has begun anew' in notices
+    settled(model, 0.0)
+    assert not [*tmp_path.iterdir()]
 
 
 def test_errors_move_the_output(gear):
