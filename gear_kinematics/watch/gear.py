@@ -5,6 +5,7 @@ import math
 import time
 from collections.abc import Mapping
 from concurrent import futures
+from itertools import count
 from typing import Any, NamedTuple
 
 from diagnostic_msgs.msg import DiagnosticArray
@@ -25,6 +26,9 @@ from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError
 
 _PATIENCE = 2.0  # s: a service that has not found this client yet loses the request
 _ZERO = 'rotor zero (rad)'  # in diagnostics
+_MOST_SUBJECTS = 50  # of diagnostics; any node can send statuses under the name of another
+_LONGEST = 1000  # characters of a text in diagnostics
+_revisions = count(1)
 _SHOWN = topics.OUTPUT_STATE, *topics.CORRECTED_TOPICS, topics.TRANSMISSION_ERROR
 
 
@@ -62,6 +66,8 @@ class GearNode:
         self.name = name
         self.seen = False  # whether it has ever run
         self.running = False
+        self.revision = next(_revisions)
+        """Number of what a command answers: no other node, start or set of parameters has it."""
         self.parameters: NodeParameters | None = (
             None  # None until the node has reported them since its start
         )
@@ -91,7 +97,7 @@ class GearNode:
         if publishers - self._publishers:
             self.statuses.clear()
             self.parameters, self.fault, self.earlier = None, '', {}
-            self._due = 0.0
+            self.revision, self._due = next(_revisions), 0.0
         self._publishers = publishers
 
     def poll(self) -> None:
@@ -100,15 +106,17 @@ class GearNode:
         for data, _ in self._diagnostics.take():
             for status in deserialize_message(data, DiagnosticArray).status:
                 if status.hardware_id == self.name:
-                    subject = status.name.rpartition(': ')[2]
-                    values = {pair.key: pair.value for pair in status.values}
+                    subject = status.name.rpartition(': ')[2][:_LONGEST]
+                    values = {pair.key: pair.value[:_LONGEST] for pair in status.values}
                     if (zero := values.get(_ZERO, self._zero)) != self._zero:
                         self._zero = zero
                         self.look(Graph(self._node))  # it may be another process by now
                         self._due = 0.0
-                    self.statuses[subject] = Status(
-                        subject, status.level[0], status.message, values, time.monotonic()
-                    )
+                    message, at = status.message[:_LONGEST], time.monotonic()
+                    self.statuses.pop(subject, None)  # the first is the oldest
+                    self.statuses[subject] = Status(subject, status.level[0], message, values, at)
+                    while len(self.statuses) > _MOST_SUBJECTS:
+                        self.statuses.pop(next(iter(self.statuses)))
         if self.running and time.monotonic() >= self._due and self._client.services_are_ready():
             self._due = time.monotonic() + _PATIENCE
             self._client.list_parameters([], 0, self._ask)
@@ -182,7 +190,8 @@ class GearNode:
         if self.parameters:
             now, before = parameters.values(), self.parameters.values()
             changed = {name: value for name, value in before.items() if now.get(name) != value}
-            self.earlier = changed or self.earlier
+            if changed:
+                self.earlier, self.revision = changed, next(_revisions)
             if 'rotor_zero' in changed:
                 self.homed_zero = parameters.rotor_zero
         self.parameters, self.fault, self._due = parameters, '', math.inf

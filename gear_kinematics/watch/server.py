@@ -19,6 +19,7 @@ from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from gear_kinematics.watch.gear import Answer
 from gear_kinematics.watch.page import drawing, watch_page
+from gear_kinematics.watch.view import UNANSWERED
 from gear_kinematics.watch.watcher import PERIOD, Watcher
 
 HOST = '127.0.0.1'
@@ -125,7 +126,7 @@ class _Live(_Guarded, WebSocketHandler):
         except (ValueError, RecursionError):
             answer = Answer('There is no such command.', done=False)
         except TimeoutError:
-            answer = Answer('The node does not answer.', done=False)
+            answer = Answer(UNANSWERED, done=False)
         with suppress(WebSocketClosedError):  # who asked may have left meanwhile
             await self.write_message({'answer': answer._asdict()})
 

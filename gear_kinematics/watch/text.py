@@ -22,7 +22,7 @@ from gear_kinematics.ros.live import replay_node
 from gear_kinematics.watch.commissioning import LiveCommissioning
 from gear_kinematics.watch.drivers import DriverTopic, Listener
 from gear_kinematics.watch.gear import Answer
-from gear_kinematics.watch.view import Entry, View
+from gear_kinematics.watch.view import UNANSWERED, Entry, View
 from gear_kinematics.watch.watcher import Watcher
 
 _REFRESH = 0.1  # s
@@ -46,23 +46,25 @@ def list_drivers(drivers: Sequence[DriverTopic], console: Console) -> None:
 def show(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> None:
     """Show a node and its drivers until stopped; on a terminal, the node can be homed by keys."""
     asked: Future[Answer] | None = None
-    asking = False  # whether to home
+    asking = 0  # the revision to home, if the question is shown
 
     def frame(pressed: str) -> tuple[list[Entry], bool]:
         nonlocal asked, asking
         view = watcher.view
         if pressed == 'u':
-            asked = watcher.ask({'do': 'undo'})
+            asked = watcher.ask({'do': 'undo', 'revision': view.revision})
         elif (asking and pressed == 'y') or (pressed == 'h' and not view.question):
-            asked = watcher.ask({'do': 'home'})  # without a question it is refused, and why
-        asking = bool(view.question) and (pressed == 'h' or (asking and not pressed))
+            # Without a question it is refused, and why.
+            asked = watcher.ask({'do': 'home', 'revision': asking or view.revision})
+        if pressed or not view.question:
+            asking = view.revision if pressed == 'h' and view.question else 0
         rows = rows_of(view)
         if not console.is_terminal:
             return rows, True
         if view.state == 'no node':
             rows += [Entry(d.topic, ', '.join(d.joints), f'{d.rate:.0f} Hz') for d in view.drivers]
-        if asked and asked.done():
-            text, done = asked.result()
+        if asked:
+            text, done = asked.result() if asked.done() else (UNANSWERED, True)
             rows.append(Entry('', text, '', '' if done else 'bad'))
         if asking:
             rows.append(Entry('', f'{view.question}   y yes   n no'))

@@ -4,6 +4,7 @@
 import math
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -19,6 +20,7 @@ from gear_kinematics.wire import topics
 Tone = Literal['', 'stale', 'notable', 'bad', 'pass', 'fail', 'unusable']
 """The names are those of the page's classes."""
 
+UNANSWERED = 'The node has not answered yet. It may still do what it was asked for.'
 _TONES: dict[str, Tone] = {'no node': 'unusable', 'connecting': 'unusable', 'connected': 'pass'}
 _MAX_STATUS_AGE = 3.0  # s; diagnostics come every second
 _RPM = 60.0 / TURN  # of 1 rad/s
@@ -49,6 +51,7 @@ class View:
     """Everything that is shown at a moment."""
 
     node: str = ''  # full name of the node; '' as long as there was none
+    revision: int = 0  # which a command repeats that answers this view
     state: str = 'no node'  # or connecting, connected, no output, ended, or fault
     tone: Tone = 'unusable'
     message: str = ''  # on the state, in sentences
@@ -66,12 +69,15 @@ class View:
 def view_of(gear: GearNode | None) -> View:
     """Compose the view of the node that was found or asked for."""
     state, message = _state_of(gear)
-    view = View(gear.name if gear else '', state, _TONES.get(state, 'fail'), message)
+    tone = _TONES.get(state, 'fail')
     if not gear:
+        return View('', 0, state, tone, message)
+    view = View(gear.name, gear.revision, state, tone, message)
+    if not gear.running:
         return view
     statuses = tuple(status_entry(s, time.monotonic()) for s in gear.statuses.values())
-    percent = _diagnostic(gear, 'preload', 'margin (% of the preload)')
-    margin = float(percent) / 100.0 if percent else None
+    percent = _number(_diagnostic(gear, 'preload', 'margin (% of the preload)'))
+    margin = None if percent is None else percent / 100.0
     view = replace(view, values=tuple(values_of(gear)), diagnostics=statuses, margin=margin)
     output, parameters = gear.joint(topics.OUTPUT_STATE), gear.parameters
     if state != 'connected' or not (output and parameters):
@@ -81,8 +87,8 @@ def view_of(gear: GearNode | None) -> View:
     angle, home = _degrees(output.position, 1), _degrees(parameters.home_angle, 1)
     return replace(
         view,
-        rotor=math.degrees(parameters.gear.gear_ratio.rotor_angle(output.position)),
-        output=math.degrees(output.position),
+        rotor=_finite(math.degrees(parameters.gear.gear_ratio.rotor_angle(output.position))),
+        output=_finite(math.degrees(output.position)),
         question=f'The output is at {angle}. Set it to {home}?',
         undo=', '.join(f'{name} {shown(value)}' for name, value in earlier.items()),
     )
@@ -131,7 +137,8 @@ def values_of(gear: GearNode) -> Iterator[Entry]:
     if left := _diagnostic(gear, 'preload', 'margin (N·m)'):
         least = _diagnostic(gear, 'preload', 'least margin (N·m)')
         detail = f'least {least} N·m in the last second'
-        yield Entry('preload left', f'{left} N·m', detail, 'bad' if float(left) <= 0.0 else '')
+        tone = '' if (_number(left) or 0.0) > 0.0 else 'bad'
+        yield Entry('preload left', f'{left} N·m', detail, tone)
     if corrected := gear.joint(topics.CORRECTED_STATE):
         interval = gear.joint(topics.CORRECTED_INTERVAL)
         detail = f'± {arc(interval.position)} (95 %)' if interval else ''
@@ -161,6 +168,18 @@ def _diagnostic(gear: GearNode, subject: str, key: str) -> str:
     status = gear.statuses.get(subject)
     known = status and time.monotonic() - status.at <= _MAX_STATUS_AGE
     return status.values.get(key, '') if status and known else ''
+
+
+def _number(text: str) -> float | None:
+    """Read a number that any node may have sent; None if it is none, or not finite."""
+    with suppress(ValueError):
+        return _finite(float(text))
+    return None
+
+
+def _finite(number: float) -> float | None:
+    """Return a number if JSON has it, else None."""
+    return number if math.isfinite(number) else None
 
 
 def _freshness(joint: JointValue, parameters: NodeParameters) -> Tone:

@@ -9,6 +9,8 @@
     ['mechanism', 'home', 'question', 'undo', 'commission', 'guide'].map(find);
   const form = commission.querySelector('form');
   let server;
+  let revision = 0; // of what is shown, which commands answer
+  let asked = 0; // the revision that the question is about
   let points = []; // [time in s, output angle in degrees or null]
 
   function set(element, text, className = '') {
@@ -75,6 +77,8 @@
   }
 
   function show(now) {
+    revision = now.revision;
+    if (asked !== revision) question.close();
     if (now.rotor !== null) {
       for (const name of ['rotor', 'output']) {
         mechanism.style.setProperty(`--${name}`, `${now[name] % 360}deg`);
@@ -107,7 +111,7 @@
   }
 
   function send(message) {
-    if (server.readyState === WebSocket.OPEN) server.send(JSON.stringify(message));
+    if (server.readyState === WebSocket.OPEN) server.send(JSON.stringify({revision, ...message}));
   }
 
   function connect() {
@@ -128,9 +132,10 @@
   home.addEventListener('click', () => {
     showAnswer({text: '', done: true});
     question.returnValue = '';
+    asked = revision;
     question.showModal(); // Cancel is focused: a key held down homes nothing
   });
-  question.addEventListener('close', () => question.returnValue && send({do: 'home'}));
+  question.addEventListener('close', () => question.returnValue && send({do: 'home', revision: asked}));
   undo.firstElementChild.addEventListener('click', () => send({do: 'undo'}));
   form.addEventListener('submit', event => {
     event.preventDefault();

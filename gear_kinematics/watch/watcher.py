@@ -110,20 +110,23 @@ class Watcher:
         if self._gear:
             self._gear.look(graph)
 
-    def _ready_gear(self) -> GearNode:
-        """Return the node; raises ValueError if none is ready."""
-        if not (self._gear and self._gear.running and self._gear.homing.service_is_ready()):
+    def _ready_gear(self, command: Mapping[str, Any]) -> GearNode:
+        """Return the node; raises ValueError if none is ready, or a command answers another."""
+        gear = self._gear
+        if not (gear and gear.running and gear.homing.service_is_ready()):
             raise ValueError('No node is ready.')
-        return self._gear
+        if command.get('revision') != gear.revision:
+            raise ValueError(f'Nothing was done: {gear.name} or its parameters are new here.')
+        return gear
 
     def _do(self, command: Any, answer: 'Future[Answer]') -> None:
         """Execute a command, and answer now or once the node has; ValueError if it is refused."""
         live, undo = self._live, self.view.undo
         match command:
             case {'do': 'home'}:
-                self._ready_gear().home(answer)
+                self._ready_gear(command).home(answer)
             case {'do': 'undo'} if undo:
-                gear = self._ready_gear()
+                gear = self._ready_gear(command)
                 gear.set(gear.earlier, f'Undone: {undo} again.', answer)
             case {'do': 'commission', 'rotor': [_, _] as rotor, 'output': [_, _] as output}:
                 self._commission(Channel(*map(str, rotor)), Channel(*map(str, output)), command)
@@ -131,7 +134,7 @@ class Watcher:
             case {'do': 'write'} if live:
                 answer.set_result(Answer(f'Written. Start:\n{live.write()}', done=True))
             case {'do': 'take'} if live:
-                gear = self._ready_gear()
+                gear = self._ready_gear(command)
                 values = live.changes(gear)
                 done = f'{gear.name} has taken {", ".join(values) or "nothing new"}, until it ends'
                 gear.set(values, f'{done}; the file keeps them.', answer)

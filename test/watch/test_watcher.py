@@ -9,12 +9,16 @@ import re
 import time
 from concurrent.futures import Future
 from contextlib import asynccontextmanager
-from dataclasses import replace
+from dataclasses import asdict, replace
+from functools import partial
+from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 from blocked_bags import wait_until
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from rclpy.serialization import serialize_message
 from rich.console import Console
 from watching import WatcherStandIn
 
@@ -25,7 +29,7 @@ from gear_kinematics.watch.drivers import DriverTopic, Graph
 from gear_kinematics.watch.gear import Answer, GearNode, JointValue, Status
 from gear_kinematics.watch.page import drawing
 from gear_kinematics.watch.text import line, list_drivers, rows_of, table
-from gear_kinematics.watch.view import Entry, View, status_entry, values_of, view_of
+from gear_kinematics.watch.view import UNANSWERED, Entry, View, status_entry, values_of, view_of
 from gear_kinematics.watch.watcher import Watcher
 from gear_kinematics.wire import topics
 
@@ -38,6 +42,7 @@ from gear_kinematics.watch.server import Server  # noqa: E402, needs it
 ROOT = Path(__file__).resolve().parents[2]
 JOINT_STATE = 'sensor_msgs/msg/JointState'
 HOSTILE = 'm\x1b[2J<img src=x onerror=alert(1)>'
+TEXT = 2000 * 'much '
 DRIVERS = (
     DriverTopic('/motor/joint_states', ('brake', 'm1'), 999.6),
     DriverTopic('/odd', (), 0.0),
@@ -91,6 +96,7 @@ def gear_node(**changes):
     kept = {'home file': 'not kept: set home_file'}
     node = {
         'name': '/left/gear_state_publisher',
+        'revision': 7,
         'running': True,
         'seen': True,
         'fault': '',
@@ -125,6 +131,34 @@ def test_a_gear_at_rest_has_no_negative_zero():
     assert angle == Entry('output angle', '0.000°', '0.00000 rad')
     assert rotor == Entry('rotor angle', '0.000°', '0.000 turns')
     assert speed == Entry('output speed', '0.00 rpm', 'rotor 0.0 rpm')
+
+
+@pytest.mark.parametrize('margin', ['nan', '1e999', 'much'])
+def test_what_another_node_says_under_its_name_breaks_no_view(margin):
+    values = dict.fromkeys(('margin (N·m)', 'margin (% of the preload)'), margin)
+    status = Status('preload', 0, 'ok', values, time.monotonic())
+    far = {topics.OUTPUT_STATE: JointValue(1e307, 1e307, 0.001, 1000.0)}
+    view = view_of(gear_node(statuses={'preload': status}, joint=far.get))
+    assert view.margin is None
+    json.dumps(asdict(view), allow_nan=False)
+
+
+def test_only_a_bounded_part_of_diagnostics_is_kept():
+    def taken(*subjects):
+        statuses = [
+            DiagnosticStatus(name=f'left/gear: {subject}', hardware_id='/left/gear', message=TEXT)
+            for subject in subjects
+        ]
+        return [(serialize_message(DiagnosticArray(status=statuses)), 0)]
+
+    node = object.__new__(GearNode)
+    node.name, node.running, node.statuses, node._zero = '/left/gear', False, {}, ''
+    node._outputs = SimpleNamespace(poll=lambda: None)
+    for subjects in (['rotor input', *map(str, range(1000))], ['rotor input']):
+        node._diagnostics = SimpleNamespace(take=partial(taken, *subjects))
+        node.poll()
+    assert len(node.statuses) == 50
+    assert node.statuses['rotor input'].message == TEXT[:1000]
 
 
 @pytest.mark.parametrize(('margin', 'tone'), [('0.75', ''), ('-0.3', 'bad')])
@@ -203,12 +237,14 @@ def test_parameters_of_an_odd_type_are_a_fault():
 def test_zero_that_a_node_has_lost_is_known(zeros, earlier, lost):
     """Zeros as they are read, and None where the node starts again."""
     node = object.__new__(GearNode)
-    node.parameters, node.homed_zero, node.earlier = None, None, {}
-    for zero in zeros:
+    node.parameters, node.homed_zero, node.earlier, node.revision = None, None, {}, 0
+    for before, zero in pairwise([None, *zeros]):
+        revision = node.revision
         if zero is None:
             node.parameters, node.earlier = None, {}
         else:
             node._take_parameters({'rotor_zero': zero})
+            assert (node.revision != revision) == (before not in (None, zero))
     assert node.earlier == ({} if earlier is None else {'rotor_zero': earlier})
     shown = {'earlier': node.earlier, 'homed_zero': node.homed_zero, 'parameters': node.parameters}
     view = view_of(gear_node(**shown))
@@ -345,6 +381,28 @@ JOINTS = {'rotor': ['/j', 'm'], 'output': ['/j', 'o']}
 def test_what_cannot_be_done_is_answered(running, command, answer):
     text, done = running.ask(command).result(20.0)
     assert (text[: len(answer)], done) == (answer, False)
+
+
+@pytest.mark.parametrize('revision', [None, 6, 7])
+@pytest.mark.parametrize('do', ['home', 'undo', 'take'])
+def test_command_to_another_gear_or_zero_than_its_page_shows_is_refused(do, revision):
+    done = []
+    watcher = Watcher()
+    watcher._gear = gear_node(
+        homing=SimpleNamespace(service_is_ready=lambda: True),
+        home=lambda _: done.append('home'),
+        set=lambda values, *_: done.append(*values),
+    )
+    watcher.view = View(undo='rotor_zero 0')
+    watcher._gear.earlier = {'undo': 0.0}
+    watcher._live = SimpleNamespace(changes=lambda _: {'take': 1.0})
+    command = {'do': do} | ({'revision': revision} if revision else {})
+    if revision == watcher._gear.revision:
+        watcher._do(command, Future())
+    else:
+        with pytest.raises(ValueError, match='Nothing was done: /left/gear_state_publisher or'):
+            watcher._do(command, Future())
+    assert done == [do] * (revision == 7)
 
 
 @pytest.mark.live
@@ -589,7 +647,7 @@ def test_node_that_does_not_answer_is_said(watcher, monkeypatch):
             await connection.write_message('{"do": "home"}')
             while 'answer' not in (message := json.loads(await connection.read_message())):
                 pass
-            assert message['answer'] == {'text': 'The node does not answer.', 'done': False}
+            assert message['answer'] == {'text': UNANSWERED, 'done': False}
 
     asyncio.run(run())
 
