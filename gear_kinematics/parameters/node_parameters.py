@@ -6,7 +6,7 @@ The default values are in config/actuator.yaml alone.
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from operator import attrgetter
@@ -32,26 +32,10 @@ _EVERY_NODE = re.compile(r'use_sim_time|start_type_description_service|qos_overr
 """Parameters that every node has and that are ignored here."""
 
 
-_LEAST_TORQUE, _LEAST_STIFFNESS, _GREATEST_STIFFNESS = 1e-6, 1e-3, 1e12
-"""N·m, N·m/rad: with less or more, the unit is another one, and loads would overflow."""
-
-
-def _zero_or(least: float) -> Callable[[float], None]:
-    """Make a check that refuses values other than 0 whose magnitude is below the least."""
-
-    def check(value: float) -> None:
-        if 0.0 < abs(value) < least:
-            raise ValueError(f'0, or a magnitude of at least {least:g}, not {value!r}')
-
-    return check
-
-
 def _check_stiffness(values: Sequence[float]) -> None:
-    """Refuse a list of stiffnesses that are not one or two, or out of range."""
-    least, greatest = _LEAST_STIFFNESS, _GREATEST_STIFFNESS
-    if len(values) not in {1, 2} or not all(x == 0.0 or least <= x <= greatest for x in values):
-        bounds = f'one or two values, each 0 or between {least:g} and {greatest:g}'
-        raise ValueError(f'{bounds}, not {[*values]}')
+    """Refuse a list of stiffnesses that are not one or two, or not finite or negative."""
+    if len(values) not in {1, 2} or not all(0.0 <= each < math.inf for each in values):
+        raise ValueError(f'one or two values of at least 0, not {[*values]}')
 
 
 def _parameter(*arguments: Any, **named: Any) -> Any:
@@ -144,19 +128,17 @@ class NodeParameters:
         'negative if branch A pushes the output in the negative direction; 0: unknown',
         *(-1e6, 1e6),
         read_only=True,
-        check=_zero_or(_LEAST_TORQUE),
+        least=1e-6,
     )
     branch_stiffness: tuple[float, ...] = _parameter(
         'Torsional stiffness of the branches, of both or of each, N·m/rad at the output; 0: rigid',
         read_only=True,
         items=float,
+        least=1e-3,
         check=_check_stiffness,
     )
     shaft_stiffness: float = _parameter(
-        'Torsional stiffness between both arms, N·m/rad; 0: rigid',
-        *(0.0, _GREATEST_STIFFNESS),
-        read_only=True,
-        check=_zero_or(_LEAST_STIFFNESS),
+        'Stiffness between both arms, N·m/rad; 0: rigid', 0.0, 1e12, read_only=True, least=1e-3
     )
     loads: Bodies
     """In ROS, each of its values is a parameter, such as `loads.rotor_inertia`."""

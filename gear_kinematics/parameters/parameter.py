@@ -13,6 +13,8 @@ class Parameter:
     description: str
     minimum: float | None = None
     maximum: float | None = None
+    least: float = 0.0
+    """Least magnitude of a number, or of those in a list, that is not 0."""
     step: int = 0
     choices: tuple[str, ...] = ()
     read_only: bool = False
@@ -42,6 +44,9 @@ class Parameter:
         """Return a fault of a value whose type and bounds ROS has checked, or None."""
         if self.choices and value not in self.choices:
             return f'{name} must be one of {", ".join(self.choices)}, not {value!r}'
+        numbers = (value if self.kind is list else [value]) if self.least else ()
+        if any(0.0 < abs(number) < self.least for number in numbers):
+            return f'{name} must be 0, or at least {self.least:g} in magnitude, not {value!r}'
         try:
             self.check(value)
         except ValueError as error:

@@ -133,8 +133,7 @@ REFUSED = [
     ('home_max_speed', -0.01, ('0.0', '1000000.0')),
     ('preload', 5e-324, ('0', '1e-06')),
     ('shaft_stiffness', 1e-300, ('0', '0.001')),
-    ('branch_stiffness', [3000.0, 1e-300], ('0', '0.001', '1e+12')),
-    ('branch_stiffness', [1e300], ('0', '0.001', '1e+12')),
+    ('branch_stiffness', [3000.0, 1e-300], ('0', '0.001')),
     ('a.cam_phase', 7.0, ('-6.28', '6.28')),
     ('b.axial_position', math.nan, ('-10.0', '10.0')),
 ]
