@@ -1,10 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Calibrate a gear from a recording of rotor and output encoder, and check it with another one.
+"""Calibrate a gear from a recording of rotor and output encoder, and check it with another one."""
 
-python calibration.py FIRST SECOND RATIO   # bags or CSV files
-"""
-
-import sys
+from argparse import ArgumentParser
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,7 +10,12 @@ from gear_kinematics.measurement.calibration import fit, judge
 from gear_kinematics.measurement.reading import read_encoders
 from gear_kinematics.parameters import NodeParameters
 
-first, second, ratio = Path(sys.argv[1]), Path(sys.argv[2]), GearRatio.parse(sys.argv[3])
+parser = ArgumentParser(description=__doc__)
+parser.add_argument('first', type=Path, help='bag or CSV file')
+parser.add_argument('second', type=Path, help='bag or CSV file')
+parser.add_argument('ratio', type=GearRatio.parse, help='such as -19 or 1457/26')
+given = parser.parse_args()
+first, second, ratio = given.first, given.second, given.ratio
 config = replace(NodeParameters.load(), gear_ratio=str(ratio))
 result = fit([read_encoders(first, config)], ratio)
 Path('calibration.yaml').write_text(result.calibration.text(), 'utf-8')  # a parameter of the node

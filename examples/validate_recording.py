@@ -1,10 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Compare a recording with the outputs the node should have published, as a pytest could do.
+"""Compare a recording with the outputs the node should have published, as a pytest could do."""
 
-python validate_recording.py [BAG [PARAMETERS]]
-"""
-
-import sys
+from argparse import ArgumentParser
 from pathlib import Path
 
 from gear_kinematics.parameters import default_config
@@ -19,7 +16,9 @@ def test_recording(bag: Path, parameters: Path) -> None:
 
 
 if __name__ == '__main__':
-    given = [*map(Path, sys.argv[1:])]
-    bag = given[0] if given else ROOT / 'bags/servo_point_to_point'
-    test_recording(bag, given[1] if len(given) > 1 else default_config())
-    print(f'{bag.name}: what was published is right')
+    parser = ArgumentParser(description=__doc__)
+    parser.add_argument('bag', type=Path, nargs='?', default=ROOT / 'bags/servo_point_to_point')
+    parser.add_argument('parameters', type=Path, nargs='?', default=default_config())
+    given = parser.parse_args()
+    test_recording(given.bag, given.parameters)
+    print(f'{given.bag.name}: what was published is right')

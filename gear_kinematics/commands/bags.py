@@ -4,6 +4,7 @@
 import argparse
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ from gear_kinematics.commands.output import message_progress, progress
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.fleet import processes
 from gear_kinematics.fleet.cluster import on_cluster
-from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.parameters import NodeParameters, default_config
 
 CALIBRATION = 'calibration.yaml'
 """Name of a calibration in the folder of a bag."""
@@ -73,6 +74,17 @@ def load_calibration(
     """
     gear, path = config.gear, calibration_path(options, config, bag)
     return Calibration.load(path, gear) if path else None
+
+
+def files_of(
+    options: argparse.Namespace, config: NodeParameters, bag: Path | None
+) -> dict[str, bytes]:
+    """Return the parameters and the calibration as files that are found beside a new recording."""
+    files = {}
+    if calibration := calibration_path(options, config, bag):
+        files[CALIBRATION] = calibration.read_bytes()
+    used = replace(config, calibration=CALIBRATION if calibration else '', home_file='')
+    return {default_config().name: used.as_file().encode(), **files}
 
 
 def add_jobs(ways: argparse._MutuallyExclusiveGroup) -> None:

@@ -25,6 +25,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     'info': ('list the contents of recordings: topics, rates, joints and gaps', 'info logs/*/'),
     'validate': ('compare recorded outputs with recomputed ones', 'validate logs/monday'),
     'compute': ('write a bag with the outputs for a rotor topic', 'compute logs/monday computed'),
+    'record': ('record what running nodes hear and publish', 'record monday'),
     'replay': ("publish a bag's rotor topic with its own timing", 'replay logs/monday --loop'),
     'demo': ('play the shipped bag into the live node and validate its outputs', 'demo'),
     'init': ('list running drivers, and write a parameter file for one', 'init --joint m1'),

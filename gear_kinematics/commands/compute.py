@@ -14,7 +14,6 @@ from gear_kinematics.bag.roles import (
 )
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import complain, message_progress
-from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.report.document import printable
 from gear_kinematics.validation.compute import ComputeResult, compute
 from gear_kinematics.wire.nearest import listed
@@ -58,7 +57,7 @@ def run(options: argparse.Namespace) -> ExitCode:
             encoder_topic=find_encoder_topic(bag, rotor) if config.absolute else '',
             calibration=calibration,
             others=options.topics,
-            files=_files(options, used),
+            files=bags.files_of(options, used, options.bag),
             storage=options.storage,
             compression=options.compression,
             progress=progress,
@@ -73,15 +72,6 @@ def run(options: argparse.Namespace) -> ExitCode:
         complain(f'{options.bag}: most messages on {rotor} were rejected{joints}')
         return ExitCode.FAILED
     return ExitCode.DONE
-
-
-def _files(options: argparse.Namespace, config: NodeParameters) -> dict[str, bytes]:
-    """List the files with which the bag was computed; `gearkin validate` finds their copies."""
-    files = {}
-    if calibration := bags.calibration_path(options, config, options.bag):
-        files[bags.CALIBRATION] = calibration.read_bytes()
-    used = replace(config, calibration=bags.CALIBRATION if calibration else '', home_file='')
-    return {default_config().name: used.as_file().encode(), **files}
 
 
 def _print_summary(out: Path, result: ComputeResult) -> None:

@@ -6,10 +6,11 @@ from typing import Any, NamedTuple
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.ros.drivers import DEPTH
+from gear_kinematics.wire.cdr import SECOND
 
 _SPAN = 1.0  # s, over which rates are measured
 
@@ -32,23 +33,31 @@ class Taken(NamedTuple):
 class Polled:
     """A subscription from which messages are taken only on request.
 
-    Best effort is compatible with every publisher, and asks for no acknowledgements.
+    Best effort, the default, is compatible with every publisher and asks for no acknowledgements.
     """
 
-    def __init__(self, node: Node, topic: str, message_type: type = JointState) -> None:
+    def __init__(
+        self,
+        node: Node,
+        topic: str,
+        message_type: type = JointState,
+        reliability: ReliabilityPolicy = ReliabilityPolicy.BEST_EFFORT,
+        durability: DurabilityPolicy = DurabilityPolicy.VOLATILE,
+    ) -> None:
         """Subscribe."""
         self._node = node
         self._subscription = node.create_subscription(
             message_type,
             topic,
             lambda _: None,  # never called
-            QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT),
+            QoSProfile(depth=DEPTH, reliability=reliability, durability=durability),
             raw=True,
             callback_group=NeverExecuted(),
         )
         self.last: Taken | None = None
         self.rate = 0.0  # messages per second, over the last second
-        self._count = 0
+        self.count = 0
+        self._begun = 0  # ns
         self._before = time.monotonic(), 0  # s, and the count then
 
     def take(self) -> list[Taken]:
@@ -61,13 +70,20 @@ class Polled:
                     break
                 data, about = taken
                 new.append(Taken(data, about['received_timestamp'] or time.time_ns()))
-        self.last = new[-1] if new else self.last
-        self._count += len(new)
+        if new:
+            self._begun, self.last = self._begun or new[0].received, new[-1]
+        self.count += len(new)
         now, (before, count) = time.monotonic(), self._before
         if now >= before + _SPAN:
-            self.rate = (self._count - count) / (now - before)
-            self._before = now, self._count
+            self.rate = (self.count - count) / (now - before)
+            self._before = now, self.count
         return new
+
+    @property
+    def mean_rate(self) -> float:
+        """Messages per second, from the first to the last."""
+        span = self.last.received - self._begun if self.last else 0
+        return SECOND * (self.count - 1) / span if span else 0.0
 
     def close(self) -> None:
         """Unsubscribe."""

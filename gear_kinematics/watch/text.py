@@ -22,6 +22,7 @@ from gear_kinematics.ros.live import replay_node
 from gear_kinematics.watch.commissioning import LiveCommissioning
 from gear_kinematics.watch.drivers import DriverTopic, Listener
 from gear_kinematics.watch.gear import Answer
+from gear_kinematics.watch.recorder import Recorder
 from gear_kinematics.watch.view import UNANSWERED, Entry, View
 from gear_kinematics.watch.watcher import Watcher
 
@@ -97,6 +98,25 @@ def guide(live: LiveCommissioning, console: Console, stopped: Callable[[], bool]
         listener = Listener(node)
         listener.look([live.request.rotor.topic, live.request.output.topic])
         _show(console, stopped, frame)
+
+
+def show_recording(recorder: Recorder, console: Console, stopped: Callable[[], bool]) -> None:
+    """Record until a key or a signal ends it; in a pipe, there is a line for each new topic."""
+
+    def frame(pressed: str) -> tuple[list[Entry], bool]:
+        recorder.poll()
+        rows = [Entry('waiting', 'for a gear_state_publisher')]
+        if recorder.heard:
+            rows = [Entry('recording', ', '.join(recorder.heard))]
+        if console.is_terminal:
+            rows = [
+                *(Entry(topic, f'{polled.rate:.0f} Hz', f'{polled.count} messages')
+                  for topic, polled in recorder.heard.items()),
+                Entry('', '' if recorder.heard else rows[0].value, 'q end'),
+            ]  # fmt: skip
+        return rows, pressed != 'q'
+
+    _show(console, stopped, frame)
 
 
 def _show(

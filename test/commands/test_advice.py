@@ -31,7 +31,7 @@ LAZY = tuple(
 """Imported where ROS or a page is needed."""
 READERS = ('validate', 'lost-motion', 'calibrate')
 MISSING = {
-    'rclpy': ['demo', 'replay SERVO', 'validate --live SERVO', 'init'],
+    'rclpy': ['demo', 'replay SERVO', 'validate --live SERVO', 'init', 'record out'],
     'plotly': [f'{command} SERVO --html a.html' for command in READERS],
     'matplotlib': [
         *('validate SERVO --plot a.png', 'lost-motion SERVO --plot a.png'),

@@ -35,7 +35,7 @@ def run(name, *arguments, cwd):
 
 def test_every_example_is_short_and_tested():
     files = {path.stem: path.read_text('utf-8') for path in EXAMPLES.glob('*.py')}
-    assert files.keys() == {*TOLD, 'bench', 'record'}  # those of test_first_hour.py
+    assert files.keys() == {*TOLD, 'bench'}  # which test_first_hour.py runs
     assert all(len(text.splitlines()) <= 40 for text in files.values())
 
 
@@ -49,6 +49,13 @@ def test_example_says_what_it_should(name, tmp_path):
     assert (done.returncode, done.stderr) == (0, '')
     for part in TOLD[name]:
         assert part in done.stdout
+
+
+@pytest.mark.parametrize('name', ['bench', 'calibration', 'validate_recording'])
+def test_an_example_with_arguments_answers_help(name, tmp_path):
+    done = run(name, '--help', cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, '')
+    assert done.stdout.startswith(f'usage: {name}.py')
 
 
 def test_the_documented_test_of_a_package_holds_its_recording_to_its_parameters(tmp_path):

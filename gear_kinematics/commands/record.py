@@ -1,0 +1,50 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""`gearkin record`: what the running nodes hear and publish, as a recording."""
+
+import argparse
+from pathlib import Path
+
+from gear_kinematics.commands import ExitCode, arguments, bags
+from gear_kinematics.commands.output import Console, warn_of_shared_memory
+from gear_kinematics.wire.nearest import listed
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument('out', type=Path, metavar='OUT', help='folder to create')
+    arguments.add_config(parser, default='none; a copy of FILE is kept in OUT, for validate')
+    parser.set_defaults(calibration=None)
+
+
+def run(options: argparse.Namespace) -> ExitCode:
+    """Record until interrupted; ValueError if nothing was heard."""
+    config = arguments.load_config(options)
+    files = bags.files_of(options, config, None) if options.config else {}
+    warn_of_shared_memory(participants=1)
+    # These need ROS, unlike most commands, and the last one rosbags.
+    from gear_kinematics.ros.live import replay_node  # noqa: PLC0415
+    from gear_kinematics.ros.replay import stopped_by_signals  # noqa: PLC0415
+    from gear_kinematics.watch.recorder import Recorder  # noqa: PLC0415
+    from gear_kinematics.watch.text import show_recording  # noqa: PLC0415, isort: skip
+    from gear_kinematics.bag.writing import BagWriter  # noqa: PLC0415, an extra
+
+    with stopped_by_signals() as stopped, BagWriter(options.out) as bag:
+        for name, content in files.items():
+            bag.add_file(name, content)
+        with replay_node('') as node:
+            recorder = Recorder(node, bag, options.node)
+            show_recording(recorder, Console(), stopped)
+        heard = recorder.heard
+        missing = listed(sorted(recorder.inputs - heard.keys()))
+        if not recorder.inputs & heard.keys():
+            raise ValueError(
+                f'nothing was recorded: no driver was heard on {missing}'
+                if missing
+                else 'nothing was recorded: no gear_state_publisher runs with this ROS_DOMAIN_ID'
+            )
+    print(f'{options.out}: {sum(polled.count for polled in heard.values())} messages')
+    for topic, polled in sorted(heard.items()):
+        print(f'    {topic}: {polled.count} messages, {polled.mean_rate:.0f} Hz')
+    if missing:
+        print(f'nothing came on {missing}')
+    return ExitCode.DONE

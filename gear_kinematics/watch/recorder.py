@@ -1,0 +1,63 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Records what gear nodes hear and publish, as their topics are named."""
+
+from contextlib import suppress
+from importlib import import_module
+from operator import itemgetter
+from typing import TYPE_CHECKING
+
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
+
+from gear_kinematics.bag import Message
+from gear_kinematics.parameters import NODE
+from gear_kinematics.watch.drivers import Graph
+from gear_kinematics.watch.polled import Polled
+from gear_kinematics.wire import topics
+
+if TYPE_CHECKING:
+    from gear_kinematics.bag.writing import BagWriter  # needs an extra
+
+_TYPES = {topic.type for topic in topics.TOPICS.values() if topic.part != 'display'}
+
+
+class Recorder:
+    """Records the topics of gear nodes, each from the moment that it has a publisher."""
+
+    def __init__(self, node: Node, bag: 'BagWriter', wanted: str = NODE) -> None:
+        """Record all gear nodes, or the one with a full name, into an open bag."""
+        self.heard: dict[str, Polled] = {}
+        """The topics on which messages have come."""
+        self.inputs: set[str] = set()
+        """The topics to which the gear nodes subscribe."""
+        self._node, self._bag = node, bag
+        self._wanted = '' if wanted == NODE else f'/{wanted.removeprefix("/")}'
+        self._open: dict[str, tuple[str, Polled]] = {}  # with the types
+
+    def poll(self) -> None:
+        """Look for topics, and write the messages that have arrived; to be called often."""
+        for gear in Graph(self._node).gears:
+            if gear == self._wanted or not self._wanted:
+                self._look(*gear.rpartition('/')[::2])
+        messages: list[Message] = []
+        for topic, (kind, polled) in self._open.items():
+            messages += [(topic, received, data) for data, received in polled.take()]
+            if polled.last and topic not in self.heard:
+                self.heard[topic] = polled
+                self._bag.add_topic(topic, kind)
+        self._bag.write_all(sorted(messages, key=itemgetter(1)))
+
+    def _look(self, namespace: str, name: str) -> None:
+        with suppress(RuntimeError):  # the node has ended meanwhile
+            place = name, namespace or '/'
+            inputs = self._node.get_subscriber_names_and_types_by_node(*place)
+            outputs = self._node.get_publisher_names_and_types_by_node(*place)
+            self.inputs |= {topic for topic, types in inputs if topics.JOINT_STATE in types}
+            for topic, [kind, *_] in inputs + outputs:
+                wanted = kind in _TYPES and topics.base_name(topic) != topics.JOINT_STATES
+                if wanted and topic not in self._open and self._node.count_publishers(topic):
+                    package, _, message = kind.split('/')
+                    message_type = getattr(import_module(f'{package}.msg'), message)
+                    # What all publishers offer at this moment, such as reliable and latched.
+                    qos = ReliabilityPolicy.BEST_AVAILABLE, DurabilityPolicy.BEST_AVAILABLE
+                    self._open[topic] = kind, Polled(self._node, topic, message_type, *qos)

@@ -1,0 +1,49 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""`gearkin record` beside a node and a driver that begin later, and where there is nothing."""
+
+import contextlib
+import re
+
+import pytest
+from watching import ENCODER, MOTOR, NAMESPACE, NODE, driving, gearkin, node
+
+from gear_kinematics.bag import Bag
+from gear_kinematics.commands.cli import main
+
+pytestmark = [pytest.mark.live, pytest.mark.slow]
+
+
+def test_what_a_node_hears_and_publishes_is_recorded_as_it_is_named(tmp_path, capsys):
+    config = tmp_path / 'shoulder.yaml'
+    config.write_text('/**: {ros__parameters: {rotor_joint: m1}}', 'utf-8')
+    with gearkin(
+        tmp_path, 'record', 'monday', '--node', NODE, '--config', str(config)
+    ) as recording:
+        recording.wait_for('waiting for a gear_state_publisher')
+        with node(tmp_path):
+            recording.wait_for('recording /diagnostics')
+            with driving():
+                recording.wait_for(rf'recording .*{MOTOR}')
+                recording.wait_for(rf'recording .*{NAMESPACE}/output_state')
+                capsys.readouterr()
+    assert recording.process.returncode == 0
+    assert re.search(rf' {ENCODER}: \d+ messages, (9|10)\d Hz\n', recording.text())
+    with Bag(tmp_path / 'monday') as bag:
+        assert bag.topics.keys() >= {
+            MOTOR, ENCODER, '/diagnostics',
+            *(f'{NAMESPACE}/{topic}' for topic in ('output_state', 'body_poses', 'referenced')),
+        }  # fmt: skip
+    assert main(['validate', str(tmp_path / 'monday')]) == 0, capsys.readouterr().out
+
+
+@pytest.mark.parametrize('running', [True, False])
+def test_what_hears_nothing_says_so_and_leaves_nothing(running, tmp_path):
+    with (
+        node(tmp_path) if running else contextlib.nullcontext(),
+        gearkin(tmp_path, 'record', 'monday', '--node', NODE) as recording,
+    ):
+        recording.wait_for('recording /diagnostics' if running else 'waiting')
+    cause = f'no driver was heard on {MOTOR}' if running else 'no gear_state_publisher runs'
+    assert recording.process.returncode == 2
+    assert f'gearkin: nothing was recorded: {cause}' in recording.text().splitlines()[-1]
+    assert not (tmp_path / 'monday').exists()
