@@ -124,8 +124,8 @@ _SENTENCES = {
     'overspeed': '{rotor.overspeed} steps of {rotor.topic} are faster than max_rotor_speed, at '
     'most {rotor.max_speed:.4g} rad/s',
     'of_others': '{rotor.of_others} messages of {rotor.topic} are of other joints: no fault',
-    'zero_stamps': '{rotor.zero_stamps} messages of {rotor.topic} have no stamp: the node stamped '
-    'their outputs itself, and they cannot be matched',
+    'zero_stamps': '{rotor.zero_stamps} messages of {rotor.topic} have no stamp: their outputs '
+    "have the node's time, and are matched in their order",
 }
 """Sentences by the names of the counts in `InputReport`."""
 

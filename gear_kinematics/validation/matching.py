@@ -33,6 +33,9 @@ Solver = Callable[..., MotionState]
 WINDOW = 16_384
 """Samples kept for late messages; even later ones count as extra."""
 
+_AHEAD = 1000
+"""Samples that are compared with a message that has no stamp in common with any."""
+
 SAMPLES = [
     ('number', np.int64),
     ('told', np.bool_),
@@ -145,6 +148,30 @@ def _of_later_clock(stamp: int, received: int, row: int, window: Array, resets: 
     return bool(abs(received - due) < abs(received - window['received'][row]))
 
 
+def in_order(messages: int, samples: int, fit: Callable[[int, slice], Array]) -> Array:
+    """Pair messages with samples in the order of both; `fit` tells which samples fit a message.
+
+    Messages that fit none are paired by their place between two that do, or all by their place.
+
+    Returns:
+        The indices of the messages and of their samples, (2, n).
+    """
+    found = [(-1, -1)]
+    for message in range(messages):
+        after = found[-1][1] + 1
+        fitting = fit(message, slice(after, after + _AHEAD))
+        if fitting.any():
+            found.append((message, after + int(np.argmax(fitting))))
+    last, at = found[-1]
+    ends = [*found[1:], (last + 1, at + 1) if len(found) > 1 else (messages, samples)]
+    pairs = [
+        (message + k, sample + k)
+        for (message, sample), (end, sample_end) in zip(found, ends, strict=True)
+        for k in range(min(end - message, sample_end - sample))
+    ]
+    return np.array(pairs[1:], np.intp).reshape(-1, 2).T
+
+
 def rotor_angle(samples: Array) -> Array:
     """The rotor angle of samples, (n,), rad."""
     return np.asarray(TURN * samples['turns'] + samples['angle'])
@@ -172,6 +199,8 @@ class OutputTopic:
         self._malformed = Occurrences()  # when they were received, as they have no stamp
         self._faults: defaultdict[str, Occurrences] = defaultdict(Occurrences)
         self._late: tuple[list[bytes], list[int]] = [], []
+        self.unstamped = False
+        """Whether the node gave its own time to some inputs, which had no stamp."""
 
     def take(
         self, messages: list[bytes], received: list[int], window: Array, inputs: RecordedInputs
@@ -184,6 +213,8 @@ class OutputTopic:
         times = np.array(received, np.int64)
         self._malformed.add(times[malformed])
         usable = np.flatnonzero(~malformed)
+        if self.unstamped:
+            self._adopt_stamps(stamps, usable, window)
         index = self.matcher.match(stamps[usable], times[usable], window)
         found = index >= 0
         # A message can be recorded before its input: it waits for one batch.
@@ -200,6 +231,9 @@ class OutputTopic:
         for errors, field in zip(self.errors, fields, strict=True):
             errors.update(field, samples['stamp'], angle)
         self.series.update(samples['stamp'], angle, *fields)
+
+    def _adopt_stamps(self, stamps: Array, usable: Array, window: Array) -> None:
+        """Give samples without a stamp that of their output, if that can be told."""
 
     def answered(self, samples: Array) -> Array:
         """Whether each of the oldest samples of the window has its message, or needs none."""

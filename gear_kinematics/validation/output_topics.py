@@ -15,7 +15,7 @@ from gear_kinematics.validation.diagnosis import (
     diagnose,
 )
 from gear_kinematics.validation.fields import FieldErrors, FieldSamples
-from gear_kinematics.validation.matching import Expectation, OutputTopic, rotor_angle
+from gear_kinematics.validation.matching import Expectation, OutputTopic, in_order, rotor_angle
 from gear_kinematics.validation.report import Finding
 from gear_kinematics.wire.batches import (
     FIELDS,
@@ -27,6 +27,8 @@ from gear_kinematics.wire.cdr import joint_state_layout, pose_array_layout
 
 Array = NDArray[Any]
 Bounds = tuple[Array, Array]
+
+_NEAR = 500_000_000  # ns between the reception of an input and the stamp of its output
 
 STATE_UNITS = dict(zip(FIELDS, ('rad', 'rad/s', 'N·m'), strict=True))
 """Units of the fields of a JointState by their names."""
@@ -96,12 +98,30 @@ class OutputState(JointStateTopic):
         super().__init__(name, joint, expectation)
         self.fit = AngleFit()
         self._factors = {'velocity': FactorFit(), 'effort': FactorFit()}
+        self._adopted = -1  # number of the latest sample that has got a stamp
 
     def _expected(self, samples: Array) -> Sequence[Bounds]:
         ratio = self._gear.gear_ratio
         angle = self._ideal_angle(samples)
         velocity, effort = ratio.output_rate(samples['velocity']), float(ratio) * samples['effort']
         return (angle, angle), (velocity, velocity), (effort, effort)
+
+    def _adopt_stamps(self, stamps: Array, usable: Array, window: Array) -> None:
+        rows = usable[~np.isin(stamps[usable], window['stamp'])]
+        unstamped = (window['stamp'] == window['received']) & (window['number'] > self._adopted)
+        waiting = np.flatnonzero(unstamped & ~self.matcher.matched)
+        samples = window[waiting]
+        self._changes.move(samples)
+        angle, received = self._ideal_angle(samples), samples['received']
+
+        def fit(message: int, ahead: slice) -> Array:
+            error = np.abs(angle[ahead] - self._states.values[rows[message], 0])
+            near = np.abs(received[ahead] - stamps[rows[message]]) < _NEAR
+            return np.asarray(near & (error <= self._tolerances.angle))
+
+        answers, found = in_order(len(rows), len(samples), fit)
+        window['stamp'][waiting[found]] = stamps[rows[answers]]
+        self._adopted = int(samples['number'][found].max(initial=self._adopted))
 
     def _compare(self, rows: Array, samples: Array) -> Sequence[FieldSamples]:
         position, *others = super()._compare(rows, samples)

@@ -197,6 +197,7 @@ class Validator:
             if messages.received:
                 self._begun.setdefault(topic, messages.received[0])
         segments = self._add_samples(batch)
+        self.output.unstamped = bool(self._input.zero_stamps)
         for output in self._outputs:
             messages = batch[output.name]
             output.take(messages.data, messages.received, self._window, self._inputs)
