@@ -228,6 +228,7 @@ def test_a_report_goes_into_a_pipe_and_through_a_link(bags, tmp_path):
     """Neither is replaced by a file: `--json >(jq .)`, or /dev/null."""
     pipe, link, file = (tmp_path / name for name in ('pipe', 'link', 'file'))
     os.mkfifo(pipe)
+    file.touch()
     link.symlink_to(file)
     with running_gearkin('validate', bags / 'good', '--json', pipe, '--junit', link) as process:
         assert json.loads(pipe.read_text('utf-8'))['verdict'] == 'pass'
