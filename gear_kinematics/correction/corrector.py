@@ -108,7 +108,7 @@ class Corrector:
         effort: Array,
         segment: Array,
         *,
-        referenced: bool = True,
+        referenced: Array | bool = True,
     ) -> Correction:
         """Compute the correction at the next samples, all arrays (n,) as in `RotorSamples`.
 
@@ -119,9 +119,15 @@ class Corrector:
             velocity: velocity of the rotor, rad/s; NaN where it is unknown.
             effort: torque of the rotor, N·m; NaN where it is unknown.
             segment: the states are unknown after it has changed.
-            referenced: whether the rotor's turns are known.
+            referenced: whether the rotor's turns are known, of all or each.
         """
-        columns: list[Any] = [stamp, turns, angle, segment]
+        columns: list[Any] = [stamp, turns, angle, velocity, effort, segment]
+        known = np.broadcast_to(referenced, stamp.shape)
+        if len(changes := np.flatnonzero(np.diff(known)) + 1):
+            parts = zip(*(np.split(column, changes) for column in (*columns, known)), strict=True)
+            found = [self.correct_batch(*part, referenced=alike) for *part, alike in parts]
+            return Correction(*map(np.concatenate, zip(*found, strict=True)))
+        columns, referenced = [stamp, turns, angle, segment], bool(known.all())
         hysteresis = np.empty((3, len(stamp)))
         for start in range(0, len(stamp), _CHUNK):
             chunk = slice(start, start + _CHUNK)

@@ -55,14 +55,14 @@ class Homing:
         self._speed = 0.0  # of the rotor, rad/s
         node.create_service(Trigger, '~/home', self.answer)
 
-    def note(self, sample: RotorSample) -> None:
+    def note(self, sample: RotorSample, segment: int) -> None:
         """Take note of a valid input: where the shaft is, and how fast the rotor turns.
 
         Without a velocity that is the mean over `_SPEED_SPAN`; 0 until there is one.
         """
         self._seen = time.monotonic()
-        if not self._before or self._segment != self._input.segment:  # other turns or zero
-            self._before, self._segment, self._speed = sample, self._input.segment, 0.0
+        if not self._before or self._segment != segment:  # other turns or zero
+            self._before, self._segment, self._speed = sample, segment, 0.0
         elapsed = (sample.stamp - self._before.stamp) / SECOND
         if elapsed >= _SPEED_SPAN:
             turns, angle = (

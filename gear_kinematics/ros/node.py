@@ -3,7 +3,7 @@
 
 import time
 import traceback
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,8 +20,6 @@ from sensor_msgs.msg import JointState, MultiDOFJointState
 from std_msgs.msg import Bool
 
 from gear_kinematics.correction.calibration_file import Calibration
-from gear_kinematics.correction.corrector import Corrector
-from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import NODE, PARAMETERS, NodeParameters
 from gear_kinematics.parameters.files import require_any
@@ -33,11 +31,9 @@ from gear_kinematics.ros.missing_publisher import MissingPublisher
 from gear_kinematics.ros.node_parameters import declared, fault_of
 from gear_kinematics.ros.outputs import Outputs, PublishingNode, latched
 from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
-from gear_kinematics.state.loads import Loads, PreloadMonitor
-from gear_kinematics.state.output_encoder import OutputEncoder
-from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.gear_state import GearState
+from gear_kinematics.state.loads import PreloadMonitor
 from gear_kinematics.state.state_messages import state_messages
-from gear_kinematics.state.turn_reference import TurnReference
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.joint_reader import JOINT_MISSING, RejectedInputError
 
@@ -67,27 +63,15 @@ class GearStatePublisher(PublishingNode):
         if home_file := self._file(parameters.home_file):
             home_file = home_file.absolute()
             parameters = restored(self, home_file, parameters)
-        self._settings = parameters
         self._gear = parameters.gear
-        self._input = RotorInput(parameters)
-        self._reference = TurnReference(self._input)
-        self._encoder = OutputEncoder(parameters, self._reference)
-        self._corrector: Corrector | None = None
+        self._actuator = GearState(parameters, self._calibration(parameters.calibration))
         self._display: Display | None = None
-        self._loads: Loads | None = None
         self._preload = PreloadMonitor(parameters) if parameters.preload else None
-        self._prepare([('calibration', parameters.calibration)])
-        self._configure()
         self._monitor = InputMonitor(started=time.monotonic())
         self._encoder_monitor = EncoderMonitor()
 
         self._outputs = Outputs(self, self._note_subscribers, self._note_unsent)
-        for topic in (
-            *self._messages.topics,
-            *topics.CORRECTED_TOPICS,
-            topics.TRANSMISSION_ERROR,
-            *(topics.LOAD_TOPICS if isinstance(self._gear, Mechanism) else ()),
-        ):
+        for topic in self._actuator.topics:
             message_type = _MESSAGE_TYPES[topics.TOPICS[topic].type]
             self._outputs.create(topic, message_type, QoSProfile(depth=DEPTH))
         self._note_subscribers()
@@ -98,7 +82,7 @@ class GearStatePublisher(PublishingNode):
             self._display = Display(self, parameters, self._outputs)
             self._display.update(parameters)
         self.add_post_set_parameters_callback(self._configure)
-        self._homing = Homing(self, home_file, self._input, self._monitor)
+        self._homing = Homing(self, home_file, self._actuator.input, self._monitor)
         # A missing input must be reported even while a simulated clock is paused.
         self.create_timer(
             _REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME)
@@ -129,18 +113,14 @@ class GearStatePublisher(PublishingNode):
         return result
 
     def _note_subscribers(self, _event: object = None) -> None:
-        """Update the lists of outputs with subscribers, as only these are computed."""
-        subscribed = self._outputs.subscribed
-        self._subscribed_states = subscribed(self._messages.topics)
-        self._subscribed_corrections = subscribed(topics.CORRECTED_TOPICS)
-        self._subscribed_errors = subscribed([topics.TRANSMISSION_ERROR])
-        self._subscribed_loads = subscribed(topics.LOAD_TOPICS if self._loads else ())
+        """Let only the outputs with subscribers be computed."""
+        self._actuator.choose(self._outputs.subscribed(self._actuator.topics))
 
     def _check_parameters(self, changed: list[Parameter]) -> SetParametersResult:
         """Refuse values that are invalid beyond type and range, which rclpy checks."""
         try:
             reason = next(filter(None, map(fault_of, changed)), '')
-            if not reason and hasattr(self, '_gear'):  # else the constructor checks them
+            if not reason and hasattr(self, '_actuator'):  # else the constructor checks them
                 self._prepare((parameter.name, parameter.value) for parameter in changed)
         except ValueError as error:
             reason = str(error)
@@ -151,92 +131,67 @@ class GearStatePublisher(PublishingNode):
 
     def _prepare(self, changed: Iterable[tuple[str, Any]]) -> None:
         """Make what the changed parameters affect and can be refused for, also one set twice."""
-        settings, corrector = self._settings, self._corrector
-        messages = state_messages(settings)
+        parameters, calibration = self._actuator.parameters, self._actuator.calibration
         for name, value in changed:
             if name in PARAMETERS:
-                settings = replace(settings, **{name: value})
-                messages = state_messages(settings)
+                parameters = replace(parameters, **{name: value})
+                state_messages(parameters)  # to check the names
             if name == 'calibration':
-                corrector = self._corrector_of(value)
-        self._prepared = settings, messages, corrector
+                calibration = self._calibration(value)
+        self._prepared = parameters, calibration
 
-    def _corrector_of(self, value: str) -> Corrector | None:
+    def _calibration(self, value: str) -> Calibration | None:
         """Load the calibration that a value of the parameter names, if any."""
         path = self._file(value)
-        return Corrector(Calibration.load(path, self._gear)) if path else None
+        return Calibration.load(path, self._gear) if path else None
 
     def _file(self, value: str) -> Path | None:
         """Return the file that a value of a parameter names, if any."""
         return self._files.get(value, Path(value)) if value else None
 
-    def _configure(self, changed: Collection[Parameter] = ()) -> None:
-        """Apply what was prepared, at the start and after every change."""
-        self._settings, self._messages, self._corrector = self._prepared
-        self._input.parameters = self._settings
-        if isinstance(self._gear, Mechanism):
-            self._loads = Loads(self._settings)
-        if changed:
-            self._encoder.configure(self._settings)  # discards earlier errors
-        if self._corrector:
-            self._corrector.reset()
-            self._corrector.max_acceleration = self._settings.max_rotor_acceleration
+    def _configure(self, changed: Collection[Parameter]) -> None:
+        """Apply what was prepared, after every change."""
+        self._actuator.apply(*self._prepared)
         if self._display:
-            self._display.update(self._settings)
+            self._display.update(self._actuator.parameters)
         if any(parameter.name == 'rotor_zero' for parameter in changed):
             self._homing.keep()
 
     def _on_rotor_state(self, data: bytes) -> None:
         self._monitor.last_input = time.monotonic()
         try:
-            sample = self._input.accept(data, self._now)
+            answer = self._actuator.rotor(data, self._now)
         except RejectedInputError as rejection:
             self._warn_of(topics.ROTOR_STATE, rejection)
             return
-        self._homing.note(sample)
-        if (referenced := self._input.referenced) is not self._referenced:
-            self._publish_referenced()
-        if not referenced:
-            self._monitor.unreferenced += 1
-        published = referenced or self._settings.unreferenced_outputs == 'publish'
-        if published:
-            self._outputs.send(self._messages.encode(sample, self._subscribed_states))
-        correction = None
-        if self._corrector:  # also without a listener, to follow the motion
-            correction = self._corrector.correct(
-                sample, segment=self._input.segment, referenced=referenced
-            )
-            wanted = self._subscribed_corrections if published else ()
-            self._outputs.send(self._messages.encode_corrected(sample, correction, wanted))
+        sample, segment, referenced, withheld = answer[:4]
+        self._homing.note(sample, segment)
+        if referenced is not self._referenced:
+            self._publish_referenced(referenced)
+        self._outputs.send(self._actuator.encode(answer))
+        self._monitor.published += not withheld
+        self._monitor.unreferenced += not referenced
         if self._preload:
-            self._preload.follow(sample, self._input.segment)
-        if self._loads and self._subscribed_loads and published:
-            loads = self._loads.follow(sample, self._input.segment)
-            self._outputs.send(self._loads.encode(sample.stamp, loads, self._subscribed_loads))
-        self._monitor.published += published
-        if self._encoder.received and (referenced or self._settings.absolute):
-            self._publish_errors(self._encoder.follow(sample, correction))
-            if self._input.referenced is not referenced:
-                self._publish_referenced()
+            self._preload.follow(sample, segment)
+        if self._actuator.input.referenced is not referenced:  # by the output's encoder
+            self._publish_referenced(self._actuator.input.referenced)
 
-    def _publish_referenced(self) -> None:
+    def _publish_referenced(self, referenced: bool) -> None:  # noqa: FBT001, what is published
         """Publish at once that the turns have become known or unknown."""
-        self._referenced = self._input.referenced
-        message = serialize_message(Bool(data=self._referenced))
-        self._outputs.send([(topics.REFERENCED, message)])
+        self._referenced = referenced
+        self._outputs.send([(topics.REFERENCED, serialize_message(Bool(data=referenced)))])
 
     def _on_output_encoder(self, data: bytes) -> None:
         self._encoder_monitor.last_input = time.monotonic()
         try:
-            self._publish_errors(self._encoder.accept(data, self._now))
-            if self._referenced not in (None, self._input.referenced):
-                self._publish_referenced()
+            errors = self._actuator.encoder(data, self._now)
         except RejectedInputError as rejection:
             self._warn_of(topics.OUTPUT_ENCODER, rejection)
-
-    def _publish_errors(self, samples: Sequence[ErrorSample]) -> None:
-        for topic in self._subscribed_errors:
-            self._outputs.send((topic, self._messages.transmission_error(s)) for s in samples)
+            return
+        self._outputs.send(self._actuator.encode_errors(errors))
+        referenced = self._actuator.input.referenced
+        if self._referenced not in (None, referenced):
+            self._publish_referenced(referenced)
 
     def _note_unsent(self, publisher: Publisher, error: Exception) -> None:
         # For example, with history keep_all and a blocked subscriber.
@@ -247,7 +202,7 @@ class GearStatePublisher(PublishingNode):
         return int(self.get_clock().now().nanoseconds)
 
     def _warn_of(self, topic: str, rejection: RejectedInputError) -> None:
-        others = topic == topics.ROTOR_STATE and JOINT_MISSING not in self._input.rejected
+        others = topic == topics.ROTOR_STATE and JOINT_MISSING not in self._actuator.input.rejected
         if str(rejection) == JOINT_MISSING and others:
             return  # a message of another driver on a shared topic
         if time.monotonic() >= self._next_warning:
@@ -260,10 +215,11 @@ class GearStatePublisher(PublishingNode):
         self._missing_publisher.update(self._monitor.drivers)
         self._look_at_graph()
         now = time.monotonic()
-        errors = self._encoder_monitor.report(self._encoder, self._settings, now)
-        rotor = self._monitor.report(self._input, now, self._encoder.reference)
+        rotor, encoder = self._actuator.input, self._actuator.output_encoder
+        errors = self._encoder_monitor.report(encoder, self._actuator.parameters, now)
+        received = self._monitor.report(rotor, now, encoder.reference)
         preload = self._preload.report() if self._preload else None
-        reports = {'rotor input': rotor, 'transmission error': errors, 'preload': preload}
+        reports = {'rotor input': received, 'transmission error': errors, 'preload': preload}
         message = serialize_message(diagnostic_array(self, reports))
         self._outputs.send([(topics.DIAGNOSTICS, message)])
 

@@ -201,7 +201,7 @@ class PreloadMonitor:
     def follow(self, sample: RotorSample, segment: int) -> None:
         """Take the next sample and the number of its segment, for the report alone."""
         stamp, position, velocity, effort = sample
-        self._rows.append((stamp, *position, velocity, effort, 0, 0, segment))
+        self._rows.append((stamp, *position, velocity, effort, 0, 0, segment, True))
 
     def report(self) -> Report:
         """Report on the time since the last report."""

@@ -232,6 +232,7 @@ class RotorInput:
             rows,
             received,
             np.full(len(stamps), self.segment),
+            np.full(len(stamps), self.referenced),
             rejected,
         )
         if len(stamps):
@@ -257,7 +258,7 @@ class RotorInput:
                 disordered.append(stamp)
                 continue
             motion = *sample.position, sample.velocity, sample.effort
-            taken.append((sample.stamp, *motion, row, now, self.segment))
+            taken.append((sample.stamp, *motion, row, now, self.segment, self.referenced))
         return RotorSamples.of(taken, np.append(rejected, np.array(disordered, np.int64)))
 
     def _take_row(self, stamp: int, row: Sequence[float]) -> RotorSample:

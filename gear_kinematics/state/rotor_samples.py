@@ -8,7 +8,7 @@ import numpy as np
 
 from gear_kinematics.wire.batches import Array
 
-_COLUMNS = np.dtype('i8, f8, f8, f8, f8, i8, i8, i8')
+_COLUMNS = np.dtype('i8, f8, f8, f8, f8, i8, i8, i8, ?')
 """Of `RotorSamples`, without the last."""
 
 
@@ -30,6 +30,8 @@ class RotorSamples(NamedTuple):
     """Time of reception, ns."""
     segment: Array
     """Number that rises where the rotor's turn count restarts, is uncertain or is referenced."""
+    referenced: Array
+    """Whether the rotor's turns are known."""
     rejected: Array
     """(m,), ns: the stamps of rejected messages that have one."""
 

@@ -47,11 +47,11 @@ class OutputMessages:
 
     def encode(
         self, sample: RotorSample, topics: Iterable[str] = topics
-    ) -> Iterator[tuple[str, bytes]]:
-        """Yield topic and message for a sample, for all or some of `topics`."""
+    ) -> list[tuple[str, bytes]]:
+        """Return topic and message for a sample, for all or some of `topics`."""
         output_turns, output_rest = self._ratio.output_angle(*sample.position, math)
-        for topic in topics:
-            yield topic, self._output_state(sample, TURN * output_turns + output_rest)
+        angle = TURN * output_turns + output_rest
+        return [(topic, self._output_state(sample, angle)) for topic in topics]
 
     @np.errstate(over='ignore')  # an effort can overflow, as it does for a single sample
     def encode_outputs(self, samples: RotorSamples) -> dict[str, list[bytes]]:
@@ -145,22 +145,24 @@ class StateMessages(OutputMessages):
 
     def encode(
         self, sample: RotorSample, topics: Iterable[str] = topics
-    ) -> Iterator[tuple[str, bytes]]:
-        """Yield topic and message for a sample, for all or some of `topics`."""
+    ) -> list[tuple[str, bytes]]:
+        """Return topic and message for a sample, for all or some of `topics`."""
         turns, angle = sample.position
         output_turns, output_rest = self._ratio.output_angle(turns, angle, math)
         output_angle = TURN * output_turns + output_rest
         branches: list[BranchPosition] = []
+        encoded: list[tuple[str, bytes]] = []
         for topic in topics:
             if topic == OUTPUT_STATE:
-                yield topic, self._output_state(sample, output_angle)
+                encoded.append((topic, self._output_state(sample, output_angle)))
                 continue
             branches = branches or self._form.branches(angle, output_rest, math)
             if topic == BODY_POSES:
                 numbers = self._pose_numbers(output_rest, branches, math)
-                yield topic, self._body_poses.encode(sample.stamp, numbers)
+                encoded.append((topic, self._body_poses.encode(sample.stamp, numbers)))
             else:
-                yield topic, self._joint_state(sample, output_angle, branches)
+                encoded.append((topic, self._joint_state(sample, output_angle, branches)))
+        return encoded
 
     def encode_outputs(self, samples: RotorSamples) -> dict[str, list[bytes]]:
         """Encode the recorded topics among `topics` for many samples, as `encode` does."""
@@ -176,9 +178,10 @@ class StateMessages(OutputMessages):
         """The numbers of body_poses: floats or arrays."""
         # These bodies all have the angle φ5; within the turn, its quaternion has w >= 0.
         sine, cosine = xp.sin(0.5 * output_angle), xp.cos(0.5 * output_angle)
-        satellites, oldhams, *_ = zip(*branches, strict=True)
+        centres = [branch.satellite for branch in branches]
+        centres += [branch.oldham for branch in branches]
         numbers: list[Any] = []
-        for (x, y), z in zip(satellites + oldhams, self._axial_positions, strict=True):
+        for (x, y), z in zip(centres, self._axial_positions, strict=True):
             numbers += (x, y, z, 0.0, 0.0, sine, cosine)
         return numbers
 

@@ -34,7 +34,7 @@ def home(node):
 
 
 def values_of(node):
-    return node._monitor.report(node._input, time.monotonic()).values
+    return node._monitor.report(node._actuator.input, time.monotonic()).values
 
 
 # With the ratio -19: φ5 = -(position - zero)/19, so 61.5° is -20.394 rad at the rotor.
@@ -88,7 +88,7 @@ def test_turns_that_the_output_encoder_adds_are_no_speed(homing):
         shaft = rotor_bytes(number * MILLISECOND, ['shaft'], [2.0])
         node._on_output_encoder(shaft)
         drive(node, [-38.0 % math.tau], number * MILLISECOND)
-        if node._input.referenced:
+        if node._actuator.input.referenced:
             answers.append(node._homing._speed)
     assert len(answers) > 100
     assert set(answers) == {0.0}

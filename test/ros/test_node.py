@@ -310,10 +310,10 @@ def test_inputs_that_overflow_the_queue_of_a_blocked_node_are_lost(make, context
 
     def receive(number):
         deadline = time.monotonic() + DEADLINE
-        while node._input.received < number and time.monotonic() < deadline:
+        while node._actuator.input.received < number and time.monotonic() < deadline:
             executor.spin_once(timeout_sec=0.1)
         node._rotor_driver.count_losses()
-        return node._input.received, node._monitor.lost
+        return node._actuator.input.received, node._monitor.lost
 
     while not driver.get_subscription_count():
         executor.spin_once(timeout_sec=0.1)
@@ -367,7 +367,7 @@ def test_home_that_is_refused_changes_nothing(make):
     response = node._homing.answer(None, Trigger.Response())
     assert not response.success
     assert 'rotor_zero' in response.message
-    assert not node._input.referenced
+    assert not node._actuator.input.referenced
 
 
 def test_markers_cost_nothing_without_viewers_and_can_be_switched_off(node, make):
@@ -418,8 +418,7 @@ def test_of_a_gear_with_only_a_ratio_the_output_alone_is_published(make, monkeyp
     assert not {f'/ratio/{name}' for name in bodies} & topics
     published = []
     monkeypatch.setattr(node._outputs, 'send', published.extend)
-    node._subscribed_states = ['output_state']
-    node._subscribed_corrections = ['corrected_state']
+    node._actuator.choose(['output_state', 'corrected_state'])
     node._on_rotor_state(rotor_bytes(1, position=[1457.0]))
     assert node._homing.answer(None, SimpleNamespace()).success
     node._on_rotor_state(rotor_bytes(2, position=[1457.0]))
@@ -451,7 +450,7 @@ def test_outputs_of_unknown_turns_are_marked_or_withheld(make, monkeypatch, outp
     node = make('marked', rotor_encoder='single_turn', unreferenced_outputs=outputs)
     published = []
     monkeypatch.setattr(node._outputs, 'send', published.extend)
-    node._subscribed_states = ['output_state']
+    node._actuator.choose(['output_state'])
 
     def topics_after(stamp, position=1.0):
         published.clear()

@@ -37,7 +37,7 @@ def accelerated(count: int = 60, rate: float = 700.0) -> list[RotorSample]:
 
 def as_batch(samples: list[RotorSample], segment: int = 0) -> RotorSamples:
     rows = [
-        (s.stamp, *s.position, s.velocity, s.effort, k, s.stamp, segment)
+        (s.stamp, *s.position, s.velocity, s.effort, k, s.stamp, segment, True)
         for k, s in enumerate(samples)
     ]
     return RotorSamples.of(rows, np.zeros(0, np.int64))

@@ -1,0 +1,233 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""One actuator, from its messages to the outputs of the node, without ROS."""
+
+from collections.abc import Callable, Collection, Iterable, Sequence
+from contextlib import suppress
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from gear_kinematics.correction.calibration_file import Calibration
+from gear_kinematics.correction.corrector import Correction, Corrector
+from gear_kinematics.correction.transmission_error import ErrorSample
+from gear_kinematics.kinematics import Mechanism, RotorSample
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.loads import Loads
+from gear_kinematics.state.output_encoder import OutputEncoder
+from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.rotor_samples import RotorSamples
+from gear_kinematics.state.state_messages import OutputMessages, state_messages
+from gear_kinematics.state.turn_reference import TurnReference
+from gear_kinematics.wire.joint_reader import RejectedInputError
+from gear_kinematics.wire.topics import (
+    CORRECTED_TOPICS,
+    LOAD_TOPICS,
+    OUTPUT_STATE,
+    STATE_TOPICS,
+    TRANSMISSION_ERROR,
+)
+
+
+class Answer(NamedTuple):
+    """What came of a valid message of the rotor."""
+
+    sample: RotorSample
+    segment: int
+    """As in `RotorSamples`."""
+    referenced: bool
+    """Whether the rotor's turns were known when it came."""
+    withheld: bool
+    """Whether they were not, and the parameters withhold outputs of unknown turns."""
+    correction: Correction | None
+    """None without a calibration."""
+    errors: Sequence[ErrorSample]
+    """The transmission errors that have become known, in order."""
+
+
+class Answers(NamedTuple):
+    """What came of many messages: the fields of n `Answer`s as arrays (n,)."""
+
+    samples: RotorSamples
+    correction: Correction | None
+    errors: Sequence[ErrorSample]
+    """Those that became known with a message of either encoder."""
+
+
+_answer = partial(tuple.__new__, Answer)
+
+
+class GearState:
+    """Follows the messages of one actuator, and computes and encodes what a node publishes.
+
+    Whatever is wrong with a message is decided and counted here, for every program. Messages are
+    taken one by one or many at once, with the same results.
+    """
+
+    messages: OutputMessages
+    """Encodes the states, once topics are chosen."""
+
+    def __init__(self, parameters: NodeParameters, calibration: Calibration | None = None) -> None:
+        """Start without messages; no topics are chosen."""
+        self.input = RotorInput(parameters)
+        self.output_encoder = OutputEncoder(parameters, TurnReference(self.input))
+        self._chosen: Collection[str] | None = None
+        self._configure(parameters, calibration)
+
+    def apply(self, parameters: NodeParameters, calibration: Calibration | None) -> None:
+        """Change the parameters: all counts go on, and the turns if their encoders are the same.
+
+        Transmission errors are compared anew, and corrections do not know the motion before.
+
+        Raises:
+            ValueError: if messages on chosen topics cannot have the names in the parameters.
+        """
+        self.input.parameters = parameters
+        self.output_encoder.configure(parameters)
+        self._configure(parameters, calibration)
+        if self._chosen is not None:
+            self.choose(self._chosen)
+
+    def _configure(self, parameters: NodeParameters, calibration: Calibration | None) -> None:
+        self.parameters, self.calibration = parameters, calibration
+        self.corrector = (
+            Corrector(calibration, parameters.max_rotor_acceleration) if calibration else None
+        )
+        self._loads: Loads | None = None
+        self._withholding = parameters.unreferenced_outputs == 'withhold'
+
+    @property
+    def topics(self) -> Collection[str]:
+        """All topics that can be chosen."""
+        mechanism = isinstance(self.parameters.gear, Mechanism)
+        states, loads = (STATE_TOPICS, LOAD_TOPICS) if mechanism else ((OUTPUT_STATE,), ())
+        return *states, *CORRECTED_TOPICS, TRANSMISSION_ERROR, *loads
+
+    def choose(self, topics: Collection[str]) -> None:
+        """Encode messages for these of `topics` from now on, and compute what they need.
+
+        Raises:
+            ValueError: if messages cannot have the names in the parameters.
+            MechanismError: if there is no such preload, for topics of the loads.
+        """
+        self._chosen = topics
+        self._states = [topic for topic in topics if topic in STATE_TOPICS]
+        self._corrections = [topic for topic in topics if topic in CORRECTED_TOPICS]
+        self._load_topics = [topic for topic in topics if topic in LOAD_TOPICS]
+        self._errors = TRANSMISSION_ERROR in topics
+        self.messages = state_messages(self.parameters)
+        if self._load_topics and not self._loads:
+            self._loads = Loads(self.parameters)
+
+    def rotor(self, data: bytes, now: Callable[[], int]) -> Answer:
+        """Process the next message of the rotor.
+
+        Args:
+            data: a serialised sensor_msgs/JointState.
+            now: the clock, ns, for messages without a stamp.
+
+        Raises:
+            RejectedInputError: if the message gives no output. It is counted.
+        """
+        rotor = self.input
+        sample = rotor.accept(data, now)
+        segment, referenced = rotor.segment, rotor.referenced
+        correction: Correction | None = None
+        errors: Sequence[ErrorSample] = ()
+        if self.corrector:  # also without a listener, to follow the motion
+            correction = self.corrector.correct(sample, segment=segment, referenced=referenced)
+        if self.output_encoder.received and (referenced or self.parameters.absolute):
+            errors = self.output_encoder.follow(sample, correction)
+        withheld = self._withholding and not referenced
+        return _answer((sample, segment, referenced, withheld, correction, errors))
+
+    def encoder(self, data: bytes, now: Callable[[], int]) -> Sequence[ErrorSample]:
+        """Process the next message of the output's encoder; see `OutputEncoder.accept`."""
+        return self.output_encoder.accept(data, now)
+
+    def encode(self, answer: Answer) -> list[tuple[str, bytes]]:
+        """Return topic and message of what is published on the chosen topics.
+
+        Answers are taken in order, as accelerations, of which loads depend, follow the motion.
+        """
+        sample, segment, _, withheld, correction, errors = answer
+        encoded: list[tuple[str, bytes]] = []
+        if not withheld:
+            encoded = self.messages.encode(sample, self._states)
+            if correction:
+                encoded += self.messages.encode_corrected(sample, correction, self._corrections)
+            if self._loads and self._load_topics:
+                loads = self._loads.follow(sample, segment)
+                encoded += self._loads.encode(sample.stamp, loads, self._load_topics)
+        if errors:
+            encoded += self.encode_errors(errors)
+        return encoded
+
+    def encode_errors(self, errors: Iterable[ErrorSample]) -> list[tuple[str, bytes]]:
+        """Return topic and message of transmission errors, if their topic is chosen."""
+        encode = self.messages.transmission_error
+        return [(TRANSMISSION_ERROR, encode(error)) for error in errors if self._errors]
+
+    def samples(self, messages: Sequence[bytes], received: Sequence[int]) -> RotorSamples:
+        """Process many messages of the rotor for their samples alone.
+
+        Args:
+            messages: serialised sensor_msgs/JointState.
+            received: times of reception, ns; they replace missing stamps.
+        """
+        return self.input.accept_batch(messages, received)
+
+    def batch(
+        self, messages: Sequence[tuple[str, int, bytes]], rotor: str, encoder: str = ''
+    ) -> Answers:
+        """Process many messages in the order of their reception.
+
+        Args:
+            messages: topic, time of reception, ns, and message of the two topics and of others;
+                the rows of the samples are their indices.
+            rotor: topic of the rotor.
+            encoder: topic of the output's encoder; '' if there is none.
+        """
+        correction, errors = None, list[ErrorSample]()
+        if self.output_encoder.received or any(topic == encoder for topic, *_ in messages):
+            rows, corrections = [], list[Correction]()
+            for row, (topic, received, data) in enumerate(messages):
+                with suppress(RejectedInputError):  # which is counted
+                    if topic == encoder:
+                        errors += self.encoder(data, partial(int, received))
+                    if topic != rotor:
+                        continue
+                    sample, *state, _, found, new = self.rotor(data, partial(int, received))
+                    motion = *sample.position, sample.velocity, sample.effort
+                    rows.append((sample.stamp, *motion, row, received, *state))
+                    corrections += [found] if found else []
+                    errors += new
+            samples = RotorSamples.of(rows, np.zeros(0, np.int64))
+            if self.corrector:
+                columns = np.array(corrections, float).reshape(-1, len(Correction._fields)).T
+                correction = Correction(*columns)
+            return Answers(samples, correction, errors)
+        places = [row for row, (topic, *_) in enumerate(messages) if topic == rotor]
+        samples = self.samples(
+            [messages[row][2] for row in places], [messages[row][1] for row in places]
+        )
+        samples = samples._replace(row=np.array(places, np.int64)[samples.row])
+        if self.corrector:
+            correction = self.corrector.correct_batch(
+                *samples[:5], samples.segment, referenced=samples.referenced
+            )
+        return Answers(samples, correction, errors)
+
+    def encode_batch(self, answers: Answers) -> dict[str, list[bytes]]:
+        """Encode the recorded states, all corrections if any, and all loads if one is chosen.
+
+        A message is empty where there is none for a sample. Nothing is withheld.
+        """
+        samples, correction, _ = answers
+        encoded = self.messages.encode_outputs(samples)
+        if correction:
+            encoded |= self.messages.encode_corrections(samples, correction)
+        if self._loads and self._load_topics:
+            loads = self._loads.follow_batch(samples)
+            encoded |= self._loads.encode_batch(samples.stamp, loads)
+        return encoded
