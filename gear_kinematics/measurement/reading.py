@@ -32,8 +32,8 @@ from gear_kinematics.measurement.recording import (
     match,
 )
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.output_encoder import measured_angle
-from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.batches import JointStates, decode_joint_states
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.topics import OUTPUT_ENCODER
@@ -120,7 +120,7 @@ class States:
     ) -> None:
         """Keep at most so many states of both topics; of more, one of every two, four, ..."""
         self._rotor, self._encoder, self._parameters = rotor, encoder, parameters
-        self._input = RotorInput(parameters)
+        self._gear = GearState(parameters)
         self._inputs, self._outputs = _Columns(most // (2 if encoder else 1)), _Columns(most // 2)
         self._lacking = ''
         self._clock = RestoredClock()
@@ -129,7 +129,7 @@ class States:
     def add(self, rotor: TopicMessages, encoder: TopicMessages | None) -> None:
         """Add what came on both topics."""
         data, later = self._clock.restored(rotor)
-        new = self._input.accept_batch(data, rotor.received)
+        new = self._gear.samples(data, rotor.received)
         segment = new.segment + later[new.row]
         self._inputs.add((new.stamp, new.turns, new.angle, new.effort, segment))
         if encoder:
@@ -145,7 +145,7 @@ class States:
         measure.
         """
         rotor, encoder, parameters = self._rotor, self._encoder, self._parameters
-        rejected = self._input.rejected
+        rejected = self._gear.input.rejected
         remarks = [f'{rotor}: {count} states {cause}' for cause, count in rejected.items()]
         remarks += [f'the clock was {step}: nothing is interpolated' for step in self._clock.steps]
         for topic, read in ((rotor, self._inputs), (encoder, self._outputs)):
@@ -155,7 +155,7 @@ class States:
         columns = self._inputs.joined()
         rows = len(columns[0]) if columns else 0
         if not rows:
-            why = f': {self._input.why_rejected}' if rejected else ''
+            why = f': {self._gear.input.why_rejected}' if rejected else ''
             raise BagError(f'{path}: no usable rotor states on {rotor}{why}')
         stamp, turns, angle, effort, segment = _in_order(columns, rotor, remarks)
         has_effort = np.isfinite(effort).any()

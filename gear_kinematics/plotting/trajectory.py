@@ -13,7 +13,7 @@ from gear_kinematics.bag.roles import find_rotor_topic
 from gear_kinematics.kinematics import Mechanism, MotionState, solve, split_turns
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.wire.cdr import SECOND
 
 Array = NDArray[np.float64]
@@ -104,12 +104,12 @@ def read_trajectory(
     with Bag(path) as bag:
         topic = find_rotor_topic(bag, rotor_topic, parameters.rotor_joint)
         messages = [message for batch in bag.batches([topic], progress) for message in batch]
-    rotor_input = RotorInput(parameters)
-    samples = rotor_input.accept_batch([m[2] for m in messages], [m[1] for m in messages])
+    gear = GearState(parameters)
+    samples = gear.batch(messages, topic).samples
     anew = np.flatnonzero(np.diff(samples.stamp) < 0)
     _, used = np.unique(samples.stamp[: anew[0] + 1 if len(anew) else None], return_index=True)
     if len(used) < 2:  # noqa: PLR2004, what a motion takes
-        why = f' ({rotor_input.why_rejected})' if rotor_input.rejected else ''
+        why = f' ({gear.input.why_rejected})' if gear.input.rejected else ''
         raise BagError(f'{path}: {topic} has fewer than two rotor states of different times{why}')
     stamps, turns, angle, velocity = (column[used] for column in samples[:4])
     time = (stamps - stamps[0]) / SECOND

@@ -35,7 +35,7 @@ from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.ros.workarounds.executor import make_executor
 from gear_kinematics.ros.workarounds.shutdown import shut_down
-from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.wire.cdr import SECOND, STAMP_BYTES, JointStateTemplate, with_stamp
 from gear_kinematics.wire.joint_reader import RejectedInputError
 from gear_kinematics.wire.topics import CORRECTED_TOPICS, JOINT_STATE, OUTPUT_ENCODER
@@ -112,7 +112,7 @@ def live_messages(
             the readable messages.
         ReplayError: if the node ends or never answers.
     """
-    expected = RotorInput(parameters)
+    expected = GearState(parameters)
     outputs = outputs_of(parameters)
     source.type_of(rotor_topic, JOINT_STATE)
     schedule = due_messages(source, [rotor_topic, *filter(None, [encoder_topic])], rate)
@@ -132,18 +132,18 @@ def live_messages(
                 wanted[sent] += 1
                 if sent == _TOPICS.rotor:
                     with suppress(RejectedInputError):
-                        expected.accept(data, partial(int, received))
+                        expected.rotor(data, partial(int, received))
                         wanted.update(outputs)
                 if not replay.receive(wanted, but=_WINDOW):
                     wanted = replay.counts.copy()  # missing messages will not come any more
-                report(expected.received, None)
+                report(expected.input.received, None)
                 yield from replay.take()
         except DamagedBagError as error:
             damage = error
         replay.receive(wanted)
         replay.receive_until(time.monotonic() + _AFTERWARDS)
         yield from replay.take()
-    progress(expected.received, None)
+    progress(expected.input.received, None)
     if damage:
         raise damage
 

@@ -1,28 +1,20 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Compute the node's outputs for a recorded rotor topic into a new bag, without ROS."""
 
-from collections.abc import Collection, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
 
-from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, TopicError
+from gear_kinematics.bag import Bag, BagError, ReportProgress, TopicError
 from gear_kinematics.bag.roles import Topics, beside
 from gear_kinematics.correction.calibration_file import Calibration
-from gear_kinematics.correction.corrector import Correction, Corrector
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.loads import Loads
-from gear_kinematics.state.output_encoder import OutputEncoder
+from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.rotor_input import RotorInput
-from gear_kinematics.state.rotor_samples import RotorSamples
-from gear_kinematics.state.state_messages import state_messages
-from gear_kinematics.state.turn_reference import TurnReference
-from gear_kinematics.wire.joint_reader import RejectedInputError
 from gear_kinematics.wire.topics import (
     BODY_POSES,
     CORRECTED_TOPICS,
@@ -95,18 +87,14 @@ def compute(
     """
     from gear_kinematics.bag.writing import BagWriter  # noqa: PLC0415, needs an extra
 
-    messages_of = state_messages(parameters)
-    rotor_input, rotor_topic = RotorInput(parameters), topics.rotor
+    gear, rotor_topic = GearState(parameters, calibration), topics.rotor
     topic_of = {OUTPUT_STATE: topics.output, BODY_POSES: topics.poses}
-    topic_of = {state: topic_of[state] for state in topic_of if state in messages_of.topics}
-    corrector = None
+    topic_of = {state: topic_of[state] for state in topic_of if state in gear.topics}
     if calibration:
-        corrector = Corrector(calibration, parameters.max_rotor_acceleration)
         topic_of |= beside(CORRECTED_TOPICS, topics.output)
-    encoder = OutputEncoder(parameters, TurnReference(rotor_input))
-    loads = Loads(parameters) if parameters.preload else None
-    if loads:
+    if parameters.preload:
         topic_of |= beside(LOAD_TOPICS, topics.output)
+    gear.choose(topic_of)
     if len(set(all_names := (rotor_topic, *topic_of.values()))) < len(all_names):
         raise ValueError(f'{", ".join(all_names)}: the names must differ')
     outputs = {topic: TOPICS[name].type for name, topic in topic_of.items()}
@@ -130,74 +118,26 @@ def compute(
         for topic, message_type in outputs.items():
             writer.add_topic(topic, message_type)
         for batch in source.batches({*kept, *outputs}, progress, publish_times=True):
-            messages, correction = [each for each in batch if each[0] not in outputs], None
-            rotor = [place for place, (topic, *_) in enumerate(messages) if topic == rotor_topic]
-            if encoder_topic:
-                samples, correction = _referenced(
-                    messages, rotor_topic, encoder_topic, rotor_input, encoder, corrector
-                )
-                answered = samples.row.tolist()
-            else:
-                samples = rotor_input.accept_batch(
-                    [messages[place][2] for place in rotor],
-                    [messages[place][1] for place in rotor],
-                )
-                answered = [rotor[row] for row in samples.row.tolist()]
+            messages = [message for message in batch if message[0] not in outputs]
+            answers = gear.batch(messages, rotor_topic, encoder_topic)
+            answered = answers.samples.row.tolist()
             computed += len(answered)
-            copied += len(messages) - len(rotor)
-            encoded_outputs = messages_of.encode_outputs(samples)
-            if corrector:
-                correction = correction or corrector.correct_batch(
-                    *samples[:5], samples.segment, referenced=rotor_input.referenced
-                )
-                encoded_outputs |= messages_of.encode_corrections(samples, correction)
-            if loads:
-                encoded_outputs |= loads.encode_batch(samples.stamp, loads.follow_batch(samples))
+            copied += sum(topic != rotor_topic for topic, *_ in messages)
             # A stable sort by these puts each output directly after its rotor message.
             places, received = [*range(len(messages))], [messages[place][1] for place in answered]
-            for state, encoded in encoded_outputs.items():
+            for state, encoded in gear.encode_batch(answers).items():
                 known = [k for k, data in enumerate(encoded) if data]
                 places += [answered[k] for k in known]
                 messages += [(topic_of[state], received[k], encoded[k]) for k in known]
             writer.write_all([messages[k] for k in np.argsort(places, kind='stable').tolist()])
         if not computed:
-            raise BagError(_nothing_computed(source, rotor_topic, rotor_input))
+            raise BagError(_nothing_computed(source, rotor_topic, gear.input))
     return ComputeResult(
-        rotor_input,
+        gear.input,
         computed,
         copied,
         left_out=tuple(sorted(source.topics.keys() - {*kept, *outputs})),
     )
-
-
-def _referenced(
-    messages: Sequence[Message],
-    rotor_topic: str,
-    encoder_topic: str,
-    rotor: RotorInput,
-    encoder: OutputEncoder,
-    corrector: Corrector | None,
-) -> tuple[RotorSamples, Correction | None]:
-    """Take messages of both encoders one by one, as the node does; rows are those of messages."""
-    rows, corrections = [], []
-    for row, (topic, received, data) in enumerate(messages):
-        with suppress(RejectedInputError):  # which is counted
-            if topic == encoder_topic:
-                encoder.accept(data, partial(int, received))
-            if topic != rotor_topic:
-                continue
-            sample, correction = rotor.accept(data, partial(int, received)), None
-            motion = *sample.position, sample.velocity, sample.effort
-            rows.append((sample.stamp, *motion, row, received, rotor.segment))
-            if corrector:
-                correction = corrector.correct(
-                    sample, segment=rotor.segment, referenced=rotor.referenced
-                )
-                corrections.append(correction)
-            if encoder.received:
-                encoder.follow(sample, correction)
-    columns = np.array(corrections, float).reshape(-1, len(Correction._fields)).T
-    return RotorSamples.of(rows, np.zeros(0, np.int64)), Correction(*columns)
 
 
 def _check_topics(

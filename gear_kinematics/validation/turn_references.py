@@ -10,11 +10,9 @@ from contextlib import suppress
 from functools import partial
 
 from gear_kinematics.bag import TopicMessages
-from gear_kinematics.correction.calibration_file import Calibration
-from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics import RotorPosition, RotorSample
-from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.turn_reference import ErrorBlock
 from gear_kinematics.validation.fields import Array
@@ -27,10 +25,10 @@ _PATIENCE = 3  # blocks in a row that disagree, within which a node must be refe
 class TurnReferences:
     """Decides as the node does, block by block, whether the outputs agree with the encoder."""
 
-    def __init__(self, parameters: NodeParameters, calibration: Calibration | None) -> None:
-        self._parameters, self._encoder = parameters, OutputEncoder(parameters)
-        acceleration = parameters.max_rotor_acceleration
-        self._corrector = Corrector(calibration, acceleration) if calibration else None
+    def __init__(self, gear: GearState) -> None:
+        """Judge by the parameters and the calibration of a gear."""
+        self._parameters, self._corrector = gear.parameters, gear.corrector
+        self._encoder = OutputEncoder(gear.parameters)
         self._block, self._segment = ErrorBlock(), -1
         self._agreed, self._disagreeing = False, 0
         self._fault: Finding | None = None

@@ -11,12 +11,12 @@ import numpy as np
 
 from gear_kinematics.bag import Message, TopicMessages, by_topic
 from gear_kinematics.bag.roles import Topics
-from gear_kinematics.correction.corrector import Correction, Corrector
+from gear_kinematics.correction.corrector import Correction
 from gear_kinematics.kinematics import Mechanism, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.report.document import Verdict
+from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.loads import Loads
-from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.validation import input_health
 from gear_kinematics.validation.corrected_topics import (
     CORRECTED,
@@ -77,7 +77,7 @@ class Validator:
         self._topics, self._further, self._encoder = topics, further, encoder
         self._corrected = [name for topic, name in further.items() if topic in CORRECTED]
         self._gear = gear = parameters.gear
-        self._input = RotorInput(parameters)
+        self._state = GearState(parameters, task.calibration)
         self._health = input_health.InputHealth(parameters.max_rotor_speed)
         self._inputs = RecordedInputs(strict=task.strict)
         self._begun: dict[str, int] = {}  # when the first message of each topic was received, ns
@@ -85,11 +85,11 @@ class Validator:
         self._changes = CountChanges(parameters, angle, homing=homing)
         self._references = None
         if parameters.absolute:
-            self._references = TurnReferences(parameters, task.calibration)
+            self._references = TurnReferences(self._state)
         self._expectation = Expectation(gear, task.tolerances, solver, self._changes)
         self._samples = 0
         unseen = parameters.single_turn or parameters.absolute
-        self._given_segment = None if unseen else self._input.segment
+        self._given_segment = None if unseen else self._state.input.segment
         """The latest segment with an output."""
         self._groups: list[tuple[Completeness, Sequence[OutputTopic]]] = []
         joint = parameters.frame_prefix + parameters.output_joint
@@ -105,7 +105,7 @@ class Validator:
         self._unbroken, self._corrector, self._loads = Unbroken(), None, None
         columns: list[Any] = list(SAMPLES)
         if task.calibration and self._corrected and not self._why_unjudged:
-            self._corrector = Corrector(task.calibration, parameters.max_rotor_acceleration)
+            self._corrector = self._state.corrector
             columns += [(name, np.float64) for name in Correction._fields]
         if LOAD_TOPICS.keys() & further.keys():
             self._loads = Loads(parameters)
@@ -146,7 +146,7 @@ class Validator:
             self._corrector, self._why_unjudged = None, self._why_unjudged or why
         unjudged = () if self._corrector else self._corrected
         judged = {*self._topics, *self._further.values()}.difference(unjudged)
-        rotor = self._health.report(self._input, self._topics.rotor)
+        rotor = self._health.report(self._state.input, self._topics.rotor)
         topics = tuple(
             output.report()
             for output in self._outputs
@@ -154,7 +154,7 @@ class Validator:
             if (output.matcher.messages or output.name in self._topics) and output.name in judged
         )
         if error is None and not rotor.valid:
-            error = f'no usable rotor states: {self._input.why_rejected or "no messages"}'
+            error = f'no usable rotor states: {self._state.input.why_rejected or "no messages"}'
         elif error is None and not any(topic.messages for topic in topics):
             error = 'no outputs in it: gearkin compute writes a bag with them'
         checked = [finding for check in input_health.CHECKS for finding in check(rotor)]
@@ -211,7 +211,7 @@ class Validator:
     def _add_samples(self, batch: _Batch) -> Array:
         """Add the rotor's samples to the window, and return their unbroken segments, (n,)."""
         messages = batch[self._topics.rotor]
-        samples = self._input.accept_batch(messages.data, messages.received)
+        samples = self._state.samples(messages.data, messages.received)
         self._inputs.update(samples.received, samples.stamp, samples.rejected)
         self._health.update(samples.stamp, TURN * samples.turns + samples.angle)
         columns = {name: getattr(samples, name) for name, _ in SAMPLES[2:]}
@@ -308,8 +308,8 @@ class Validator:
             yield self._references.finding()
         for output in self._outputs:
             yield from output.causes()
-        if self._input.mostly_rejected and self._input.missing_joint:
-            yield Finding(f'{rotor}: {self._input.missing_joint}', cause=True)
+        if self._state.input.mostly_rejected and self._state.input.missing_joint:
+            yield Finding(f'{rotor}: {self._state.input.missing_joint}', cause=True)
         for group, _ in self._groups:
             yield from group.causes()
         if not self._corrector and self._begun.keys() & set(self._corrected):

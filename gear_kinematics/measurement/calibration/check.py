@@ -1,14 +1,14 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Checks a calibration by recordings that it was not made from."""
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.calibration_fit import CalibrationFit
-from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.calibration.selection import (
@@ -19,6 +19,8 @@ from gear_kinematics.measurement.calibration.selection import (
 from gear_kinematics.measurement.calibration.terms import Samples
 from gear_kinematics.measurement.ratio import wrong_ratio
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RecordingError
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.wire.cdr import SECOND
 
 _STEP = 0.01  # s before and after a sample, for its speed
@@ -83,7 +85,11 @@ def judge(recording: Recording, encoders: Encoders, calibration: Calibration) ->
         before, after = (np.interp(seconds + t, seconds, rotor.turned) for t in (-_STEP, _STEP))
         velocity = (after - before) / (2.0 * _STEP)
     stamp = rotor.stamp if encoders.timed else rotor.stamp // SECOND  # no row is a gap
-    correction = Corrector(calibration).correct_batch(
+    # Gaps of a recording can hide any motion.
+    unbounded = replace(NodeParameters.load(), max_rotor_acceleration=math.inf)
+    corrector = GearState(unbounded, calibration).corrector
+    assert corrector  # noqa: S101, there is a calibration
+    correction = corrector.correct_batch(
         stamp, rotor.turns, rotor.angle, velocity, effort, segment
     )
 

@@ -15,8 +15,8 @@ from gear_kinematics.bag import Bag, BagError, ReportProgress, by_topic
 from gear_kinematics.bag.roles import find_rotor_topic, only_joint
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.loads import Loads
-from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.cdr import SECOND
 
 Array = NDArray[Any]
@@ -191,11 +191,11 @@ def read_loads(task: Task, progress: ReportProgress | None = None) -> RecordedLo
         if task.only_joint:
             joint = only_joint(bag, topic, parameters.rotor_joint)
             parameters = replace(parameters, rotor_joint=joint)
-        rotor, loads = RotorInput(parameters), Loads(parameters)
+        gear, loads = GearState(parameters), Loads(parameters)
         try:
             for batch in bag.batches([topic], progress):
                 messages = by_topic(batch, [topic])[topic]
-                samples = rotor.accept_batch(messages.data, messages.received)
+                samples = gear.samples(messages.data, messages.received)
                 found = loads.follow_batch(samples)
                 rows = [TURN * samples.turns + samples.angle, found.torque]
                 for _, mesh, cam, _, _, couple, _ in found.branches:
@@ -204,17 +204,23 @@ def read_loads(task: Task, progress: ReportProgress | None = None) -> RecordedLo
                 stamps.append(samples.stamp[known])
                 tables.append(np.stack(rows)[:, known])
                 if unknown := np.count_nonzero(~known):
-                    rotor.rejected[f'{loads.needed} missing'] += int(unknown)
+                    gear.input.rejected[f'{loads.needed} missing'] += int(unknown)
         except BagError as error:  # what could be read counts
             damage = str(error)
     if not any(map(len, stamps)):
-        why = rotor.why_rejected or 'no messages'
+        why = gear.input.why_rejected or 'no messages'
         raise BagError(damage or f'{task.bag}: the loads on {topic} are unknown: {why}')
     angle, torque, *forces = np.concatenate(tables, axis=1)
     names = [f'{kind}_{each.name}' for each in parameters.branches for kind in _JOINTS]
     joints = {'output': np.abs(torque), **dict(zip(names, forces, strict=True))}
     return RecordedLoads(
-        parameters, np.concatenate(stamps), angle, torque, joints, dict(rotor.rejected), damage
+        parameters,
+        np.concatenate(stamps),
+        angle,
+        torque,
+        joints,
+        dict(gear.input.rejected),
+        damage,
     )
 
 
