@@ -13,9 +13,9 @@ from gear_kinematics.commands.output import complain, warn_of_shared_memory
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.document import document
-from gear_kinematics.validation.report import BagReport
+from gear_kinematics.validation.report import BagReport, unusable
 from gear_kinematics.validation.task import QUANTITIES, Task, Tolerances
-from gear_kinematics.validation.validate_bag import WORK, unusable, validate_bag
+from gear_kinematics.validation.validate_bag import WORK, validate_bag
 
 _EXIT_CODES = {
     Verdict.PASS: ExitCode.DONE,

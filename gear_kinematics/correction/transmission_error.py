@@ -82,8 +82,8 @@ class TransmissionError:
     within half a turn of the first one, whatever the offset of the encoder's zero.
     """
 
-    def __init__(self, *, max_gap: int, travel: float) -> None:
-        """Start with no samples; see `configure`."""
+    def __init__(self, *, max_gap: int = 0, travel: float = 0.0) -> None:
+        """Start with no samples; see `configure`. By default, no angle is compared."""
         self.matched = 0
         self.unmatched: Counter[str] = Counter()
         """Numbers of measured angles without an error, by cause."""

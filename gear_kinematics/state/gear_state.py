@@ -69,10 +69,10 @@ class GearState:
 
     def __init__(self, parameters: NodeParameters, calibration: Calibration | None = None) -> None:
         """Start without messages; no topics are chosen."""
-        self.input = RotorInput(parameters)
-        self.output_encoder = OutputEncoder(parameters, TurnReference(self.input))
         self._chosen: Collection[str] | None = None
         self._configure(parameters, calibration)
+        self.input = RotorInput(parameters)
+        self.output_encoder = OutputEncoder(parameters, TurnReference(self.input))
 
     def apply(self, parameters: NodeParameters, calibration: Calibration | None) -> None:
         """Change the parameters: all counts go on, and the turns if their encoders are the same.

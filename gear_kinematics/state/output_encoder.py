@@ -31,7 +31,7 @@ class OutputEncoder:
     def __init__(self, parameters: NodeParameters, reference: TurnReference | None = None) -> None:
         self.received = 0
         self.rejected: Counter[str] = Counter()
-        self.comparison = TransmissionError(**_bounds(parameters))
+        self.comparison = TransmissionError()
         """Counts the measured angles that were compared, and those that were not by cause."""
         self._turn_reference = reference
         self.configure(parameters)
@@ -42,7 +42,10 @@ class OutputEncoder:
         self._parameters = parameters
         self._reader = JointReader(parameters.output_encoder_joint)
         self._ratio = parameters.gear.gear_ratio
-        self.comparison.configure(**_bounds(parameters))
+        self.comparison.configure(
+            max_gap=round(parameters.transmission_error_max_gap * SECOND),
+            travel=parameters.transmission_error_travel,
+        )
         self.slip_watch = SlipWatch(parameters)
         self.reference = self._turn_reference if parameters.absolute else None
         self._segment: int | None = None
@@ -95,11 +98,3 @@ class OutputEncoder:
             self.window.clear()
             self.slip_watch.restart()
             self.reference.restart()
-
-
-def _bounds(parameters: NodeParameters) -> dict[str, Any]:
-    """Return the arguments of `TransmissionError`."""
-    return {
-        'max_gap': round(parameters.transmission_error_max_gap * SECOND),
-        'travel': parameters.transmission_error_travel,
-    }

@@ -5,9 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.loads import NUMBERS, Loads
-from gear_kinematics.validation.fields import Array, FieldErrors, FieldSamples
+from gear_kinematics.validation.fields import Array, FieldSamples
 from gear_kinematics.validation.matching import Expectation, OutputTopic
 from gear_kinematics.validation.output_topics import finite_or_infinite
 from gear_kinematics.wire.batches import decode_numbers
@@ -26,21 +25,11 @@ class LoadTopic(OutputTopic):
     Samples have an `acceleration`, too, which is NaN there.
     """
 
-    def __init__(
-        self, topic: str, name: str, parameters: NodeParameters, expectation: Expectation
-    ) -> None:
-        """Take the loads from the parameters of the node, for one of LOAD_TOPICS."""
-        self._topic, self._loads = topic, Loads(parameters)
-        self._template = self._loads.templates[topic]
+    def __init__(self, topic: str, name: str, loads: Loads, expectation: Expectation) -> None:
+        """Take the loads of the node, for one of LOAD_TOPICS."""
+        self._topic, self._loads, self._template = topic, loads, loads.templates[topic]
         self.layout = self._template.layout
-        tolerances = expectation.tolerances
-        # A force acts at levers of the order of the eccentricity.
-        force = tolerances.effort / parameters.mechanism.eccentricity
-        errors = (
-            FieldErrors(field, unit, force if unit == 'N' else tolerances.of(unit))
-            for field, unit in _UNITS[topic].items()
-        )
-        super().__init__(name, '', expectation, *errors)
+        super().__init__(name, '', expectation, _UNITS[topic])
 
     def answered(self, samples: Array) -> Array:
         """Whether each of the oldest samples of the window has its message, or needs none."""

@@ -6,12 +6,12 @@ message is looked up only where a run ends. Memory is bounded by a window of sam
 """
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from gear_kinematics.kinematics import Gear, MotionState
+from gear_kinematics.kinematics import Gear, Mechanism, MotionState
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.report.document import counted
 from gear_kinematics.validation.count_changes import CountChanges
@@ -56,6 +56,12 @@ class Expectation(NamedTuple):
     """Recomputes the motion of a mechanism."""
     changes: CountChanges
     """What the outputs say of the rotor's count."""
+
+    def tolerance(self, unit: str) -> float:
+        """Return the tolerance of errors in a unit: a force acts at the eccentricity as lever."""
+        if unit == 'N' and isinstance(self.gear, Mechanism):
+            return self.tolerances.effort / self.gear.eccentricity
+        return self.tolerances.of(unit)
 
 
 class Matcher:
@@ -187,11 +193,21 @@ class OutputTopic:
     """Returns the layout of a message, of which the last text is the label."""
 
     def __init__(
-        self, name: str, label: str, expectation: Expectation, *errors: FieldErrors
+        self, name: str, label: str, expectation: Expectation, units: Mapping[str, str]
     ) -> None:
-        """Start without messages; `label` is the joint or the frame that they name."""
-        self.name, self.label, self.errors = name, label, errors
-        self.series = SeriesRecorder(errors)
+        """Start without messages.
+
+        Args:
+            name: of the topic.
+            label: the joint or the frame that its messages name.
+            expectation: how to judge them.
+            units: of what is compared in them, by its names.
+        """
+        self.name, self.label = name, label
+        self.errors = tuple(
+            FieldErrors(field, unit, expectation.tolerance(unit)) for field, unit in units.items()
+        )
+        self.series = SeriesRecorder(self.errors)
         self.matcher = Matcher()
         self.missing = Missing()
         self._gear, self._tolerances, self._solver, self._changes = expectation

@@ -14,7 +14,7 @@ from gear_kinematics.validation.diagnosis import (
     FactorFit,
     diagnose,
 )
-from gear_kinematics.validation.fields import FieldErrors, FieldSamples
+from gear_kinematics.validation.fields import FieldSamples
 from gear_kinematics.validation.matching import Expectation, OutputTopic, in_order, rotor_angle
 from gear_kinematics.validation.report import Finding
 from gear_kinematics.wire.batches import (
@@ -42,11 +42,7 @@ class JointStateTopic(OutputTopic):
     layout = staticmethod(joint_state_layout)
 
     def __init__(self, name: str, joint: str, expectation: Expectation) -> None:
-        errors = (
-            FieldErrors(field, unit, expectation.tolerances.of(unit))
-            for field, unit in self.units.items()
-        )
-        super().__init__(name, joint, expectation, *errors)
+        super().__init__(name, joint, expectation, self.units)
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
         self._states = decode_joint_states(messages, self.label)
@@ -158,14 +154,7 @@ class BodyPoses(OutputTopic):
     def __init__(
         self, name: str, frame_id: str, mechanism: Mechanism, expectation: Expectation
     ) -> None:
-        tolerances = expectation.tolerances
-        super().__init__(
-            name,
-            frame_id,
-            expectation,
-            FieldErrors('position', 'm', tolerances.position),
-            FieldErrors('orientation', 'rad', tolerances.angle),
-        )
+        super().__init__(name, frame_id, expectation, {'position': 'm', 'orientation': 'rad'})
         self._mechanism = mechanism
         self._axial = np.array([[b.axial_position] for b in mechanism.branches] * 2)
 

@@ -6,6 +6,7 @@ Stamps are ns, times s, angles rad, lengths m. What `first_...` is the stamp of 
 
 import math
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.report.document import Verdict
@@ -212,3 +213,8 @@ class BagReport:
     def passed(self) -> bool:
         """Whether the recorded outputs agree with the recomputed ones."""
         return self.verdict == Verdict.PASS
+
+
+def unusable(bag: Path, error: str, config: str = '') -> BagReport:
+    """Return the report on a bag that cannot be validated, and why; `config` is its file."""
+    return BagReport(str(bag), Verdict.UNUSABLE, config=config, error=error)

@@ -13,7 +13,6 @@ from gear_kinematics.bag import TopicMessages
 from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics import RotorPosition, RotorSample
 from gear_kinematics.state.gear_state import GearState
-from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.turn_reference import ErrorBlock
 from gear_kinematics.validation.fields import Array
 from gear_kinematics.validation.report import Finding
@@ -26,9 +25,10 @@ class TurnReferences:
     """Decides as the node does, block by block, whether the outputs agree with the encoder."""
 
     def __init__(self, gear: GearState) -> None:
-        """Judge by the parameters and the calibration of a gear."""
+        """Compare by the encoder of a gear, which no longer refers the turns of its own rotor."""
         self._parameters, self._corrector = gear.parameters, gear.corrector
-        self._encoder = OutputEncoder(gear.parameters)
+        self._encoder = gear.output_encoder
+        self._encoder.reference = None
         self._block, self._segment = ErrorBlock(), -1
         self._agreed, self._disagreeing = False, 0
         self._fault: Finding | None = None

@@ -20,8 +20,7 @@ from gear_kinematics.bag.schedule import count_due
 from gear_kinematics.fleet.processes import Work
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.report.document import Verdict
-from gear_kinematics.validation.report import BagReport, Finding
+from gear_kinematics.validation.report import BagReport, Finding, unusable
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validator import Validator
 from gear_kinematics.wire.topics import CORRECTED_TOPICS, LOAD_TOPICS, OUTPUT_ENCODER
@@ -74,7 +73,8 @@ def validate_bag(
     except Exception as error:
         if play and not isinstance(error, RuntimeError):  # of the live node
             raise
-        report = _lost(task, str(error) if play else unexpected(error, debug=task.debug))
+        cause = str(error) if play else unexpected(error, debug=task.debug)
+        report = unusable(task.bag, f'{task.bag}: {cause}', task.config)
     return replace(report, elapsed=time.monotonic() - begun)
 
 
@@ -129,11 +129,6 @@ def _judged(
 
 def _lost(task: Task, cause: str) -> BagReport:
     return unusable(task.bag, f'{task.bag}: {cause}', task.config)
-
-
-def unusable(bag: Path, error: str, config: str = '') -> BagReport:
-    """Return the report on a bag that cannot be validated, and why; `config` is its file."""
-    return BagReport(str(bag), Verdict.UNUSABLE, config=config, error=error)
 
 
 WORK = Work(validate_bag, _lost)

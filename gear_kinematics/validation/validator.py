@@ -91,30 +91,31 @@ class Validator:
         unseen = parameters.single_turn or parameters.absolute
         self._given_segment = None if unseen else self._state.input.segment
         """The latest segment with an output."""
-        self._groups: list[tuple[Completeness, Sequence[OutputTopic]]] = []
         joint = parameters.frame_prefix + parameters.output_joint
         self.output = OutputState(topics.output, joint, self._expectation)
         self.poses = None
         if isinstance(gear, Mechanism) and topics.poses:
             frame = parameters.frame_prefix + _FRAME
             self.poses = BodyPoses(topics.poses, frame, gear, self._expectation)
-        self._judge(*filter(None, (self.output, self.poses)))  # a node publishes both
         self._why_unjudged = why_unjudged(
             task.calibration, single_turn=parameters.single_turn, absolute=parameters.absolute
         )
         self._unbroken, self._corrector, self._loads = Unbroken(), None, None
         columns: list[Any] = list(SAMPLES)
-        if task.calibration and self._corrected and not self._why_unjudged:
+        if self._corrected and not self._why_unjudged:
             self._corrector = self._state.corrector
             columns += [(name, np.float64) for name in Correction._fields]
-        if LOAD_TOPICS.keys() & further.keys():
-            self._loads = Loads(parameters)
-            columns.append(('acceleration', np.float64))
+        groups: list[list[OutputTopic]] = [[*filter(None, (self.output, self.poses))]]
         for topic, name in further.items():
             if topic in LOAD_TOPICS:
-                self._judge(LoadTopic(topic, name, parameters, self._expectation))
+                self._loads = self._loads or Loads(parameters)
+                groups.append([LoadTopic(topic, name, self._loads, self._expectation)])
             elif self._corrector:
-                self._judge(CORRECTED[topic](name, joint, self._expectation))
+                groups.append([CORRECTED[topic](name, joint, self._expectation)])
+        self._groups = [(Completeness(topics.rotor, of, strict=task.strict), of) for of in groups]
+        """Outputs that are recorded from the same time on: a node publishes the first ones all."""
+        if self._loads:
+            columns.append(('acceleration', np.float64))
         self._window = np.zeros(0, columns)
         """The latest samples."""
         self._prefix_open = not parameters.frame_prefix
@@ -178,12 +179,6 @@ class Validator:
             mechanism=self._gear if isinstance(self._gear, Mechanism) else None,
             module=self._parameters.module,
         )
-
-    def _judge(self, *outputs: OutputTopic) -> None:
-        """Compare outputs that are recorded from the same time on."""
-        missing = {output.name: output.missing for output in outputs}
-        group = Completeness(self._topics.rotor, missing, strict=self._task.strict)
-        self._groups.append((group, outputs))
 
     @property
     def _outputs(self) -> list[OutputTopic]:

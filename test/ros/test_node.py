@@ -147,7 +147,7 @@ def test_parameters_set_together_take_effect_with_the_next_message_or_not_at_all
 ):
     node, published, settings = make('changed'), [], Settings()
     monkeypatch.setattr(node._outputs, 'send', published.extend)
-    node._subscribed_states = list(STATES)
+    node._actuator.choose(STATES)
     random = Random(6)  # noqa: S311, no secret
     seen = set()
     for turn in range(150):
