@@ -7,6 +7,7 @@ the positions of the bodies are periodic in the turns of the rotor.
 """
 
 import math
+from fractions import Fraction
 from types import ModuleType
 from typing import Any, NamedTuple, overload
 
@@ -26,6 +27,8 @@ float64 holds every integer exactly."""
 _MANY_TURNS = 2**25 * TURN  # rad; products of fewer with _TURN_HIGH or _TURN_LOW fit into 53 bits
 _TURN_HIGH = math.floor(TURN * 2.0**24) / 2.0**24
 _TURN_LOW = TURN - _TURN_HIGH
+_EXACT_TURN = Fraction(TURN) + Fraction(TURN_TAIL)  # 2π to 32 digits
+_WHOLE = 1e-6  # of a range, by which it may differ from whole turns that are meant
 _NOISE = 0.05  # rad, of any encoder
 _BELOW_HALF = math.nextafter(math.pi, 0.0)  # rad; any smaller angle is 0 turns, however rounded
 
@@ -120,20 +123,33 @@ def whole_turns(turns: ArrayLike) -> NDArray[np.float64]:
     return array
 
 
+def repeated(count: int, period: float) -> RotorPosition:
+    """Multiply a period, rad, by a count, exactly but for one rounding of the angle.
+
+    A period that is a whole number of turns but for its digits stands for these turns.
+    """
+    turns = round(period / TURN)
+    if abs(period - turns * TURN) <= _WHOLE * period:
+        return RotorPosition(count * turns, 0.0)
+    product = count * Fraction(period)
+    turns = round(product / _EXACT_TURN)
+    return RotorPosition(turns, float(product - turns * _EXACT_TURN))
+
+
 class RotorTurns:
     """Follows the rotor's encoder and counts its whole turns.
 
-    The position of a multi-turn encoder is used as it is. That of a single-turn encoder wraps once
-    a turn and is unwrapped here; `referenced` is whether the number of turns is known. It
-    is unknown at the start, and after a gap in which the rotor could have turned half a turn or
+    The position of a multi-turn encoder is used as it is. One that repeats after a period, such as
+    a turn, is unwrapped here; `referenced` is whether the number of periods is known. It is
+    unknown at the start, and after a gap in which the rotor could have turned half a period or
     more either way from its expected angle; `home` makes it known. While it is unknown, counting
-    goes on from the nearest turn.
+    goes on from the nearest period.
     """
 
     def __init__(
         self,
         *,
-        single_turn: bool,
+        period: float,
         max_speed: float,
         max_acceleration: float,
         longest_silence: float = 0.0,
@@ -141,32 +157,35 @@ class RotorTurns:
         """Start with no position.
 
         Args:
-            single_turn: whether the encoder's position wraps once a turn.
+            period: rad after which the encoder's position repeats, TURN once a turn; 0: never.
             max_speed: rad/s, the greatest speed of the rotor.
             max_acceleration: rad/s², the greatest acceleration of the rotor.
             longest_silence: ns without a sample after which a multi-turn encoder may count anew,
                 so that its turns are unknown at the start, too; 0: it never does.
         """
-        self.single_turn = single_turn
+        self.period = period
         self.max_speed = max_speed
         self.max_acceleration = max_acceleration
         self.longest_silence = longest_silence
         self._lost = False
         self.unknown_gaps = 0
-        """In which the rotor could have turned half a turn or more unseen."""
+        """In which the rotor could have turned half a period or more unseen."""
         self.reset()
 
     def reset(self) -> None:
         """Forget the position and the turns; the next update counts as the first."""
         self.position: RotorPosition | None = None
         self.forget_turns()
+        self.periods = 0
+        """Periods that are added to the readings."""
+        self._offset = 0, 0, 0.0  # periods, and what they come to: turns and angle, rad
         self._reading = 0.0
         self._stamp = 0
         self._velocity: float | None = None
 
     def forget_turns(self) -> None:
         """Make the turns as unknown as at the start; counting goes on."""
-        self.referenced = not (self.single_turn or self.longest_silence or self._lost)
+        self.referenced = not (self.period or self.longest_silence or self._lost)
         self.unseen_travel = math.inf  # rad, at most between the known and the counted turns
 
     def lose(self) -> None:
@@ -178,26 +197,31 @@ class RotorTurns:
         """Process the encoder's next sample.
 
         Args:
-            position: rad, up to ±`LARGEST_ANGLE`; of a single-turn encoder in any range.
+            position: rad, up to ±`LARGEST_ANGLE`; if it repeats, in any range.
             stamp: ns, not earlier than the last.
             velocity: rad/s, or None if unknown.
         """
-        split = split_turns(position)
-        if self.single_turn and self.position is not None:
+        split, period = split_turns(position), self.period
+        if period and self.position is not None:
             elapsed = (stamp - self._stamp) * 1e-9
             low, high = self._possible_turn(elapsed, velocity)
-            apparent, expected = split.angle - self.position.angle, 0.5 * (low + high)
-            more = round((expected - apparent) / TURN)
+            apparent, expected = position - self._reading, 0.5 * (low + high)
+            more = round((expected - apparent) / period)
             # Stamps that are early or late put the turn outside of what is possible: it is the
             # right one only if any other were far less possible.
             width = high - low
-            outside = abs(apparent + TURN * more - expected) - 0.5 * width
-            if width >= TURN or outside > _NOISE + (TURN - width - outside) / 8.0:
+            outside = abs(apparent + period * more - expected) - 0.5 * width
+            if width >= period or outside > _NOISE + (period - width - outside) / 8.0:
                 self.referenced = False
                 self.unknown_gaps += 1
-                self.unseen_travel += self.max_speed * elapsed + math.pi
-            turns = self.position.turns + more
-            split = RotorPosition(turns, split.angle)
+                self.unseen_travel += self.max_speed * elapsed + 0.5 * period
+            self.periods += more
+            if self.periods != self._offset[0]:
+                self._offset = (self.periods, *repeated(self.periods, period))
+            _, turns, angle = self._offset
+            split = RotorPosition(split.turns + turns, split.angle)
+            if angle:
+                split = RotorPosition(*nearest_turn(split.turns, split.angle + angle, math))
         elif self.longest_silence and self.position and stamp - self._stamp > self.longest_silence:
             self.referenced = False
             self.unknown_gaps += 1
@@ -213,7 +237,7 @@ class RotorTurns:
         """
         reach = self.max_speed * elapsed
         low, high = -reach, reach
-        if reach >= math.pi and velocity is not None and self._velocity is not None:
+        if 2.0 * reach >= self.period and velocity is not None and self._velocity is not None:
             change = velocity - self._velocity
             middle = 0.5 * (velocity + self._velocity) * elapsed
             # No **, which raises on overflow.
@@ -243,7 +267,8 @@ class RotorTurns:
             RuntimeError: before the first update.
         """
         zero = self.zero_for(rotor_angle, direction)
-        # Drop the turns counted so far for a single-turn encoder.
+        # Drop the periods counted so far.
+        self.periods, self._offset = 0, (0, 0, 0.0)
         self.position = split_turns(self._reading)
         self.refer()
         return zero

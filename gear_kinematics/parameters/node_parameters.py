@@ -6,7 +6,7 @@ The default values are in config/actuator.yaml alone.
 
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from operator import attrgetter
@@ -18,7 +18,13 @@ import yaml
 from gear_kinematics.kinematics import Branch, Gear, GearRatio, Mechanism, MechanismError
 from gear_kinematics.kinematics.loads import Bodies, TorqueSharing
 from gear_kinematics.kinematics.preload import Preload, Stiffness
-from gear_kinematics.parameters import meshes
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.parameters import checks, meshes
+from gear_kinematics.parameters.body_parameters import (
+    BRANCH_PARAMETERS,
+    LOADS_PARAMETERS,
+    branch_parameters,
+)
 from gear_kinematics.parameters.files import FILES, ConfigError, default_values, given_parameters
 from gear_kinematics.parameters.parameter import Parameter
 from gear_kinematics.parameters.yaml_file import Dumper
@@ -30,12 +36,6 @@ NODE = 'gear_state_publisher'
 
 _EVERY_NODE = re.compile(r'use_sim_time|start_type_description_service|qos_overrides\..*')
 """Parameters that every node has and that are ignored here."""
-
-
-def _check_stiffness(values: Sequence[float]) -> None:
-    """Refuse a list of stiffnesses that are not one or two, or not finite or negative."""
-    if len(values) not in {1, 2} or not all(0.0 <= each < math.inf for each in values):
-        raise ValueError(f'one or two values of at least 0, not {[*values]}')
 
 
 def _parameter(*arguments: Any, **named: Any) -> Any:
@@ -72,6 +72,18 @@ class NodeParameters:
     rotor_encoder: str = _parameter(
         'Whether the position wraps once a turn', choices=('multi_turn', 'single_turn')
     )
+    rotor_encoder_range: float = _parameter(
+        'Angle after which the position repeats, rad, such as 25.0 for ±12.5 rad; 0: never, or '
+        'one turn with single_turn',
+        0.0,
+        1e9,
+        check=checks.encoder_range,
+    )
+    rotor_effort_factor: float = _parameter(
+        'Torque of the rotor per unit of the effort in the messages, N·m; not 0',
+        *(-1e9, 1e9),
+        check=checks.factor,
+    )
     max_rotor_speed: float = _parameter('Greatest speed of the rotor, rad/s', 1e-3, 1e6)
     max_rotor_acceleration: float = _parameter(
         'Greatest acceleration of the rotor, rad/s²; with the velocities of the messages, it '
@@ -85,6 +97,13 @@ class NodeParameters:
     )
     input_timeout: float = _parameter('Time without input that is an ERROR, s', 1e-3, 1e6)
     output_joint: str = _parameter('Name of the output shaft in output_state and the URDF')
+    output_range: tuple[float, ...] = _parameter(
+        'Least and greatest angle of the output, rad, less than a turn apart: they tell its turn '
+        'where the encoder at the output leaves it open; empty: unknown',
+        read_only=True,
+        items=float,
+        check=checks.output_range,
+    )
     output_encoder_joint: str = _parameter(
         "Joint to look up in output_encoder, or its index if joints have no names; '' takes the "
         'only joint'
@@ -135,7 +154,7 @@ class NodeParameters:
         read_only=True,
         items=float,
         least=1e-3,
-        check=_check_stiffness,
+        check=checks.stiffness,
     )
     shaft_stiffness: float = _parameter(
         'Stiffness between both arms, N·m/rad; 0: rigid', 0.0, 1e12, read_only=True, least=1e-3
@@ -195,7 +214,7 @@ class NodeParameters:
 
         given = {name: value(name) for name in PARAMETERS if name not in LOADS_PARAMETERS}
         loads = {name.removeprefix('loads.'): value(name) for name in LOADS_PARAMETERS}
-        given |= {'loads': Bodies(**loads), 'branch_stiffness': tuple(given['branch_stiffness'])}
+        given |= {'loads': Bodies(**loads)} | {name: tuple(given[name]) for name in _LISTS}
         given['branches'] = tuple(
             Branch(name, value(f'{name}.cam_phase'), value(f'{name}.axial_position'))
             for name in given['branches']
@@ -206,7 +225,7 @@ class NodeParameters:
         """The values by their names in ROS."""
         values = {name: attrgetter(name)(self) for name in PARAMETERS}
         values['branches'] = [branch.name for branch in self.branches]
-        values['branch_stiffness'] = [*self.branch_stiffness]
+        values |= {name: [*values[name]] for name in _LISTS}
         for branch in self.branches:
             values |= {f'{branch.name}.{key}': getattr(branch, key) for key in BRANCH_PARAMETERS}
         return values
@@ -274,7 +293,12 @@ class NodeParameters:
     @property
     def single_turn(self) -> bool:
         """Whether the position of the rotor wraps once a turn."""
-        return self.rotor_encoder == 'single_turn'
+        return self.rotor_period == TURN
+
+    @property
+    def rotor_period(self) -> float:
+        """The angle after which the position of the rotor repeats, rad; 0: never."""
+        return self.rotor_encoder_range or TURN * (self.rotor_encoder == 'single_turn')
 
     @property
     def absolute(self) -> bool:
@@ -282,17 +306,6 @@ class NodeParameters:
         return self.output_encoder_reference == 'absolute'
 
 
-LOADS_PARAMETERS: dict[str, Parameter] = {
-    f'loads.{name}': Parameter(f'{what}; 0: none', 0.0, maximum, read_only=True)
-    for name, what, maximum in (
-        ('satellite_mass', 'Mass of each satellite, kg', 1e6),
-        ('satellite_inertia', 'Inertia of each satellite about its axis, kg·m²', 1e6),
-        ('coupling_mass', 'Mass of each Oldham coupling, kg', 1e6),
-        ('coupling_inertia', 'Inertia of each Oldham coupling about its axis, kg·m²', 1e6),
-        ('rotor_inertia', 'Inertia of the rotor about its axis, kg·m²', 1e6),
-        ('pressure_angle', 'Working pressure angle of the teeth, rad', 1.5),
-    )
-}
 PARAMETERS: Mapping[str, Parameter] = {
     each.name: replace(
         each.metadata['parameter'],
@@ -302,12 +315,7 @@ PARAMETERS: Mapping[str, Parameter] = {
     if 'parameter' in each.metadata
 } | LOADS_PARAMETERS
 """All parameters but those of the branches, by name."""
-BRANCH_PARAMETERS: Mapping[str, Parameter] = {
-    'cam_phase': Parameter(
-        'Angle of the cam on the rotor, rad', -2.0 * math.pi, 2.0 * math.pi, read_only=True
-    ),
-    'axial_position': Parameter('Position along the motor axis, m', -10.0, 10.0, read_only=True),
-}
+_LISTS = [name for name, parameter in PARAMETERS.items() if parameter.items is float]
 
 
 @cache
@@ -319,15 +327,6 @@ def default_config() -> Path:
 def default_value(name: str) -> Any:
     """A parameter's default, from config/actuator.yaml; 0 for a branch that is not there."""
     return default_values(default_config(), NODE).get(name, 0.0)
-
-
-def branch_parameters(branches: Iterable[str]) -> dict[str, Parameter]:
-    """The parameters of the named branches, by name in ROS."""
-    return {
-        f'{branch}.{key}': parameter
-        for branch in branches
-        for key, parameter in BRANCH_PARAMETERS.items()
-    }
 
 
 def unknown_parameters(

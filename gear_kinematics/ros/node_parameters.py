@@ -2,6 +2,7 @@
 """Declares the parameters of a node to ROS, and finds faults that rclpy does not."""
 
 import re
+from array import array
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any
@@ -11,7 +12,8 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from gear_kinematics.parameters import PARAMETERS, default_value
-from gear_kinematics.parameters.node_parameters import branch_parameters, unknown_parameters
+from gear_kinematics.parameters.body_parameters import branch_parameters
+from gear_kinematics.parameters.node_parameters import unknown_parameters
 from gear_kinematics.parameters.parameter import Parameter as Declaration
 
 _QOS_DEPTH = re.compile(r'qos_overrides\..+\.depth')
@@ -40,7 +42,8 @@ def declared(
     given = getattr(node, '_parameter_overrides', ())
     if faults := unknown_parameters(given, branches, others):
         raise ValueError('; '.join(faults))
-    return {name: p.value for name, p in node.get_parameters_by_prefix('').items()}
+    values = {name: p.value for name, p in node.get_parameters_by_prefix('').items()}
+    return {name: [] if value is None else value for name, value in values.items()}
 
 
 def _declare(
@@ -51,6 +54,7 @@ def _declare(
             description=parameter.description,
             additional_constraints=', '.join(parameter.choices),
             read_only=parameter.read_only,
+            dynamic_typing=default(name) == [],  # an empty list has no type in ROS
         )
         bounds = {'from_value': parameter.minimum, 'to_value': parameter.maximum}
         if parameter.kind is int:
@@ -63,7 +67,13 @@ def _declare(
 def fault_of(parameter: Parameter, known: Mapping[str, Declaration] = PARAMETERS) -> str | None:
     """Return the fault of a value of the right type and range, or None."""
     declaration = known.get(parameter.name)
-    if declaration and (fault := declaration.other_fault(parameter.name, parameter.value)):
+    value = parameter.value
+    if declaration and declaration.kind is list:
+        lists = value is None or isinstance(value, (list, array))
+        value = [*(value or ())] if lists else value
+        if fault := declaration.fault(parameter.name, value):
+            return fault
+    elif declaration and (fault := declaration.other_fault(parameter.name, value)):
         return fault
     if _QOS_DEPTH.fullmatch(parameter.name) and not 0 <= parameter.value <= _MAX_DEPTH:
         return f'{parameter.name} must be between 0 and {_MAX_DEPTH}'

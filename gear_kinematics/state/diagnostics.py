@@ -13,6 +13,7 @@ from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.output_encoder import OutputEncoder
+from gear_kinematics.state.output_range import range_fault
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.turn_reference import SAMPLES, TurnReference
 from gear_kinematics.wire.cdr import SECOND
@@ -30,6 +31,7 @@ _UNSTAMPED = 'Let the driver stamp its messages: the turns of a single-turn enco
 _UNEXPLAINED = 'Check gear_ratio, the directions and zeros of both encoders, and the gear.'
 _AMBIGUOUS = 'Stop the output; or calibrate the gear, or lower transmission_error_limit.'
 _DISAGREES = 'Check whether an encoder has slipped; then call ~/home, or restart the node.'
+_OUTSIDE = 'Check output_range, gear_ratio and the zeros of both encoders.'
 _NOT_COMPARED = 'Check that both drivers run and send often, and that their clocks agree.'
 _SLIPPED = 'Check the couplings and the zeros of both encoders; then call ~/home.'
 _TOO_LARGE = 'Check the gear and its encoders, or raise transmission_error_limit.'
@@ -154,13 +156,15 @@ class InputMonitor(DriverMonitor):
             errors.append(_not_referenced(reference))
         elif reference and reference.disagreement:
             errors.append(Fault(reference.disagreement, _DISAGREES))
+        elif outside := _outside(rotor_input):
+            errors.append(Fault(outside, _OUTSIDE))
         errors += self.graph.errors
         warnings = self._new_faults(rotor_input.rejected)
         if rotor_input.velocity_field.meaning:
             warnings.append(Fault(rotor_input.velocity_field.meaning, _VELOCITY))
         if rotor_input.plausibility.beyond_limits:
             warnings.append(Fault(rotor_input.plausibility.beyond_limits, _BEYOND))
-        if rotor_input.parameters.single_turn and rotor_input.zero_stamps > self._zero_stamps:
+        if rotor_input.parameters.rotor_period and rotor_input.zero_stamps > self._zero_stamps:
             unstamped = rotor_input.zero_stamps - self._zero_stamps
             warnings.append(Fault(f'zero stamps {unstamped}', _UNSTAMPED))
         self._zero_stamps = rotor_input.zero_stamps
@@ -259,12 +263,23 @@ class EncoderMonitor(DriverMonitor):
         return self._report([], warnings, values)
 
 
+def _outside(rotor_input: RotorInput) -> str:
+    """Say how the last output angle contradicts `output_range`; '' if it does not."""
+    parameters, last = rotor_input.parameters, rotor_input.last
+    if not last:
+        return ''
+    turns, rest = parameters.gear.gear_ratio.output_angle(*last.position, math)
+    return range_fault(parameters, TURN * turns + rest, parameters.transmission_error_limit)
+
+
 def _not_referenced(reference: TurnReference | None) -> Fault:
     """Why nothing has told the turns."""
     if not reference:
         return Fault('not referenced', _NOT_REFERENCED)
     if not (decision := reference.decision):
         cause, advice = f'no {SAMPLES} samples of output_encoder in a row', _NOT_COMPARED
+    elif decision.outside:
+        cause, advice = decision.outside, _OUTSIDE
     else:
         used, margin = (f'{math.degrees(x):.3g}°' for x in (decision.used, decision.margin))
         cause = f'{used} of {margin} margin'

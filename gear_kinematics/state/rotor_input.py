@@ -33,7 +33,11 @@ from gear_kinematics.wire.joint_reader import (
     RejectedInputError,
 )
 
-_ENCODERS = tuple(n for n in PARAMETERS if n.startswith(('rotor_', 'output_encoder_')))
+_ENCODERS = tuple(
+    name
+    for name in PARAMETERS
+    if name.startswith(('rotor_', 'output_encoder_')) and name != 'rotor_effort_factor'
+)
 """The parameters that turns from an absolute encoder at the output rest on."""
 
 
@@ -62,7 +66,7 @@ class RotorInput:
         self._restarts = 0
         """Counts homing, references by the output, and changes of the encoders' parameters."""
         self.turns = RotorTurns(
-            single_turn=parameters.single_turn,
+            period=parameters.rotor_period,
             max_speed=parameters.max_rotor_speed,
             max_acceleration=parameters.max_rotor_acceleration,
             longest_silence=_longest_silence(parameters),
@@ -88,9 +92,9 @@ class RotorInput:
             self._restarts += 1
             if parameters.absolute or before.absolute:
                 self.turns.forget_turns()
-        joint, kind = parameters.rotor_joint, parameters.rotor_encoder
-        if (joint, kind) != (before.rotor_joint, before.rotor_encoder):
-            self.turns.single_turn = parameters.single_turn
+        joint, period = parameters.rotor_joint, parameters.rotor_period
+        if (joint, period) != (before.rotor_joint, before.rotor_period):
+            self.turns.period = period
             self.turns.reset()
             self.plausibility.reset()
             self.velocity_field = VelocityField(float(1 / parameters.gear.gear_ratio))
@@ -201,7 +205,7 @@ class RotorInput:
         clock = np.asarray(received, np.int64)[rows]
         rejected = states.stamp[states.joint_found & ~usable]
         parameters = self._parameters
-        simple = not (parameters.single_turn or parameters.absolute) and self._in_order(stamps)
+        simple = not (parameters.rotor_period or parameters.absolute) and self._in_order(stamps)
         if simple and self.plausibility.believes(stamps, values[:, 0]):
             return self._all_at_once(rows, stamps, values, clock, rejected)
         return self._one_by_one(rows, stamps, values, clock, rejected)
@@ -301,7 +305,7 @@ class RotorInput:
 
     def _compare(self, stamp: int, position: float, velocity: float | None) -> float | None:
         """Compare a velocity with the positions; returns it unless they contradict it."""
-        if self.turns.position and self.turns.single_turn:
+        if self.turns.position and self.turns.period:
             position = TURN * self.turns.position.turns + self.turns.position.angle
         given = math.nan if velocity is None else velocity
         self.velocity_field.note(stamp, position, given, self.plausibility.finest)
@@ -325,8 +329,11 @@ def _longest_silence(parameters: NodeParameters) -> float:
 
 
 def _limits(parameters: NodeParameters) -> tuple[float, float, float]:
-    period = TURN if parameters.single_turn else 0.0
-    return parameters.max_rotor_speed, parameters.max_rotor_acceleration, period
+    return (
+        parameters.max_rotor_speed,
+        parameters.max_rotor_acceleration,
+        parameters.rotor_period,
+    )
 
 
 def _number_or_none(value: float) -> float | None:

@@ -1,6 +1,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Finds the rotor's turns by an absolute encoder at the output, and watches that they agree.
 
+An encoder that is absolute within a turn leaves the turn of the output open: `output_range` tells
+it, and excludes angles that the output cannot have.
+
 The rotor angle is 2π k + a with a known angle a and an unknown integer k. With i = N/D in lowest
 terms, the output angle within its turn, 2π k D/N + a D/N modulo 2π, takes |N| values that are
 2π/|N| apart, so that it tells k modulo |N|, which is D turns of the output.
@@ -12,8 +15,9 @@ from typing import NamedTuple
 
 from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics import GearRatio
-from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.kinematics.rotor_turns import TURN, repeated
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.output_range import range_fault
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.cdr import SECOND
 
@@ -28,11 +32,13 @@ class Decision(NamedTuple):
 
     output_angle: float  # ideal, of the last one
     error: float  # measured less ideal angle, modulo 2π
-    turns: int  # of a single-turn rotor, to add to its count, modulo |N|
+    turns: int  # or other periods of the rotor's encoder, to add to its count
     distance: float  # what they leave of the error
     budget: float  # what measured and true angle may differ by
     margin: float  # of which the budget must be less, as it could explain other turns
     tolerance: float  # beyond which the error contradicts a count that is known
+    measured: float  # of the last one, in the turn that the turns or the range tell
+    outside: str  # how the measured angle contradicts output_range, in words; or ''
 
     @property
     def used(self) -> float:
@@ -42,14 +48,14 @@ class Decision(NamedTuple):
     @property
     def unambiguous(self) -> bool:
         """Whether the turns are the true ones: the budget explains their distance, no other's."""
-        return abs(self.distance) <= self.budget < self.margin
+        return abs(self.distance) <= self.budget < self.margin and not self.outside
 
     @property
     def disagreement(self) -> str:
         """How the encoder contradicts the rotor's count; empty if it does not."""
-        apart = math.remainder(self.error, TURN)
-        if abs(apart) <= self.tolerance:
-            return ''
+        apart = self.measured - self.output_angle
+        if self.outside or abs(apart) <= self.tolerance:
+            return self.outside
         angles = math.degrees(self.output_angle + apart), math.degrees(self.output_angle)
         what = 'output_encoder disagrees: {:.2f}° by the encoder, {:.2f}° by the rotor'
         return what.format(*angles)
@@ -69,13 +75,21 @@ def nearest_turns(ratio: GearRatio, error: float) -> tuple[int, float]:
     return turns - n * (2 * turns > n), error - TURN * steps / n
 
 
-def decide(samples: Sequence[ErrorSample], parameters: NodeParameters) -> Decision:
-    """Decide by errors between which no motion is unknown."""
+def decide(
+    samples: Sequence[ErrorSample], parameters: NodeParameters, unseen: float = 0.0
+) -> Decision:
+    """Decide by errors between which no motion is unknown.
+
+    Without an `output_range`, the turn of the output is the nearest to that of the count, or to 0
+    if the rotor can have turned half of what the encoder at the output tells, by the `unseen`
+    travel, rad.
+    """
     # Play and transmission error: what is in order, peak to peak, as the zero of the encoder may
     # be anywhere in it.
     errors, known = [sample.error for sample in samples], parameters.transmission_error_limit
     widest = max(sample.half_width for sample in samples)
-    if parameters.single_turn and not math.isnan(widest):
+    period, ratio = parameters.rotor_period, parameters.gear.gear_ratio
+    if period and not math.isnan(widest):
         # The calibration tells both; it needs the rotor angle, at least within the turn.
         errors, known = [sample.error - sample.deviation for sample in samples], widest
     offsets = [math.remainder(error - errors[0], TURN) for error in errors]
@@ -83,15 +97,30 @@ def decide(samples: Sequence[ErrorSample], parameters: NodeParameters) -> Decisi
     # Noise: the true mean is somewhere in the range of the samples.
     scatter = max(max(offsets) - offset, offset - min(offsets))
     delay = max(abs(sample.speed) for sample in samples) * parameters.transmission_error_max_gap
-    error, budget, ratio = errors[0] + offset, known + scatter + delay, parameters.gear.gear_ratio
+    error, budget = errors[0] + offset, known + scatter + delay
     angle = TURN * samples[-1].turns + samples[-1].ideal
+    repeats = TURN * ratio.denominator if parameters.single_turn else TURN
+    known_turn = not parameters.output_range and unseen < 0.5 * repeats * abs(ratio)
+    centre = angle if known_turn else sum(parameters.output_range) / 2.0
     if parameters.single_turn:
-        found, margin = nearest_turns(ratio, error), math.pi / abs(ratio.numerator)
-        return Decision(angle, error, *found, budget, margin, budget)
-    # Any angle has its zero: wait until noise and delay are less than the gear's error. A zero
-    # that was found so is as uncertain.
-    margin = 2.0 * known
-    return Decision(angle, error, 0, 0.0, budget, margin, budget + margin)
+        turns, distance = nearest_turns(ratio, error)
+        if not known_turn:
+            periods = (angle - centre) / repeats + turns / ratio.numerator
+            turns -= ratio.numerator * round(periods)
+        measured = angle + TURN * float(turns / ratio) + distance
+        margin = math.pi / abs(ratio.numerator)
+    else:
+        measured = centre + math.remainder(angle + error - centre, TURN)
+        # Any angle has its zero: wait until noise and delay are less than the gear's error. A zero
+        # that was found so is as uncertain.
+        turns, distance, margin = 0, 0.0, 2.0 * known
+        if period:
+            step = period / float(ratio)
+            turns = round((measured - angle) / step)
+            distance, margin = measured - angle - turns * step, 0.5 * min(abs(step), TURN)
+    tolerance = budget if period else budget + margin
+    outside = range_fault(parameters, measured, budget, repeats) if budget < margin else ''
+    return Decision(angle, error, turns, distance, budget, margin, tolerance, measured, outside)
 
 
 class ErrorBlock:
@@ -104,15 +133,17 @@ class ErrorBlock:
     def __init__(self) -> None:
         self._errors: list[ErrorSample] = []
 
-    def add(self, sample: ErrorSample, parameters: NodeParameters) -> Decision | None:
-        """Take the next error; returns a decision if it completes a block."""
+    def add(
+        self, sample: ErrorSample, parameters: NodeParameters, unseen: float = 0.0
+    ) -> Decision | None:
+        """Take the next error; returns a decision if it completes a block. See `decide`."""
         errors, longest = self._errors, parameters.transmission_error_max_gap * SECOND
         if errors and not 0 <= sample.stamp - errors[-1].stamp <= longest:
             errors.clear()
         errors.append(sample)
         if len(errors) < SAMPLES or sample.stamp - errors[0].stamp < 3.0 * longest:
             return None
-        decision = decide(errors, parameters)
+        decision = decide(errors, parameters, unseen)
         del errors[: len(errors) // 3]
         return decision
 
@@ -122,9 +153,10 @@ class TurnReference:
 
     The count of a single-turn encoder gets turns, which is exact: of all that are the same modulo
     |N| those nearest to output angle 0, or after a gap in which the rotor cannot have turned half
-    of |N| turns those nearest to the count. A multi-turn encoder gets a zero, so that the ideal
-    output angle is the measured one, within half a turn of 0; after a silence only if the old one
-    is wrong. A referenced count is watched, never changed.
+    of |N| turns those nearest to the count. That of an encoder with another period gets so many of
+    them. A multi-turn encoder gets a zero, so that the ideal output angle is the measured one,
+    within half a turn of 0; after a silence only if the old one is wrong. An `output_range` takes
+    the place of the half turns about 0. A referenced count is watched, never changed.
     """
 
     def __init__(self, rotor_input: RotorInput) -> None:
@@ -152,7 +184,8 @@ class TurnReference:
         """
         referenced = self.rotor.referenced
         for sample in samples:
-            if decision := self._block.add(sample, self.rotor.parameters):
+            unseen = self.rotor.turns.unseen_travel
+            if decision := self._block.add(sample, self.rotor.parameters, unseen):
                 self.decision = decision
                 if decision.disagreement or decision.budget < decision.margin:
                     self.disagreement = decision.disagreement
@@ -163,18 +196,18 @@ class TurnReference:
 
     def _refer(self, decision: Decision) -> None:
         """Add turns, or what is missing to the measured angle, to the rotor's count."""
-        rotor, output_angle = self.rotor, decision.output_angle
-        ratio, turns = rotor.parameters.gear.gear_ratio, decision.turns
-        if rotor.parameters.single_turn:
-            if rotor.turns.unseen_travel >= math.pi * abs(ratio.numerator):  # half a period
-                periods = output_angle / (TURN * ratio.denominator) + turns / ratio.numerator
-                turns -= ratio.numerator * round(periods)
-            rotor.refer('turns of a single-turn encoder, exact', turns)
+        rotor, parameters = self.rotor, self.rotor.parameters
+        if parameters.single_turn:
+            rotor.refer('turns of a single-turn encoder, exact', decision.turns)
             return
-        missing = math.remainder(decision.error, TURN)
+        if period := parameters.rotor_period:
+            rotor.refer('periods of the encoder, exact', *repeated(decision.turns, period))
+            return
+        missing = decision.measured - decision.output_angle
         if abs(missing) <= decision.budget and math.isfinite(rotor.turns.unseen_travel):
             missing = 0.0
-        else:
+        elif not parameters.output_range:  # the count can be that of a rotor switched on elsewhere
+            output_angle = decision.output_angle
             missing = math.remainder(output_angle + decision.error, TURN) - output_angle
         origin = f'output encoder, ± {math.degrees(decision.budget):.2g}°'
-        rotor.refer(origin, angle=ratio.rotor_angle(missing))
+        rotor.refer(origin, angle=parameters.gear.gear_ratio.rotor_angle(missing))

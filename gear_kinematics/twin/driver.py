@@ -95,7 +95,7 @@ class Driver:
     def power_cycle(self) -> None:
         """Switch off and on: the rotor is free, and a count of turns starts again from here."""
         self._release()
-        if not self._parameters.single_turn:
+        if not self._parameters.rotor_period:
             self._origin = -self._parameters.rotor_direction * self.model.rotor_angle
 
     def advance(self, duration: float, load_torque: float) -> None:
@@ -111,12 +111,13 @@ class Driver:
 
     def rotor(self) -> tuple[float, float, float]:
         """Read position (rad), velocity (rad/s) and effort (N·m) of the rotor as published."""
-        direction, wraps = self._parameters.rotor_direction, self._parameters.single_turn
+        parameters = self._parameters
+        direction = parameters.rotor_direction
         position = self._origin + direction * self.model.rotor_angle
         return (
-            _counted(position, self._counts[0], wraps=wraps),
+            _counted(position, self._counts[0], parameters.rotor_period),
             direction * self.model.rotor_velocity,
-            direction * self.torque,
+            direction * self.torque / parameters.rotor_effort_factor,
         )
 
     def output(self) -> tuple[float, float, float]:
@@ -124,7 +125,7 @@ class Driver:
         direction = self._parameters.output_encoder_direction
         position = self._parameters.output_encoder_zero + direction * self.model.output_angle
         return (
-            _counted(position, self._counts[1], wraps=True),
+            _counted(position, self._counts[1], TURN),
             direction * self.model.output_velocity,
             direction * self._load,
         )
@@ -165,9 +166,11 @@ def _within(value: float, bound: float) -> float:
     return max(-bound, min(value, bound))
 
 
-def _counted(position: float, counts: int, *, wraps: bool) -> float:
-    """Round a position to the counts per turn of an encoder; 0 counts leave it exact."""
-    if not counts:
-        return position % TURN if wraps else position
-    count = round(position * counts / TURN)
-    return (count % counts if wraps else count) * TURN / counts
+def _counted(position: float, counts: int, period: float) -> float:
+    """Round a position to the counts per turn of an encoder that repeats after a period, rad.
+
+    0 counts leave it exact, and with a period of 0 it never repeats.
+    """
+    if counts:
+        position = round(position * counts / TURN) * TURN / counts
+    return position % period if period else position

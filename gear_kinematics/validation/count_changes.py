@@ -1,13 +1,14 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Samples from which on the recorded outputs count the rotor's angle from elsewhere."""
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from gear_kinematics.kinematics import split_turns
-from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
+from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, repeated
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.validation.fields import Array, FieldSamples
 from gear_kinematics.validation.report import Finding
@@ -80,7 +81,7 @@ class CountChanges:
         before, angle_before, error_before = self._latest
         jumps = np.abs(np.diff(error, prepend=error_before)) > self._tolerance
         constant = not jumps[1:_FEW].any()
-        if not self._parameters.single_turn:  # no gap changes the count, so that it stays
+        if not self._parameters.rotor_period:  # no gap changes the count, so that it stays
             jumps[:-1] &= ~jumps[1:]
         steps, moved, turns, rest = [], 0.0, 0.0, 0.0
         self._last_alone = False
@@ -91,15 +92,17 @@ class CountChanges:
             rotor_angle = self._ratio.rotor_angle(jump)
             if abs(jump) <= self._tolerance or abs(rotor_angle) > LARGEST_ANGLE:
                 continue
+            period, near = self._parameters.rotor_period, self._tolerance * abs(float(self._ratio))
             more_turns, more = split_turns(rotor_angle)
-            if abs(more) <= self._tolerance * abs(float(self._ratio)):
-                more = 0.0
+            whole = abs(math.remainder(rotor_angle, period or TURN)) <= near
+            if whole:
+                more_turns, more = repeated(round(rotor_angle / (period or TURN)), period or TURN)
             number = self._explain(
-                sample, before, angle_before, jump, whole=not more, constant=constant
+                sample, before, angle_before, jump, whole=whole, constant=constant
             )
             if number is None:
                 continue
-            self._last_alone = bool(more) and self._parameters.absolute and k == len(rows) - 1
+            self._last_alone = not whole and self._parameters.absolute and k == len(rows) - 1
             moved, turns, rest = moved + jump, turns + more_turns, rest + more
             count = self._count_at(sample['number'])
             steps.append((number, count['turns'] + turns, count['angle'] + rest))
@@ -129,12 +132,12 @@ class CountChanges:
         """The number of the first sample that a jump moves, rad; None if nothing explains it.
 
         `sample` is the first one whose output shows it; `before` (-1: none) and `angle`, rad, are
-        segment and angle of the output before. The jump is `whole` turns of the rotor, or stays
+        segment and angle of the output before. The jump is `whole` periods of the rotor, or stays
         `constant` over many outputs.
         """
-        single_turn, absolute = self._parameters.single_turn, self._parameters.absolute
+        repeats, absolute = bool(self._parameters.rotor_period), self._parameters.absolute
         segment = int(sample['segment'])
-        if single_turn and whole and segment != before:
+        if repeats and whole and segment != before:
             self._turns_taken = True
             return int(first_number(segment))
         if before < 0 and constant and (self._homing or absolute):
@@ -147,7 +150,7 @@ class CountChanges:
             self.homed = True
             stamp = int(sample['stamp'])
             self._notes.append(Finding('compared as after homing', stamp=stamp, when='from'))
-        elif absolute and segment != self._referenced and (whole or not single_turn):
+        elif absolute and segment != self._referenced and (whole or not repeats):
             self._referenced = segment
         else:
             return None

@@ -64,7 +64,7 @@ class TurnReferences:
             decision = self._block.add(sample, self._parameters)
             if not decision:
                 continue
-            fault = decision.unambiguous and decision.disagreement
+            fault = (decision.unambiguous or decision.outside) and decision.disagreement
             self._agreed |= decision.unambiguous and not fault
             self._disagreeing = self._disagreeing + 1 if fault else 0
             if fault and self._disagreeing == _PATIENCE and not self._fault:

@@ -88,7 +88,7 @@ class Validator:
             self._references = TurnReferences(self._state)
         self._expectation = Expectation(gear, task.tolerances, solver, self._changes)
         self._samples = 0
-        unseen = parameters.single_turn or parameters.absolute
+        unseen = bool(parameters.rotor_period) or parameters.absolute
         self._given_segment = None if unseen else self._state.input.segment
         """The latest segment with an output."""
         joint = parameters.frame_prefix + parameters.output_joint
@@ -98,7 +98,9 @@ class Validator:
             frame = parameters.frame_prefix + _FRAME
             self.poses = BodyPoses(topics.poses, frame, gear, self._expectation)
         self._why_unjudged = why_unjudged(
-            task.calibration, single_turn=parameters.single_turn, absolute=parameters.absolute
+            task.calibration,
+            single_turn=bool(parameters.rotor_period),
+            absolute=parameters.absolute,
         )
         self._unbroken, self._corrector, self._loads = Unbroken(), None, None
         columns: list[Any] = list(SAMPLES)
@@ -192,7 +194,7 @@ class Validator:
             if messages.received:
                 self._begun.setdefault(topic, messages.received[0])
         segments = self._add_samples(batch)
-        self.output.unstamped = bool(self._input.zero_stamps)
+        self.output.unstamped = bool(self._state.input.zero_stamps)
         for output in self._outputs:
             messages = batch[output.name]
             output.take(messages.data, messages.received, self._window, self._inputs)
@@ -212,7 +214,7 @@ class Validator:
         columns = {name: getattr(samples, name) for name, _ in SAMPLES[2:]}
         columns['number'] = first_number(samples.segment) + self._samples
         columns['number'] += np.arange(len(samples.stamp))
-        unseen = self._parameters.single_turn or self._parameters.absolute
+        unseen = bool(self._parameters.rotor_period) or self._parameters.absolute
         columns['told'] = np.full(len(samples.stamp), not unseen)
         self._samples += len(samples.stamp)
         segments = self._unbroken.segments(samples.stamp, samples.segment)

@@ -82,8 +82,8 @@ def view_of(gear: GearNode | None) -> View:
     output, parameters = gear.joint(topics.OUTPUT_STATE), gear.parameters
     if state != 'connected' or not (output and parameters):
         return view
-    # Homing forgets the turns of a single-turn encoder.
-    earlier = {} if parameters.single_turn else gear.earlier
+    # Homing forgets the turns of an encoder that repeats.
+    earlier = {} if parameters.rotor_period else gear.earlier
     angle, home = _degrees(output.position, 1), _degrees(parameters.home_angle, 1)
     return replace(
         view,

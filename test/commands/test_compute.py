@@ -1,6 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """gearkin compute as a user or a CI job runs it."""
 
+import math
 import signal
 import sqlite3
 from contextlib import closing
@@ -23,6 +24,7 @@ from gear_kinematics.bag import Bag
 from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.commands.cli import main
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.wire.batches import decode_joint_states
 
 SERVO, SINGLE_TURN = BAGS / 'servo_point_to_point', BAGS / 'single_turn_encoder'
 SAMPLES = 300
@@ -184,3 +186,18 @@ def test_other_joints_on_the_topic_are_no_fault(shared_path, tmp_path, capsys):
     assert '300 outputs for 300 rotor states, 0 other' in capsys.readouterr().out
     assert main(['validate', str(out)]) == 0
     assert '600 messages of /joint_states are of other joints' in capsys.readouterr().out
+
+
+def test_a_joint_of_270_degrees_is_at_250(shared_path, tmp_path):
+    """Its encoder, absolute within a turn, leaves 250° and -110° open."""
+    bag = shared_path('data/faults/parked_at_250_degrees_of_270.mcap')
+    text = bag.with_suffix('.yaml').read_text()
+    for ends, found in (('', -110.0), ('[0.0, 4.712389]', 250.0), ('[-4.0, -1.0]', -110.0)):
+        out, config = tmp_path / f'out{found}{ends}', tmp_path / 'config.yaml'
+        config.write_text(text + (f'    output_range: {ends}\n' if ends else ''))
+        assert main(['compute', str(bag), str(out), '--config', str(config)]) == 0
+        with Bag(out) as computed:
+            *_, (_, _, last) = next(computed.batches(['/output_state']))
+        angle = decode_joint_states([last], 'output_shaft').values[0, 0]
+        assert math.degrees(angle) == pytest.approx(found, abs=0.01)
+        assert main(['validate', str(out), '--config', str(config)]) == 0

@@ -19,16 +19,14 @@ RANGES = (0.0, -math.pi, -2.0 * math.pi, 1.0, 100.0, -1e6)
 SIDES = pytest.mark.parametrize('side', [1, -1], ids=['forward', 'backward'])
 
 
-def encoder(*, single_turn=True, max_speed=650.0, max_acceleration=1e5) -> RotorTurns:
-    return RotorTurns(
-        single_turn=single_turn, max_speed=max_speed, max_acceleration=max_acceleration
-    )
+def encoder(*, period=math.tau, max_speed=650.0, max_acceleration=1e5) -> RotorTurns:
+    return RotorTurns(period=period, max_speed=max_speed, max_acceleration=max_acceleration)
 
 
-def reading(angle, low: float = 0.0) -> float:
-    """Reading of a single-turn encoder with the range [low, low + 2π) at an exact angle."""
+def reading(angle, low: float = 0.0, period=TAU) -> float:
+    """Reading of an encoder with the range [low, low + period) at an exact angle."""
     difference = oracle.mp.mpf(angle) - low
-    return float(low + difference - TAU * oracle.mp.floor(difference / TAU))
+    return float(low + difference - period * oracle.mp.floor(difference / period))
 
 
 def exact(position: RotorPosition):
@@ -50,9 +48,9 @@ def assert_split(angle: float, turns, rest: float) -> None:
     assert error <= 2.0**-52 * (abs(rest) + abs(turns) * 3e-16)
 
 
-def homed(angle, low: float = 0.0, **limits) -> RotorTurns:
-    tracker = encoder(**limits)
-    tracker.update(reading(angle, low), 0)
+def homed(angle, low: float = 0.0, period=TAU, **limits) -> RotorTurns:
+    tracker = encoder(period=float(period), **limits)
+    tracker.update(reading(angle, low, period), 0)
     tracker.home(0.0, 1)
     return tracker
 
@@ -110,15 +108,17 @@ def test_unwrapping_follows_every_motion(low, start, steps):
 
 
 @SIDES
-def test_position_is_exact_after_ten_thousand_million_turns(actuator, side):
-    """By an encoder that wraps: 1e-12 rad and 1e-12 e against the oracle, in either direction."""
-    tracker = homed(0.3)
-    tracker.position = RotorPosition(side * MANY, tracker.position.angle)
-    start = side * MANY * TAU + oracle.mp.mpf(0.3)
+@pytest.mark.parametrize('period', [TAU, 4 * TAU, oracle.mp.mpf(25), oracle.mp.mpf('3.3')])
+def test_position_is_exact_after_ten_thousand_million_wraps(actuator, side, period):
+    """1e-14 rad and 1e-14 e against the oracle, in either direction, with any range."""
+    period = period if period in {TAU, 4 * TAU} else oracle.mp.mpf(float(period))
+    tracker = homed(0.3, -float(period) / 2, period)
+    tracker.periods = side * MANY
+    start = side * MANY * period + oracle.mp.mpf(0.3)
     truth, positions = [], []
     for n in range(1, 300):
-        truth.append(start + side * oracle.mp.mpf('2.3') * n)
-        tracker.update(reading(truth[-1]), n * 4_000_000)
+        truth.append(start + side * oracle.mp.mpf('1.3') * n)
+        tracker.update(reading(truth[-1], -float(period) / 2, period), n * 2_000_000)
         positions.append(tracker.relative_to(RotorPosition(0, 0.0), 1))
     assert tracker.referenced
     turns, angles = np.transpose(positions)
@@ -131,7 +131,7 @@ def test_position_is_exact_after_ten_thousand_million_turns(actuator, side):
 @example(2.0 * math.pi * MANY)
 def test_multi_turn_position_is_used_as_it_is(actuator, side, position):
     """To the rounding of the encoder's own float64, whatever happened before."""
-    tracker = encoder(single_turn=False)
+    tracker = encoder(period=0.0)
     for stamp, value in enumerate((0.0, -1e5, side * position)):
         tracker.update(value, stamp)
         assert tracker.referenced
@@ -170,7 +170,7 @@ def test_gaps_of_half_a_turn_leave_the_turns_unknown(max_speed, elapsed, known, 
 @SIDES
 def test_counting_goes_on_from_the_nearest_turn_after_a_gap(side):
     tracker = homed(0.0)
-    tracker.position = RotorPosition(side * 5, 0.0)
+    tracker.periods = side * 5
     tracker.update(reading(side * 3.0), 10**9)
     assert not tracker.referenced
     assert_at(tracker.position, side * (5 * TAU + 3.0))
@@ -274,7 +274,7 @@ def test_velocities_beyond_the_limits_narrow_nothing(speeds, elapsed):
     st.sampled_from([1, -1]),
 )
 def test_zero_and_direction_lose_nothing(position, zero, direction):
-    tracker = encoder(single_turn=False)
+    tracker = encoder(period=0.0)
     tracker.update(position, 0)
     angle = tracker.relative_to(split_turns(zero), direction)
     assert_at(angle, oracle.rotor_angle_of(position, zero, direction), 4e-15)
@@ -286,7 +286,7 @@ def test_zero_and_direction_lose_nothing(position, zero, direction):
 @pytest.mark.parametrize('rotor_angle', [0.0, 0.7, -19.0, 1000.0])
 def test_home_sets_the_rotor_angle(direction, single_turn, turns, rotor_angle):
     """Motion goes on from there; a multi-turn encoder keeps the rounding of its own float64."""
-    tracker = encoder(single_turn=single_turn)
+    tracker = encoder(period=math.tau * single_turn)
     start = 2.0 if single_turn else float(2.0 + TAU * turns)
     tracker.update(start, 0)
     if single_turn:
@@ -316,7 +316,7 @@ def test_home_counts_from_the_present_turn_of_a_single_turn_encoder():
 
 @pytest.mark.parametrize('single_turn', [True, False])
 def test_reset_forgets_position_and_turns(single_turn):
-    tracker = encoder(single_turn=single_turn)
+    tracker = encoder(period=math.tau * single_turn)
     tracker.update(1.0, 10**9, 5.0)
     tracker.home(0.0, 1)
     tracker.reset()

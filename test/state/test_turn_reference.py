@@ -51,9 +51,8 @@ class Bench:
         for output in outputs:
             self.stamp += step
             position = settings.rotor_direction * float(output * ratio) + self.zero
-            position = (
-                position % math.tau if settings.single_turn else position - self.switched_on_at
-            )
+            period = settings.rotor_period
+            position = position % period if period else position - self.switched_on_at
             data = rotor_bytes(self.stamp, position=[position])
             sample = self.rotor.accept(data, lambda: 0)
             self.errors += self.encoder.follow(sample, correction)
@@ -138,6 +137,55 @@ def test_a_calibration_is_subtracted_and_noise_is_added():
     for k in range(2 * SAMPLES):
         bench.turn(1.0, error=0.12 * (-1) ** k)
     assert bench.report()[0] == 'not referenced: 9.74° of 9.47° margin'
+
+
+QUARTERS = {'output_range': (0.0, 1.5 * math.pi)}  # a joint of 0 to 270°
+
+
+@pytest.mark.parametrize(
+    ('settings', 'without'),
+    [
+        (MULTI, -110.0),
+        (SINGLE, -110.0),
+        (replace(SINGLE, gear_ratio='36/5'), 250.0),
+        (replace(MULTI, rotor_encoder_range=25.0), None),
+    ],
+)
+def test_range_of_the_output_tells_its_turn_or_excludes_it(settings, without):
+    for degrees, found in ((250.0, 250.0), (-1e-3, -1e-3), (100.0, 100.0), (270.0, 270.0)):
+        bench = Bench(replace(settings, **QUARTERS))
+        assert math.degrees(bench.rest(math.radians(degrees))) == pytest.approx(found, abs=0.01)
+        assert bench.report()[0] == 'ok'
+    unlimited = Bench(settings)
+    found = math.degrees(unlimited.rest(math.radians(250.0)))
+    assert unlimited.rotor.referenced is (without is not None)
+    assert found == pytest.approx(without or found, abs=0.01)
+    text = 'the output, at 300.00°, is outside of output_range, 0.00° to 270.00°'
+    bench.turn(*np.radians(np.linspace(270.0, 300.0, 200)))
+    bench.rest(math.radians(300.0), 2 * SAMPLES)
+    assert bench.report()[0] == text
+    bench = Bench(replace(settings, **QUARTERS))
+    bench.rest(math.radians(300.0))
+    message, advice, _ = bench.report()
+    assert message.replace('300.00', '-60.00') == 'not referenced: ' + text.replace('300', '-60')
+    assert advice.startswith('Check output_range')
+
+
+def test_range_of_nearly_a_turn_does_not_tell_its_ends_apart():
+    bench = Bench(replace(MULTI, output_range=(0.0, math.radians(359.9))))
+    bench.rest(0.0)
+    message = 'not referenced: the output, at 0.00°, may be at either end of output_range, 0.00°'
+    assert bench.report()[0].startswith(message)
+    bench.turn(*np.radians(np.linspace(0.0, 20.0, 200)))
+    assert bench.rest(math.radians(20.0)) == pytest.approx(math.radians(20.0), abs=2e-3)
+
+
+def test_range_is_checked_without_an_encoder_at_the_output():
+    bench = Bench(replace(MULTI, output_encoder_reference='none', **QUARTERS))
+    for degrees, message in ((269.0, 'ok'), (-90.0, 'the output, at -90.00°, is outside of')):
+        bench = Bench(bench.settings)
+        bench.rest(math.radians(degrees), measured=False)
+        assert bench.monitor.report(bench.rotor, 0.0).message.startswith(message)
 
 
 def test_when_turns_are_searched():

@@ -45,8 +45,8 @@ def recorded(config, *, start=0.2, error=0.0, gap=0.0):
         swung = 0.4 * math.sin(math.pi * max(0.0, time % 2.0 - 1.0)) ** 2
         angle = start + swung + 3.3 * STEP * late * (gap > 0.0)
         stamp = START + round((time + gap * late) * SECOND)
-        rotor = -19.0 * angle + (77.0 if config is MULTI else 0.0)
-        rotor = rotor if config is MULTI else rotor % math.tau
+        rotor = -19.0 * angle + (77.0 if not config.single_turn else 0.0)
+        rotor = rotor if not config.single_turn else rotor % math.tau
         measured = float(angle + noise[k]) % math.tau
         messages.append((ROTOR, stamp, rotor_bytes(stamp, position=[rotor])))
         messages.append((ENCODER, stamp, rotor_bytes(stamp, ['shaft'], [measured + error])))
@@ -84,6 +84,16 @@ def test_the_turn_of_the_recorded_encoder_passes(config, start, strict):
     assert AGREES in texts(report)
     # Without the parameter, the change has no reason.
     assert not judge(messages, replace(config, output_encoder_reference='none')).passed
+
+
+@BOTH
+def test_the_range_of_the_output_decides_which_turn_is_right(config):
+    start = math.radians(250.0)
+    limited = replace(config, output_range=(0.0, math.radians(275.0)))
+    report = judge(recorded(limited, start=start), limited)
+    assert (report.verdict, texts(report)) == (Verdict.PASS, [AGREES])
+    report = judge(recorded(config, start=start), limited)
+    assert [f.text for f in report.findings if f.fails] == [DISAGREES('250.00', '-110.00')]
 
 
 @BOTH
