@@ -11,12 +11,19 @@ import numpy as np
 
 from gear_kinematics.kinematics import RotorPosition, RotorSample, RotorTurns, split_turns
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
-from gear_kinematics.parameters import PARAMETERS, NodeParameters
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.effort_field import EffortField
 from gear_kinematics.state.plausibility import BELIEVED, Plausibility, Verdict
 from gear_kinematics.state.rotor_samples import RotorSamples
+from gear_kinematics.state.rotor_settings import (
+    encoders_differ,
+    limits,
+    longest_silence,
+    torque_factor,
+)
 from gear_kinematics.state.velocity_field import VelocityField
 from gear_kinematics.wire.batches import Array, decode_joint_states
-from gear_kinematics.wire.cdr import LATEST, SECOND
+from gear_kinematics.wire.cdr import LATEST
 from gear_kinematics.wire.joint_reader import (
     ARRAY_SIZES,
     CLOCK_RESET,
@@ -32,13 +39,6 @@ from gear_kinematics.wire.joint_reader import (
     JointReader,
     RejectedInputError,
 )
-
-_ENCODERS = tuple(
-    name
-    for name in PARAMETERS
-    if name.startswith(('rotor_', 'output_encoder_')) and name != 'rotor_effort_factor'
-)
-"""The parameters that turns from an absolute encoder at the output rest on."""
 
 
 class RotorInput:
@@ -69,10 +69,12 @@ class RotorInput:
             period=parameters.rotor_period,
             max_speed=parameters.max_rotor_speed,
             max_acceleration=parameters.max_rotor_acceleration,
-            longest_silence=_longest_silence(parameters),
+            longest_silence=longest_silence(parameters),
         )
         self.velocity_field = VelocityField(float(1 / parameters.gear.gear_ratio))
-        self.plausibility = Plausibility(*_limits(parameters))
+        self.effort_field = EffortField()
+        self._torque_factor = torque_factor(parameters)
+        self.plausibility = Plausibility(*limits(parameters))
 
     @property
     def parameters(self) -> NodeParameters:
@@ -83,11 +85,12 @@ class RotorInput:
     def parameters(self, parameters: NodeParameters) -> None:
         self.turns.max_speed = parameters.max_rotor_speed
         self.turns.max_acceleration = parameters.max_rotor_acceleration
-        self.turns.longest_silence = _longest_silence(parameters)
+        self.turns.longest_silence = longest_silence(parameters)
+        self._torque_factor = torque_factor(parameters)
         before = self._parameters
-        if _limits(parameters) != _limits(before):
-            self.plausibility.restrict(*_limits(parameters))
-        if any(getattr(parameters, name) != getattr(before, name) for name in _ENCODERS):
+        if limits(parameters) != limits(before):
+            self.plausibility.restrict(*limits(parameters))
+        if encoders_differ(parameters, before):
             self.zero = split_turns(parameters.rotor_zero)
             self._restarts += 1
             if parameters.absolute or before.absolute:
@@ -98,6 +101,7 @@ class RotorInput:
             self.turns.reset()
             self.plausibility.reset()
             self.velocity_field = VelocityField(float(1 / parameters.gear.gear_ratio))
+            self.effort_field = EffortField()
             self._reader = JointReader(parameters.rotor_joint)
             self.missing_joint, self.last = '', None
         self._parameters = parameters
@@ -232,7 +236,7 @@ class RotorInput:
             direction * (turns - zero_turns) + 0.0,  # turns that are int have no -0.0
             direction * (angle - zero_angle),
             direction * velocity,
-            direction * values[:, 2],
+            self._torque_factor * self.effort_field.all_believed(values[:, 0], values[:, 2]),
             rows,
             received,
             np.full(len(stamps), self.segment),
@@ -294,22 +298,29 @@ class RotorInput:
         self.turns.update(position, stamp, velocity)
         if stamp >= self.velocity_field.due:
             velocity = self._compare(stamp, position, given)
+        if effort is not None and not self.effort_field.real:
+            effort = self.effort_field.believed(self._unwrapped(position), effort)
         direction = self._parameters.rotor_direction
         self.last = RotorSample(
             stamp,
             self.turns.relative_to(self.zero, direction),
             None if velocity is None else direction * velocity,
-            None if effort is None else direction * effort,
+            None if effort is None else self._torque_factor * effort,
         )
         return self.last
 
     def _compare(self, stamp: int, position: float, velocity: float | None) -> float | None:
         """Compare a velocity with the positions; returns it unless they contradict it."""
-        if self.turns.position and self.turns.period:
-            position = TURN * self.turns.position.turns + self.turns.position.angle
+        position = self._unwrapped(position)
         given = math.nan if velocity is None else velocity
         self.velocity_field.note(stamp, position, given, self.plausibility.finest)
         return None if self.velocity_field.contradicts else velocity
+
+    def _unwrapped(self, position: float) -> float:
+        """The latest position, rad, without the wraps of an encoder that repeats."""
+        if self.turns.position and self.turns.period:
+            return TURN * self.turns.position.turns + self.turns.position.angle
+        return position
 
     def _check_order(self, stamp: int, last: int) -> None:
         if stamp == last:
@@ -321,19 +332,6 @@ class RotorInput:
             self.turns.reset()
             self.plausibility.reset()
             self.velocity_field.restart()
-
-
-def _longest_silence(parameters: NodeParameters) -> float:
-    """ns; diagnostics, too, call the driver silent after so long."""
-    return parameters.input_timeout * SECOND if parameters.absolute else 0.0
-
-
-def _limits(parameters: NodeParameters) -> tuple[float, float, float]:
-    return (
-        parameters.max_rotor_speed,
-        parameters.max_rotor_acceleration,
-        parameters.rotor_period,
-    )
 
 
 def _number_or_none(value: float) -> float | None:

@@ -120,11 +120,30 @@ def test_bearing_lives_as_iso_281_says(tmp_path, config, capsys):
     assert found['forces']['mesh_a']['l10_hours'] is None
 
 
-def test_bearing_without_load_has_no_life(tmp_path, capsys):
+def test_effort_that_is_0_throughout_the_motion_tells_no_loads(tmp_path, config, capsys):
     bag = record(tmp_path, overloads=(), period=math.inf)
+    assert main(['loads', str(bag), '--config', str(config)]) == 2
+    told = capsys.readouterr()
+    assert told.out == ''
+    assert 'the effort on /rotor_state is 0 throughout the motion' in told.err
+
+
+def test_current_in_place_of_a_torque_is_questioned(shared_path, tmp_path, capsys):
+    """±1000 mA; a factor of 0.05 N·m/A makes ±0.05 N·m of it, 0.95 at the output."""
+    bag, config = shared_path('data/faults/effort_is_current_in_mA.mcap'), tmp_path / 'factor.yaml'
+    assert main(['loads', str(bag)]) == 0
+    assert 'efforts of up to 1000 N·m at the rotor are more' in capsys.readouterr().out
+    config.write_text('/**: {ros__parameters: {rotor_effort_factor: 5e-5}}')
+    _, found = report(capsys, bag, '--config', config)
+    assert 'the output gave at most 0.95 N·m' in found['answer']
+    assert 'rotor_effort_factor' not in found['answer']
+
+
+def test_bearing_without_load_has_no_life(tmp_path, capsys):
+    bag = record(tmp_path, overloads=[(0, 1, 5e-324)], period=math.inf)
     code, found = report(capsys, bag, '--cam-rating', '3000')
     assert code == 0
-    assert found['forces']['cam_a']['greatest'] == 0.0
+    assert found['forces']['cam_a']['greatest'] < 1e-300
     assert found['forces']['cam_a']['l10_hours'] is None
 
 

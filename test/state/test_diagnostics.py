@@ -173,7 +173,9 @@ def test_every_fault_is_documented_with_its_level():
     bench.input.plausibility.jump = Jump(1_700_000_000_500_000_000, 100.0)
     report = bench.report(START + 4.0)
     assert report.message.split('; ') == [
-        message for message, _ in documented if not re.search('QoS|/|turns unknown|output_range', message)
+        message
+        for message, _ in documented
+        if not re.search('QoS|/|turns unknown|output_range', message)
     ]
     assert len(re.findall(r'\.(?: |$)', report.values['advice'])) == 9
 

@@ -85,7 +85,9 @@ def _report(task: Task, loads: RecordedLoads) -> Report:
     moments, forces = [*loads.moments()], [*loads.forces(task.cam_rating)]
     source = 'the default parameters' if task.by_default else 'the given parameters'
     answer, loss = _answer(loads, moments, source), loads.slot_loss(task.slot_friction)
-    if preload:
+    if question := loads.question:
+        answer = f'{answer[:-1]}; {question}.'
+    if preload and (moments or not question):
         verdict = Verdict.FAIL if moments else Verdict.PASS
     section = Section(
         printable(task.bag.name),

@@ -15,6 +15,7 @@ from gear_kinematics.bag import Bag, BagError, ReportProgress, by_topic
 from gear_kinematics.bag.roles import find_rotor_topic, only_joint
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.effort_field import questioned
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.loads import Loads
 from gear_kinematics.wire.cdr import SECOND
@@ -117,6 +118,13 @@ class RecordedLoads:
         return np.asarray(np.abs(np.diff(self.rotor, prepend=self.rotor[:1])))
 
     @property
+    def question(self) -> str:
+        """Why the torque is hardly one; '' if it may be."""
+        mechanism = self.parameters.mechanism
+        greatest = float(np.max(np.abs(self.torque)))
+        return questioned(greatest / float(mechanism.gear_ratio), mechanism)
+
+    @property
     def needed_preload(self) -> float:
         """The least, N·m, with which both branches would have been in mesh; NaN without any."""
         return round(abs(self.parameters.preload) - float(np.min(self.margin)), 12)
@@ -207,6 +215,9 @@ def read_loads(task: Task, progress: ReportProgress | None = None) -> RecordedLo
                     gear.input.rejected[f'{loads.needed} missing'] += int(unknown)
         except BagError as error:  # what could be read counts
             damage = str(error)
+    if gear.input.effort_field.absent:
+        damage = damage or f'{task.bag}: the effort on {topic} is 0 throughout the motion: none'
+        stamps.clear()
     if not any(map(len, stamps)):
         why = gear.input.why_rejected or 'no messages'
         raise BagError(damage or f'{task.bag}: the loads on {topic} are unknown: {why}')

@@ -1,0 +1,73 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Judges whether the efforts in a driver's messages can be torques of the rotor, N·m."""
+
+import math
+
+import numpy as np
+
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.wire.batches import Array
+
+_MOTION = 0.05  # rad: noise of any encoder; beyond, the rotor has moved
+_MOTOR = 100.0  # N·m: a motor of more is that of a vehicle, of 10 kg and above
+_SHEAR = 5e8  # Pa: where shafts of hardened steel yield
+FACTOR = 'set rotor_effort_factor (N·m per unit) if the messages have another unit, such as mA'
+
+
+class EffortField:
+    """Tells efforts of 0 that say nothing: one that is 0 throughout a motion is no effort."""
+
+    def __init__(self) -> None:
+        self.real = False
+        """Whether there was any but 0: from then on, a 0 is one."""
+        self._least, self._greatest = math.inf, -math.inf
+        """rad: positions with an effort of 0."""
+
+    @property
+    def absent(self) -> bool:
+        """Whether the effort was 0 throughout a motion."""
+        return not self.real and self._greatest - self._least > _MOTION
+
+    def believed(self, position: float, effort: float) -> float | None:
+        """Take the next position, rad, and effort; returns the effort, or None if it is none."""
+        if effort:
+            self.real = True
+            return effort
+        self._least, self._greatest = min(self._least, position), max(self._greatest, position)
+        return None if self.absent else effort
+
+    def all_believed(self, positions: Array, efforts: Array) -> Array:
+        """Take the next ones, (n,), where NaN is none, as `believed` does one by one."""
+        if self.real or not len(efforts):
+            return efforts
+        others = np.flatnonzero((efforts != 0.0) & ~np.isnan(efforts))
+        zero = np.flatnonzero(efforts[: others[0] if len(others) else None] == 0.0)
+        self.real = len(others) > 0
+        if not len(zero):
+            return efforts
+        least = np.minimum.accumulate(np.append(self._least, positions[zero]))[1:]
+        greatest = np.maximum.accumulate(np.append(self._greatest, positions[zero]))[1:]
+        self._least, self._greatest = float(least[-1]), float(greatest[-1])
+        efforts = efforts.copy()
+        efforts[zero[greatest - least > _MOTION]] = np.nan
+        return efforts
+
+
+def questioned(effort: float, mechanism: Mechanism | None = None) -> str:
+    """Say that a torque of the rotor, N·m, is hardly one; '' if it may be.
+
+    The output of a mechanism bears no more than a solid shaft of steel as large as a satellite.
+    """
+    bearable, whose = _MOTOR, 'the motor of a geared drive has'
+    if mechanism:
+        teeth = mechanism.satellite_teeth / (mechanism.ring_teeth - mechanism.satellite_teeth)
+        radius = mechanism.eccentricity * teeth
+        ratio = abs(float(mechanism.gear_ratio))
+        if (most := 0.5 * math.pi * _SHEAR * radius**3 / ratio) < _MOTOR:
+            bearable, whose = most, 'a mechanism of this size bears'
+    if not abs(effort) > bearable:
+        return ''
+    return (
+        f'efforts of up to {abs(effort):.4g} N·m at the rotor are more than {whose} '
+        f'({bearable:.3g} N·m): {FACTOR}'
+    )
