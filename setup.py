@@ -28,6 +28,7 @@ ON_PATH = [] if 'bdist_wheel' in sys.argv else [('bin', ['bin/gearkin'])]
 WATCH = ['tornado>=6.2']
 ROSBAGS = ['rosbags>=0.11']
 MESH = ['mapbox-earcut']
+PANDAS = ['pandas>=2.1']
 
 setup(
     name=PACKAGE,
@@ -80,7 +81,9 @@ setup(
         # `gearkin plot`, `gearkin animate` and `--plot`
         'plot': ['matplotlib>=3.6', 'pillow'],
         # `gearkin lost-motion` and `calibrate`, and the load spectrum of `gearkin loads`
-        'measure': ['scipy>=1.11', 'rainflow>=3.1'],
+        'measure': ['scipy>=1.11', 'rainflow>=3.1', *PANDAS],
+        # Tables that are no text: .parquet, .tdms, .mf4; rosdep has no keys for the last two.
+        'tables': [*PANDAS, 'scipy>=1.11', 'pyarrow>=14', 'npTDMS>=1.7', 'asammdf>=7.4'],
         # `--scheduler` of `gearkin validate` and `gearkin loads`
         'cluster': ['distributed>=2024.1'],
         # `gearkin urdf --meshes`

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from gear_kinematics.commands import ExitCode, arguments, bags
-from gear_kinematics.commands.encoders import add_recordings, sources
+from gear_kinematics.commands.encoders import add_recordings, say_columns, sources
 from gear_kinematics.commands.files import write_text
 from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
@@ -88,6 +88,8 @@ def _read(
     for path in options.recordings:
         try:
             with bags.naming(path), message_progress(path.name, quiet=options.quiet) as progress:
-                yield read_encoders(path, config, sources(options), progress)
+                read = read_encoders(path, config, sources(options), progress)
+                say_columns(read[0], options)
+                yield read
         except (ValueError, OSError) as error:
             complain(error)

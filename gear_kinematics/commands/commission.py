@@ -8,15 +8,15 @@ from pathlib import Path
 from gear_kinematics.bag import Bag
 from gear_kinematics.bag.roles import joints_on
 from gear_kinematics.commands import ExitCode, arguments, bags
-from gear_kinematics.commands.encoders import add_recordings, ratio_text, sources
+from gear_kinematics.commands.encoders import add_recordings, ratio_text, say_columns, sources
 from gear_kinematics.commands.joints import choose_joint
 from gear_kinematics.commands.output import Console, message_progress, warn_of_shared_memory
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.commissioning import analysis
 from gear_kinematics.measurement.commissioning.document import actuator_file, document
-from gear_kinematics.measurement.csv_files import is_csv
 from gear_kinematics.measurement.reading import read_encoders
+from gear_kinematics.measurement.tables import is_table
 from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.parameters.new_config import write_new
 from gear_kinematics.report.document import Verdict
@@ -91,16 +91,17 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 def _read(options: argparse.Namespace, request: analysis.Request) -> analysis.Commissioning:
     """Read the recordings."""
-    parameters, known = NodeParameters.load(), replace(sources(options), raw_counts=True)
+    parameters, known = NodeParameters.load(), replace(sources(options), as_recorded=True)
     recordings = []
     for path in options.recordings:
         with bags.naming(path):
-            request = request if is_csv(path) else _chosen(_recorded(path), request)
+            request = request if is_table(path) else _chosen(_recorded(path), request)
         rotor, output = request.rotor, request.output
         joints = replace(parameters, rotor_joint=rotor.joint, output_encoder_joint=output.joint)
         topics = replace(known, rotor_topic=rotor.topic, encoder_topic=output.topic)
         with message_progress(path.name, quiet=options.quiet) as progress:
             recordings.append(read_encoders(path, joints, topics, progress))
+        say_columns(recordings[-1][0], options)
     return analysis.commission(recordings, request)
 
 

@@ -2,6 +2,7 @@
 """The options for recordings of encoders and torques, common to `lost-motion` and `calibrate`."""
 
 import argparse
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -9,12 +10,16 @@ from gear_kinematics.commands import arguments
 from gear_kinematics.commands.bags import add_rotor
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.columns import ANGLE_UNITS, Sources
+from gear_kinematics.measurement.recording import Recording
+from gear_kinematics.measurement.tables import is_table
+from gear_kinematics.report.document import printable
 
 _COLUMNS = {
     'angle': 'under torque',
     'torque': 'N·m',
     'rotor': 'angle of the rotor',
     'output': 'angle of the output encoder',
+    'time': 'time of a row (default unit: by name, or by the sampling)',
 }
 
 
@@ -25,11 +30,11 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: boo
 
     Args:
         parser: parser of the command.
-        roles: quantities of `_COLUMNS` that columns of CSV files can have.
+        roles: quantities of `_COLUMNS` that columns of tables can have.
         configured: whether the command takes parameters of the node, and a ratio.
     """
     number = '+' if configured else '*'  # --live takes their place
-    parser.add_argument('recordings', nargs=number, type=Path, metavar='BAG|CSV')
+    parser.add_argument('recordings', nargs=number, type=Path, metavar='BAG|TABLE')
     add_rotor(parser, configured=configured)
     recording = arguments.group(parser, 'recording')
     recording.add_argument(
@@ -45,11 +50,15 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: boo
             help='exact gear ratio, such as -19 or 1457/26 (default: the parameter gear_ratio, or '
             'from the teeth; gearkin commission finds it)',
         )
-    group = parser.add_argument_group('columns of a CSV', 'by default found by name')
-    for role in roles:
+    group = parser.add_argument_group(
+        'columns of a table', "by default found by name; units may follow, as in 'ms_today [ms]'"
+    )
+    for role in ('time', *roles):
         group.add_argument(f'--{role}-column', metavar='NAME', help=_COLUMNS[role])
     group.add_argument(
-        '--angle-unit', choices=ANGLE_UNITS, help='unit of all angles (default: by name, or rad)'
+        '--angle-unit',
+        choices=ANGLE_UNITS,
+        help='unit of all angles (default: by name, or rad where nothing speaks against it)',
     )
     if 'torque' in roles:
         group.add_argument(
@@ -81,7 +90,14 @@ def sources(options: argparse.Namespace) -> Sources:
         output_counts=options.output_counts,
         rotor_topic=options.rotor_topic,
         encoder_topic=options.encoder_topic,
+        command=options.parser.prog,
     )
+
+
+def say_columns(recording: Recording, options: argparse.Namespace) -> None:
+    """Print in one line, on stderr, what was taken of a table."""
+    if is_table(recording.path) and not options.quiet:
+        print(printable(f'{recording.name}: {", ".join(recording.columns)}'), file=sys.stderr)
 
 
 def ratio_text(text: str) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.commands import ExitCode, arguments
-from gear_kinematics.commands.encoders import add_recordings, sources
+from gear_kinematics.commands.encoders import add_recordings, say_columns, sources
 from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.measurement.answer import Limits
@@ -103,6 +103,7 @@ def _measured(path: Path, name: str, options: argparse.Namespace) -> LostMotion:
     with message_progress(name, quiet=options.quiet) as report_progress:
         try:
             recording = read(path, config, sources(options), report_progress)
+            say_columns(recording, options)
             return measure(replace(recording, name=name), config, options.rated_torque)
         except (ValueError, OSError):
             raise

@@ -4,71 +4,68 @@
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.encoder_step import UNITS
 from gear_kinematics.wire.nearest import among
-from gear_kinematics.wire.topics import OUTPUT_ENCODER
 
-_ROTOR, _OUTPUT = ('rotor', 'motor', 'odrive'), ('output', 'load', 'shaft', 'link')
-"""Words for either side of the gear."""
-_ANGLES = ('position', 'pos', 'angle', 'encoder', 'enc')
-_ENCODERS = ('', *_ANGLES, 'encoder_position', 'encoder_pos')
-_TORQUES = ('torque', 'effort')
-
-
-def _joined(*words: Sequence[str]) -> tuple[str, ...]:
-    return tuple('_'.join(filter(None, several)) for several in product(*words))
-
-
-_NAMES: Mapping[str, tuple[str, ...]] = {
-    'angle': (*_joined(('', 'encoder', 'enc'), _ANGLES), 'deflection', 'twist'),
-    'torque': _joined(('', 'measured', 'output', 'load', 'motor', 'motor_current'), _TORQUES),
-    'rotor': _joined(_ROTOR, _ENCODERS),
-    'output': (*_joined(_OUTPUT, _ENCODERS), OUTPUT_ENCODER),
-    'time': ('time', '%time', 't', 'stamp', 'timestamp', 'timestamps'),
-}
-"""Names of columns without their units, the likeliest first."""
-_OF_ROTOR = {*_NAMES['rotor'], *_joined(_ROTOR, _TORQUES)}
-"""Names of the rotor's quantities. The current of a motor says a torque of either side."""
+_ROTOR = ('rotor', 'motor', 'mot', 'odrive')
+_OUTPUT = ('output', 'out', 'load', 'shaft', 'link', 'joint')
+"""Words for either side of the gear, the likeliest first."""
+_ANGLE = (
+    'position', 'positions', 'pos', 'angle', 'encoder', 'enc', 'theta', 'deflection', 'twist',
+)  # fmt: skip
+_TORQUE = ('torque', 'torques', 'effort', 'efforts', 'trq')
+_KNOWN_WORDS = (*_ROTOR, *_OUTPUT, *_ANGLE, *_TORQUE, 'current')
+_TIME = ('time', 't', 'stamp', 'timestamp', 'timestamps', 'today', 'datetime', 'elapsed', 'x')
+_FILLING = {
+    'header', 'receive', 'log', 'measured', 'actual', 'act', 'filtered', 'raw', 'field', 'data',
+    'value', 'values', 'feedback', 'state', 'states', 'axis', 'present', 'sensor', 'abs', 'side',
+    'in',
+}  # fmt: skip
+"""Words that may stand beside the others; all of them exclude commands, speeds and the like."""
 _COUNTS = ('counts', 'count', 'cnt', 'inc', 'increments', 'ticks')
+_NANOSECONDS = ('ns', 'nsec', 'nsecs', 'nanosec', 'nanosecs', 'nanoseconds')
 ANGLE_UNITS = (*UNITS, 'counts')
 """Units of angle that can be given."""
 _ANGULAR = ('angle', 'rotor', 'output')
 _OF_ANGLE = {
     **UNITS,
-    '°': UNITS['deg'],
-    'degree': UNITS['deg'],
-    'degrees': UNITS['deg'],
-    'radians': 1.0,
-    'turns': TURN,
+    **dict.fromkeys(('°', 'degree', 'degrees'), UNITS['deg']),
+    **dict.fromkeys(('radian', 'radians'), 1.0),
+    **dict.fromkeys(('turn', 'turns', 'revs', 'revolution', 'revolutions'), TURN),
     **dict.fromkeys(_COUNTS),
 }
 _UNITS: Mapping[str, Mapping[str, float | None]] = {
     **dict.fromkeys(_ANGULAR, _OF_ANGLE),
-    'torque': {'nm': 1.0, 'n·m': 1.0, 'n*m': 1.0, 'n.m': 1.0, 'mnm': 1e-3, 'nmm': 1e-3},
-    'time': {'s': 1.0, 'sec': 1.0, 'ms': 1e-3, 'us': 1e-6, 'µs': 1e-6, 'ns': 1e-9},
+    'torque': {'nm': 1.0, 'n·m': 1.0, 'mnm': 1e-3, 'nmm': 1e-3, 'ncm': 1e-2, 'knm': 1e3},
+    'time': {
+        **dict.fromkeys(('s', 'sec', 'secs', 'second', 'seconds'), 1.0),
+        **dict.fromkeys(('ms', 'msec', 'millis', 'milliseconds'), 1e-3),
+        **dict.fromkeys(('us', 'µs', 'usec', 'micros', 'microseconds'), 1e-6),
+        **dict.fromkeys(_NANOSECONDS, 1e-9),
+    },
 }
-"""In SI units; None: counts of an encoder."""
-KNOWN_UNITS = {unit for units in _UNITS.values() for unit in units}
-_QUALIFIERS = {'measured', 'actual', 'filtered'}
-"""Words behind a name that are no units."""
+"""In SI units, of each the usual word first; None: counts of an encoder."""
+TIME_UNITS: Mapping[str, Any] = _UNITS['time']
+_KNOWN = {unit for units in _UNITS.values() for unit in units}
+_NO_UNIT = {'-', 'none', 'n/a', '1'}
 _BRACKETS = re.compile(r'[\[(]\s*([^\])]*?)\s*[\])]')
-_WORD = re.compile(r'[^\s_/-]+')
+_CAMEL = re.compile(r'[A-Z]+(?![a-zµ])|[A-Z]?[^\W\d_A-Z]+|\d+|°')
 _MOTEUS = {'position', 'torque', 'q_current'}
 """Registers of moteus motor controllers, which give positions in revolutions."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sources:
-    """Columns of a CSV file and topics of a bag; those that are None are found by their names."""
+    """Columns of a table and topics of a bag; those that are None are found by their names."""
 
     angle: str | None = None
     torque: str | None = None
     rotor: str | None = None
     output: str | None = None
+    time: str | None = None
     unit: str | None = None
     """Unit of all angles, one of ANGLE_UNITS; None: by their names, or rad."""
     on_rotor: bool = False
@@ -77,10 +74,12 @@ class Sources:
     """Counts per turn of the encoder of the rotor, or of the angle column."""
     output_counts: int | None = None
     """The same of the output's encoder."""
-    raw_counts: bool = False
-    """Whether counts stay what they are, where those per turn are not given."""
+    as_recorded: bool = False
+    """Whether wraps and counts stay what they are, where counts per turn are not given."""
     rotor_topic: str | None = None
     encoder_topic: str | None = None
+    command: str = 'gearkin lost-motion'
+    """Words of a command line, before the recording, for advice."""
 
 
 class Column(NamedTuple):
@@ -90,93 +89,181 @@ class Column(NamedTuple):
     scale: float
     """Of its numbers, to rad, N·m or s."""
     unit: str
-    """For the report; empty where nothing is known."""
+    """Empty where nothing is known."""
     on_rotor: bool
     on_output: bool
     """Whether its name says so."""
 
 
+class ColumnsError(ValueError):
+    """Columns that do not suffice for a measurement."""
+
+
 def find_columns(
-    header: Sequence[str], given: Sources, below: Mapping[str, str]
+    header: Sequence[str],
+    given: Sources,
+    below: Mapping[str, str],
+    clocks: Mapping[str, str],
 ) -> dict[str, Column]:
     """Find what can be read: angle and torque, or rotor and output, with torque and time if any.
 
     Args:
         header: the names in a file.
-        given: what is known of them.
-        below: the units that a second row gives, by name.
+        given: what is known of them; a name may end with its unit in brackets.
+        below: the units that the file gives elsewhere than in the names, by name.
+        clocks: the columns of times of those that have their own.
 
     Raises:
-        ValueError: if they do not suffice, or a unit is not known.
+        ColumnsError: if they do not suffice.
+        ValueError: if a name or a unit is not known, or a name is there more than once.
     """
-    named = {role: name for role in _NAMES if (name := getattr(given, role, None))}
-    for name in named.values():
-        if name not in header:
-            raise ValueError(f'no column {name!r}{among(name, header, most=len(header))}')
-    known = {_split(name)[0]: name for name in reversed(header)}
-    found = {
-        role: name
-        for role, names in _NAMES.items()
-        if (name := named.get(role) or next((known[n] for n in names if n in known), None))
-    }
+    named, below = {}, dict(below)
+    for role in ('time', *_ANGULAR, 'torque'):
+        if name := getattr(given, role):
+            plain, bracket, unit = name.rpartition('[')
+            if name not in header and (plain := plain.rstrip()) in header and bracket:
+                name, below[plain] = plain, f'={_unit(unit)}'
+            if name not in header:
+                raise ValueError(f'no column {name!r}{among(name, header, most=len(header))}')
+            named[role] = name
+    ranks: dict[str, list[tuple[tuple[int, ...], int, str]]] = {}
+    for place, name in enumerate(header):
+        for role, rank in _roles(name):
+            ranks.setdefault(role, []).append((rank, place, name))
+    found = {}
+    for role, those in ranks.items():
+        rank, _, name = min(those)
+        alike = {other for same, _, other in those if same == rank}
+        if len(alike) == 1 or role == 'time':  # of position[0] and position[1], neither is known
+            found[role] = name
+    found |= named
     if {'rotor', 'output'} <= found.keys() and 'angle' not in named:
         found.pop('angle', None)
     elif 'torque' in found and (angles := [found[role] for role in _ANGULAR if role in found]):
-        found = {'angle': angles[0], 'torque': found['torque']}
+        found = {'angle': angles[0]} | {r: found[r] for r in found if r in {'torque', 'time'}}
     else:
-        raise ValueError(
-            'neither an angle and a torque nor a rotor and an output among the columns '
-            f'{", ".join(header)}; name them with --angle-column, --torque-column, '
-            f'--rotor-column, --output-column; units: {_listed("angle")}, {_listed("torque")}'
-        )
+        known = f'known units: {", ".join(_OF_ANGLE)}, {", ".join(_UNITS["torque"])}'
+        raise ColumnsError(f'neither an angle and a torque nor a rotor and an output ({known})')
+    if own := [clocks[name] for name in found.values() if name in clocks]:
+        found['time'] = own[0]
+    for name in found.values():
+        if list(header).count(name) > 1:
+            raise ValueError(f'more than one column {name!r}')
     moteus = {name.lower() for name in header} >= _MOTEUS
-    units = [
-        _split(found[role])[1] or below.get(found[role], '') for role in _ANGULAR if role in found
-    ]
+    units = [below.get(found[role], '').strip('=') or _split(found[role])[1]
+             for role in _ANGULAR if role in found]  # fmt: skip
     common = next(filter(None, units), 'rev' if moteus else '')
-    return {role: _column(role, name, given, common, below) for role, name in found.items()}
+    order = ('time', *_ANGULAR, 'torque')
+    return {
+        role: _column(role, found[role], given, common, below) for role in order if role in found
+    }
+
+
+def known_units(cells: Sequence[str]) -> list[str]:
+    """Return the units in the cells of a row, if any of them is known; otherwise nothing."""
+    units = [_unit(cell) for cell in cells]
+    return units if _KNOWN.intersection(units) else []
 
 
 def _column(role: str, name: str, given: Sources, common: str, below: Mapping[str, str]) -> Column:
-    plain, unit = _split(name)
-    unit = unit or below.get(name, '') or _unknown(role, plain)
+    words, unit = _split(name)
+    elsewhere = below.get(name, '')
+    unit = elsewhere[1:] if elsewhere[:1] == '=' else unit or elsewhere or _unknown(role, words)
     if unit and unit not in _UNITS[role] and not (given.unit and role in _ANGULAR):
-        raise ValueError(f'{name}: the unit {unit} is not known; known: {_listed(role)}')
+        listed = ', '.join(sorted(_UNITS[role]))
+        raise ValueError(f'{name}: the unit {unit} is not known; known: {listed}')
     if role in _ANGULAR:
         unit = given.unit or unit or common
     scale = _UNITS[role].get(unit, 1.0)
     if scale is None:
         encoder = 'output' if role == 'output' else 'rotor'
         counts = getattr(given, f'{encoder}_counts')
-        if counts is None and not given.raw_counts:
+        if counts is None and not given.as_recorded:
             raise ValueError(f'{name} has counts: give those per turn with --{encoder}-counts')
         scale = TURN / counts if counts else 1.0
         unit = f'{counts} counts a turn' if counts else 'counts'
-    on_output = plain.partition('_')[0] in _OUTPUT
-    on_rotor = given.on_rotor or plain in _OF_ROTOR
+    elif unit:
+        unit = next(one for one, size in _UNITS[role].items() if size == scale)
+    on_output = bool(set(words) & set(_OUTPUT))
+    # The current of a motor says a torque of either side.
+    on_rotor = given.on_rotor or (bool(set(words) & set(_ROTOR)) and 'current' not in words)
     return Column(name, scale, unit, on_rotor and not on_output, on_output)
 
 
-def _unknown(role: str, plain: str) -> str:
-    """The last word behind a name that is known: it seems to be a unit."""
-    first, _, last = plain.rpartition('_')
-    if plain in _NAMES[role] or first not in _NAMES[role]:
-        return ''
-    return '' if last.isdigit() or last in _QUALIFIERS else last
+def _roles(name: str) -> list[tuple[str, tuple[int, ...]]]:
+    """What a column may be by its name, with a rank: the likeliest has the lowest."""
+    words, unit = _split(name)
+    told = [word for word in words if word not in _FILLING and not word.isdigit()]
+    if not words and unit in _UNITS['time']:
+        return [('time', (9,))]
+    if told and set(told) <= set(_TIME) and (told != ['x'] or 'value' in words):
+        return [('time', (len(words), _TIME.index(told[0])))]
+    if not told or not set(told) <= set(_KNOWN_WORDS) or '/' in unit:
+        return []
+    sides = [one for one, those in (('rotor', _ROTOR), ('output', _OUTPUT)) if {*told} & {*those}]
+    rank = (len(words), *(_KNOWN_WORDS.index(word) for word in told))
+    if set(told) & set(_TORQUE):
+        return [] if set(told) & set(_ANGLE) else [('torque', rank)]
+    alone = told in (['joint'], ['mot']) and not unit
+    if alone or 'current' in told or (len(sides) > 1 and 'joint' not in told):
+        return []
+    return [(sides[0] if sides else 'angle', rank)]
 
 
-def _split(name: str) -> tuple[str, str]:
-    """A name without its unit, in the form of `_NAMES`, and the unit, in brackets or known."""
-    text, unit = name.strip().lower(), ''
-    if brackets := _BRACKETS.search(text):
-        index = brackets[1] if brackets[1].isdigit() else ''
-        text = text.replace(brackets[0], f' {index}')
-        unit = '' if index else brackets[1]
-    words = _WORD.findall(text)
-    if not unit and words and words[-1] in KNOWN_UNITS:
-        unit = words.pop()
-    return '_'.join(words), unit
+def _unknown(role: str, words: Sequence[str]) -> str:
+    """The last word behind others that are known: it seems to be a unit."""
+    *first, last = words or ('',)
+    known = {*(_TIME if role == 'time' else _KNOWN_WORDS), *_FILLING}
+    seems = first and known.issuperset(first) and last not in known and not last.isdigit()
+    return last if seems else ''
 
 
-def _listed(role: str) -> str:
-    return ', '.join(sorted(_UNITS[role]))
+def _unit(text: str) -> str:
+    """A unit as `_UNITS` has it, if it is one of them."""
+    plain = re.sub(r'\s', '', text.lower().replace('μ', 'µ')).replace('n·m', 'nm')
+    plain = re.sub(r'n[.*⋅]m', 'nm', plain.strip('[]'))
+    outer, _, inner = plain.partition('(')
+    plain = outer if outer in _KNOWN or not inner else inner
+    plain = plain.strip('()[].')
+    return '' if plain in _NO_UNIT else plain
+
+
+def _split(name: str) -> tuple[tuple[str, ...], str]:
+    """Words of a name, in lower case and without its unit, and the unit, in brackets or known."""
+    text, unit = re.sub(r'(?i)n[.*·⋅]m\b', 'Nm', name.strip().strip('%#"')), ''
+    for brackets in reversed([*_BRACKETS.finditer(text)]):
+        inner = brackets[1]
+        unit = unit if inner.isdigit() else _unit(inner) or unit
+        put = f' {inner} ' if inner.isdigit() else ' '
+        text = text[: brackets.start()] + put + text[brackets.end() :]
+    words: list[str] = []
+    for token in re.split(r'[\s_/.:,-]+', text):
+        small = token.lower().replace('μ', 'µ')
+        words += [small] if small in _KNOWN else [w.lower() for w in _CAMEL.findall(token)]
+    for at in (-1, 0):
+        if not unit and words and words[at] in _KNOWN and (len(words) > 1 or at == -1):
+            if at == 0 and words[0] not in _UNITS['time']:
+                continue
+            unit = words.pop(at)
+    if 'joint' in words and {'state', 'states'} & {*words}:
+        words.remove('joint')  # of the name of a topic
+    if 'm' in words:  # as drivers name motors, as m1
+        words = [word for word in words if word != 'm'] + ['motor'] * (not {*words} & {*_ROTOR})
+    return tuple(words), unit
+
+
+def time_among(names: Sequence[str]) -> tuple[str, str]:
+    """Return the column of times and its unit, as far as names say them."""
+    times = [(rank, name) for name in names for role, rank in _roles(name) if role == 'time']
+    name = min(times)[1] if times else ''
+    return name, _split(name)[1]
+
+
+def nanoseconds_beside(name: str, names: Sequence[str]) -> str | None:
+    """Return the column of nanoseconds that belongs to one of whole seconds, as ROS has them."""
+    words, unit = _split(name)
+    if TIME_UNITS.get(unit) != TIME_UNITS['s']:
+        return None
+    pairs = ((one, *_split(one)) for one in names)
+    alike = (one for one, same, of in pairs if same == words and of in _NANOSECONDS)
+    return next(alike, None)

@@ -42,7 +42,7 @@ def gated(recording: Recording) -> Recording:
     wraps = np.ptp(turned) <= TURN  # as of one turn, or not further than that
     turned = np.unwrap(turned) if wraps else turned
     rotor = both.at_measured(turned)
-    slope = _slope(rotor, np.unwrap(both.measured))
+    slope = output_by_rotor(rotor, np.unwrap(both.measured))
     if np.array_equal(both.measured, np.round(both.measured)):  # counts, whose unit is not known
         return recording
     if slope is None or abs(slope) * np.ptp(rotor) < _LEAST_TRAVEL:
@@ -100,7 +100,7 @@ def gated(recording: Recording) -> Recording:
     return replace(recording, encoders=encoders, remarks=(*recording.remarks, *remarks))
 
 
-def _slope(rotor: Array, measured: Array) -> float | None:
+def output_by_rotor(rotor: Array, measured: Array) -> float | None:
     """Output angle by rotor angle, whatever a few readings say; None if it does not show."""
     lag = max(len(rotor) // 40, 1)
     moved, followed = rotor[lag:] - rotor[:-lag], measured[lag:] - measured[:-lag]

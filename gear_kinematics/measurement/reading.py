@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The one reader of recordings: a bag or a CSV file becomes a `Recording`."""
+"""The one reader of recordings: a bag or a table becomes a `Recording`."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -17,7 +17,6 @@ from gear_kinematics.bag import (
 from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, missing_encoder
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
 from gear_kinematics.measurement.columns import Sources
-from gear_kinematics.measurement.csv_files import is_csv, read_csv
 from gear_kinematics.measurement.encoder_step import step_of
 from gear_kinematics.measurement.gate import gated
 from gear_kinematics.measurement.recording import (
@@ -31,6 +30,7 @@ from gear_kinematics.measurement.recording import (
     locked_shaft,
     match,
 )
+from gear_kinematics.measurement.tables import is_table, read_table
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.output_encoder import measured_angle
@@ -51,7 +51,7 @@ def read(
     """Read a recording.
 
     Args:
-        path: of a CSV file or a bag.
+        path: of a table or a bag.
         parameters: of the node.
         sources: what is known of its columns or topics, and of the encoders.
         progress: called after each batch of a bag, with the messages on all of its topics.
@@ -60,8 +60,8 @@ def read(
         BagError, RecordingError: if it cannot be read, or contains nothing to measure.
     """
     sources = sources or Sources()
-    if is_csv(path):
-        return gated(read_csv(path, sources, parameters.gear.gear_ratio))
+    if is_table(path):
+        return gated(read_table(path, sources, parameters.gear.gear_ratio))
     return gated(_read_bag(path, parameters, sources, progress))
 
 
@@ -77,7 +77,7 @@ def read_encoders(
         BagError, RecordingError: see `read`; if it lacks the output's encoder.
     """
     sources = sources or Sources()
-    if not is_csv(path):
+    if not is_table(path):
         with Bag(path) as bag:
             rotor = find_rotor_topic(bag, sources.rotor_topic, parameters.rotor_joint)
             if not find_encoder_topic(bag, rotor, sources.encoder_topic):

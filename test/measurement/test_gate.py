@@ -10,8 +10,8 @@ from gear_recordings import write_csv
 
 from gear_kinematics.measurement.calibration import fit
 from gear_kinematics.measurement.columns import Sources
-from gear_kinematics.measurement.csv_files import read_csv
 from gear_kinematics.measurement.gate import gated
+from gear_kinematics.measurement.tables import read_table
 
 RATIO = Fraction(-19)
 
@@ -31,7 +31,7 @@ def gate(tmp_path):
         time_s, rotor_rad, output_rad = columns.T
         path = tmp_path / 'both.csv'
         write_csv(path, time_s=time_s, rotor_rad=rotor_rad, output_rad=output_rad)
-        recording = read_csv(path, Sources(), RATIO)
+        recording = read_table(path, Sources(), RATIO)
         return recording, gated(recording)
 
     return of
@@ -102,5 +102,5 @@ def test_wraps_of_encoders_of_one_turn_are_no_faults(clean, gate):
 
 def test_a_calibration_does_not_help_where_the_error_rises(shared_path):
     path = shared_path('data/faults/one_corrupt_rotor_reading_calibrate.csv')
-    recording = read_csv(path, Sources(), RATIO)  # without the gate
+    recording = read_table(path, Sources(), RATIO)  # without the gate
     assert not fit([(recording, recording.encoders)], RATIO).helps

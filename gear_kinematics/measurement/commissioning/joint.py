@@ -63,10 +63,10 @@ class Joint:
             ('rotor', rotor, encoders.rotor_step),
             ('output', measured, encoders.output_step),
         ):
-            if unit := _other_unit(values, step):
+            if unit := other_unit(values, step):
                 hint = 'of a CSV, --angle-unit, --rotor-counts and --output-counts tell the unit'
                 raise RecordingError(f'{path}: the positions of the {body} are {unit}; {hint}')
-        wraps = _wraps(rotor, TURN), _wraps(measured, TURN)
+        wraps = count_wraps(rotor, TURN), count_wraps(measured, TURN)
         rotor = np.unwrap(rotor) if wraps[0] else rotor
         measured = np.unwrap(measured) if wraps[1] else measured
         turns, angle = split_turns(rotor)
@@ -95,7 +95,7 @@ class Joint:
         return row
 
 
-def _wraps(values: Array, turn: float, error: float = 1.0) -> int:
+def count_wraps(values: Array, turn: float, error: float = 1.0) -> int:
     """Count the wraps of positions (n,), in the order of time, in a unit; error: of its turn."""
     size = np.abs(np.diff(values)) / turn
     low, high = _UNCLEAR
@@ -108,7 +108,7 @@ def _wraps(values: Array, turn: float, error: float = 1.0) -> int:
     return len(wraps) if same and np.ptp(values) <= _MOST_SPAN * turn else 0
 
 
-def _other_unit(values: Array, step: Step) -> str:
+def other_unit(values: Array, step: Step) -> str:
     """The unit of positions with a step, what shows it and what to do, if it is not rad."""
     rounded, units = np.round(values), dict(_TURNS)
     whole = np.abs(values - rounded).max() < _ROUNDING and len(np.unique(rounded)) >= _MIN_LEVELS
@@ -116,7 +116,7 @@ def _other_unit(values: Array, step: Step) -> str:
         units['counts'] = 2.0 ** math.ceil(math.log2(np.ptp(values) + 1.0))
     for unit, turn in units.items():
         bits = math.log2(turn / step.size) if step.seen and not whole else 0.0
-        if wraps := _wraps(values, turn, _SAME_COUNTS if unit == 'counts' else 1.0):
+        if wraps := count_wraps(values, turn, _SAME_COUNTS if unit == 'counts' else 1.0):
             return f'{unit} ({counted(wraps, "wrap")} at {turn:g}): multiply by {TURN / turn:.9g}'
         if round(bits) >= _MIN_BITS and abs(bits - round(bits)) < _POWER:
             return f'{unit} (steps of 1/2^{round(bits)} turn): multiply by {TURN / turn:.9g}'

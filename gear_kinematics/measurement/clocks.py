@@ -1,0 +1,118 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The times in a table: their unit, and the rows that are in order."""
+
+import shlex
+
+import numpy as np
+
+from gear_kinematics.measurement.columns import TIME_UNITS, Column
+from gear_kinematics.measurement.recording import Array
+from gear_kinematics.wire.cdr import SECOND
+
+_DATES = 978_307_200.0, 4_102_444_800.0
+"""s since 1970: in 2001 and in 2100."""
+_LEAST_STEP, _MOST_STEP = {'s': 1e-6, 'ms': 5e-5, 'us': 5e-5, 'ns': 5e-5}, 1.0
+"""s between samples that are likely, of times in a unit."""
+_UNREADABLE = 0.01
+"""Share of times that cannot be read, at most."""
+_LATE_ROWS = 25
+"""Rows in succession that are out of order, at most; after more the clock was set back."""
+_FASTEST, _MOST = 1000.0, 0.9
+"""rad/s, which hardly any rotor exceeds; share of the samples in motion that are slower."""
+
+
+def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
+    """Times in the unit that their sampling shows; ValueError if it does not."""
+    if times.dtype.kind == 'M':
+        return clock._replace(unit='date')
+    known = np.isfinite(times) & np.isfinite(angle)
+    times, angle = times[known].astype(float), angle[known]
+    later = np.diff(times) > 0.0
+    if not later.any():
+        raise ValueError(f'the times in {clock.name}: they stand still, or are no numbers')
+    steps = np.diff(times)[later]
+    step = float(np.median(steps))
+    speed = float(np.quantile(np.abs(np.diff(angle)[later]) / steps, _MOST))
+    if role == 'angle':  # of a locked shaft, whose times tell the order alone
+        speed = 0.0
+    spans = {unit: (step * TIME_UNITS[unit], times[0] * TIME_UNITS[unit]) for unit in _LEAST_STEP}
+    dated = [unit for unit, (_, at) in spans.items() if _DATES[0] < at < _DATES[1]]
+    likely = [unit for unit, (size, _) in spans.items() if _LEAST_STEP[unit] <= size <= _MOST_STEP]
+    if len(likely) > 1:
+        likely = [unit for unit in likely if speed <= _FASTEST * TIME_UNITS[unit]]
+    if common := [unit for unit in dated if unit in likely]:
+        likely = common
+    elif 's' in likely and not np.all(times == np.round(times)):
+        likely = ['s']
+    if len(likely) != 1 and role == 'rotor':
+        such = f'--time-column {shlex.quote(f"{clock.name} [ms]")}'
+        raise ValueError(
+            f'the times in {clock.name}: steps of {step:.6g} do not tell their unit: give it, '
+            f'as in {such}'
+        )
+    unit = likely[0] if likely else 's'
+    return clock._replace(unit=unit, scale=TIME_UNITS[unit])
+
+
+def stamps(
+    clock: Column | None, times: Array | None, kept: Array, remarks: list[str]
+) -> tuple[Array, Array]:
+    """Stamps, ns, of the rows that are kept and in order, and the numbers of these rows.
+
+    They end where the clock was set back. ValueError: the times cannot be read.
+    """
+    rows = np.flatnonzero(kept)
+    if clock is None or times is None:
+        return np.arange(len(rows)) * SECOND, rows
+    times = times[rows]
+    if times.dtype.kind == 'M':
+        readable = ~np.isnat(times)
+        stamp = times.astype(np.int64)
+    else:
+        readable = np.abs(times * clock.scale) < _DATES[1]  # NaN compares false
+        factor = clock.scale * SECOND
+        exact = times.dtype.kind in 'iu'  # also of more digits than floating point has
+        seconds = times * round(factor) if exact else np.where(readable, times, 0.0) * factor
+        stamp = np.round(seconds).astype(np.int64)
+    if np.mean(~readable) > _UNREADABLE:
+        example = shlex.quote(f'{clock.name} [ns]')
+        raise ValueError(
+            f'the times in {clock.name}: no numbers nor ISO 8601, or too large: give their unit, '
+            f'as in --time-column {example}'
+        )
+    if lost := np.count_nonzero(~readable):
+        remarks.append(f'{lost} rows without a time in {clock.name} were left out')
+    rows, stamp = rows[readable], stamp[readable]
+    order, end = _order(stamp)
+    if late := end - len(order):
+        remarks.append(f'the time in {clock.name} is out of order in {late} rows: left out')
+    if end < len(stamp):
+        what = f'goes back after {end} rows: the others are left out'
+        remarks.append(f'the time in {clock.name} {what}')
+    if stamp[order[-1]] == stamp[order[0]] and len(order) > 1:
+        raise ValueError(f'the times in {clock.name}: they stand still')
+    return stamp[order], rows[order]
+
+
+def _order(stamp: Array) -> tuple[Array, int]:
+    """Find the rows that are in order, and the row where the clock was set back.
+
+    Of rows that contradict each other, the fewer are left out, be they late or early.
+    """
+    kept, end = np.arange(len(stamp)), len(stamp)
+    while True:
+        time = stamp[kept]
+        late = time < np.maximum.accumulate(time)
+        early = time > np.minimum.accumulate(time[::-1])[::-1]
+        edges = np.flatnonzero(np.diff(late | early, prepend=False, append=False))
+        if not len(edges):
+            return kept, end
+        out = np.zeros(len(kept), bool)
+        for begin, stop in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+            one = min((late[begin:stop], early[begin:stop]), key=np.count_nonzero)
+            if np.count_nonzero(one) > _LATE_ROWS:
+                first = begin + int(np.argmax(late[begin:stop]))
+                end, out = int(kept[first]), out | (np.arange(len(out)) >= first)
+                break
+            out[begin:stop] = one
+        kept = kept[~out]

@@ -1,0 +1,295 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Tables as recordings: which rows are used, in what units, and at what times."""
+
+import shlex
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import replace
+from fractions import Fraction
+from itertools import permutations
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_turns
+from gear_kinematics.measurement.clocks import stamps, with_unit
+from gear_kinematics.measurement.columns import (
+    Column,
+    ColumnsError,
+    Sources,
+    find_columns,
+    nanoseconds_beside,
+)
+from gear_kinematics.measurement.commissioning.joint import count_wraps, other_unit
+from gear_kinematics.measurement.dialects import Table, open_text
+from gear_kinematics.measurement.encoder_step import Step, step_of
+from gear_kinematics.measurement.formats import FORMATS
+from gear_kinematics.measurement.gate import output_by_rotor
+from gear_kinematics.measurement.recording import (
+    Array,
+    Encoders,
+    Loading,
+    Recording,
+    RecordingError,
+    RotorMotion,
+    locked_shaft,
+    match,
+)
+from gear_kinematics.wire.cdr import SECOND
+
+READERS: Mapping[str, Callable[[Path], Table]] = {
+    **dict.fromkeys(('.csv', '.tsv', '.txt', '.dat', '.asc', '.lvm'), open_text),
+    **FORMATS,
+}
+"""What opens a table, by the end of its name."""
+_LEAST = 1e-30
+"""Numbers that are smaller are 0: of none of those that follow, squares and inverses underflow."""
+_GAP = 5
+"""Usual intervals of the rotor's samples over which its motion is interpolated, at most."""
+_HALF_TURN = 180.0
+"""Degrees, by which the readings of a single-turn encoder jump at least."""
+_FASTEST, _MOST = 1000.0, 0.9
+"""rad/s, above which a unit is asked for; share of the samples in motion that are slower."""
+_MOST_TWIST = 0.3
+"""rad of the output under torque: a shaft that turns further is not locked."""
+_BLOCKS, _MOST_ERROR = 40, 0.05
+"""Parts of a recording in most of which the output follows the rotor within so many rad."""
+_WHOLE = 50
+"""Levels that show whole numbers to be no coincidence."""
+_TRIED, _FEWEST, _ROWS = 12, 10, 10_000
+"""Columns among which two are sought for an example, least and most rows that tell them."""
+_SHOWN = 800
+"""Characters of an error, as those of a file can be many."""
+
+
+def is_table(path: Path) -> bool:
+    """Return whether a recording is a table, by its name; otherwise it is a bag."""
+    return path.suffix.lower() in READERS
+
+
+def read_table(path: Path, sources: Sources, ratio: Fraction) -> Recording:
+    """Read a table of a gear with a ratio.
+
+    Raises:
+        RecordingError: if it cannot be read, or has no such columns.
+    """
+    try:
+        return _recording(path, _opened(path), sources, ratio)
+    except (OSError, ValueError) as error:  # pandas raises the latter, too
+        text = getattr(error, 'strerror', None) or ' '.join(str(error).split())
+        if len(text) > _SHOWN:
+            text = f'{text[: _SHOWN // 2]} ... {text[-_SHOWN // 2 :]}'
+        raise RecordingError(f'{path}: {text}') from error
+
+
+def _opened(path: Path) -> Table:
+    if path.exists() and not path.is_file():
+        raise ValueError('not a regular file')
+    suffix = path.suffix.lower()
+    try:
+        return READERS[suffix](path)
+    except (ImportError, OSError, ValueError):
+        raise
+    except Exception as error:  # of the libraries, each of which has its own
+        raise ValueError(f'cannot be read as {suffix}: {error}') from error
+
+
+class _Series(NamedTuple):
+    """Quantities that were sampled together, (n,) each."""
+
+    stamp: Array
+    """ns; one second a row if times were not recorded."""
+    values: dict[str, Array]
+    """In SI units, by role."""
+    segment: Array
+    """Number that changes where rows were left out, as the motion in them is unknown."""
+
+
+def _recording(path: Path, table: Table, sources: Sources, ratio: Fraction) -> Recording:
+    try:
+        found = find_columns(table.names, sources, table.units, table.clocks)
+    except ColumnsError as error:
+        raise ValueError(f'{error} {_advice(path, table, sources, ratio)}') from error
+    clock = found.pop('time', None)
+    rest = nanoseconds_beside(clock.name, table.names) if clock else None
+    usual = clock.name if clock else ''
+    clocks = {role: table.clocks.get(column.name, usual) for role, column in found.items()}
+    wanted = {column.name for column in found.values()} | {*clocks.values(), rest or ''}
+    raw, every = table.load(sorted(wanted - {''}))
+    remarks = [f'one row of {every} is used: no more are kept in memory'] if every > 1 else []
+    if clock and rest:
+        raw[usual] = raw[usual].astype(np.int64) * SECOND + raw[rest].astype(np.int64)
+        clock = clock._replace(unit='ns', scale=1.0 / SECOND)
+    data = {role: raw[column.name] * column.scale for role, column in found.items()}
+    usable = {role: np.abs(values) <= LARGEST_ANGLE for role, values in data.items()}  # no NaN
+    fewest = min(map(np.count_nonzero, usable.values()))
+    apart = len({*clocks.values()}) > 1
+    both = np.zeros(1, bool) if apart else np.all([*usable.values()], axis=0)
+    # PlotJuggler writes each at its own times, with nothing in the columns of the others.
+    apart = apart or bool(clock and 2 * np.count_nonzero(both) < fewest)
+    if not fewest or not (apart or both.any()):
+        names = ', '.join(column.name for column in found.values())
+        raise ValueError(f'no usable rows: none has numbers in all of {names}')
+    if clock and not clock.unit:
+        role = 'rotor' if 'rotor' in found else 'angle'
+        clock = with_unit(clock, raw[clocks[role]], data[role], role)
+    series: dict[str, _Series] = {}
+    for roles in [[role] for role in found] if apart else [[*found]]:
+        kept = usable[roles[0]] if apart else both
+        if (left_out := np.count_nonzero(~kept)) and not apart:
+            remarks.append(f'{left_out} rows were left out: no numbers, or too large')
+        stamp, chosen = stamps(clock, raw.get(clocks[roles[0]]), kept, remarks)
+        values = {role: data[role][chosen] for role in roles}
+        values = {role: np.where(np.abs(v) < _LEAST, 0.0, v) for role, v in values.items()}
+        one = _Series(stamp, values, np.cumsum(~kept)[chosen] if not apart else 0 * stamp)
+        series |= dict.fromkeys(roles, one)
+    base = series['output' if 'output' in found else 'angle']
+    encoders, locked = _measured(found, series, sources, ratio, timed=clock is not None)
+    said = [f'time [{clock.unit}] from {clock.name}'] if clock else []
+    said += map(_described, found, found.values())
+    rows = len(data[next(iter(base.values))]) if not apart else fewest
+    said.append(f'{len(base.stamp)} of {rows} rows')
+    return Recording(
+        path, path.name, tuple(said), len(base.stamp), encoders, locked, tuple(remarks)
+    )
+
+
+def _measured(
+    found: Mapping[str, Column],
+    series: Mapping[str, _Series],
+    sources: Sources,
+    ratio: Fraction,
+    *,
+    timed: bool,
+) -> tuple[Encoders | None, Loading | None]:
+    """Both encoders, or angles under torque; ValueError if what is assumed cannot be."""
+    values = {role: series[role].values[role] for role in found}
+    steps = {}
+    for role in found:
+        if role != 'torque':
+            counts = sources.output_counts if role == 'output' else sources.rotor_counts
+            steps[role] = step_of(counts, values[role])
+        if not found[role].unit and (
+            cause := _against(series[role], role, steps.get(role), timed=timed)
+        ):
+            option = f"as in --torque-column '{found[role].name} [Nmm]'"
+            how = option if role == 'torque' else 'with --angle-unit'
+            raise ValueError(f'{found[role].name} has {cause}: give its unit {how}')
+    main = series.get('rotor') or series['angle']
+    torque = None
+    if 'torque' in found:
+        torque = np.asarray(values['torque'])
+        if series['torque'] is not main:
+            torque = np.interp(main.stamp, series['torque'].stamp, torque)
+        torque = torque * float(ratio) if found['torque'].on_rotor else torque
+    if torque is not None and 'angle' in found:
+        angle = found['angle']
+        locked = locked_shaft(
+            torque, values['angle'], steps['angle'],
+            ratio if angle.on_rotor else Fraction(1), measured=angle.on_output,
+        )  # fmt: skip
+        if (twist := np.ptp(locked.angle)) > _MOST_TWIST:
+            raise ValueError(
+                f'the output turns by {np.degrees(twist):.3g}° under torque: it is not '
+                'locked, or the unit is another, which --angle-unit gives'
+            )
+        return None, locked
+    rotor, output = values['rotor'], values['output']
+    if not sources.as_recorded:
+        rotor, output = (np.unwrap(v) if count_wraps(v, TURN) else v for v in (rotor, output))
+    before, share, inside = (
+        np.arange(len(output)),
+        np.zeros(len(output)),
+        np.ones(len(output), bool),
+    )
+    if series['output'] is not main:
+        gap = _GAP * float(np.median(np.diff(main.stamp)))
+        before, share, inside = match(main.stamp, series['output'].stamp, gap)
+    effort = None if torque is None or not torque.any() else torque / float(ratio)
+    motion = RotorMotion(main.stamp, *split_turns(rotor), effort, main.segment)
+    both = Encoders(
+        motion, timed, before, share, output[inside], steps['rotor'], steps['output'],
+    )  # fmt: skip
+    if not (found['rotor'].unit or found['output'].unit) and _error(both) > _MOST_ERROR:
+        raise ValueError(
+            f'{found["output"].name} differs from {found["rotor"].name} by more than any gear in '
+            'rad, as in degrees: give the unit with --angle-unit'
+        )
+    return both, None
+
+
+def _error(both: Encoders) -> float:
+    """By how much the output leaves the rotor within most parts of a recording, rad."""
+    turned, output = both.rotor.turned, np.unwrap(both.measured)
+    rotor = both.at_measured(np.unwrap(turned) if count_wraps(turned, TURN) else turned)
+    ratio = output_by_rotor(rotor, output)
+    if ratio is None or len(rotor) < _BLOCKS * _BLOCKS:
+        return 0.0
+    blocks = [
+        np.stack([error - np.median(error), speed])
+        for error, speed in zip(
+            np.array_split(output - ratio * rotor, _BLOCKS),
+            np.array_split(np.gradient(rotor), _BLOCKS),
+            strict=True,
+        )
+    ]
+    error, speed = np.concatenate(blocks, axis=1)
+    delay = error @ speed / max(speed @ speed, _LEAST)
+    spreads = [np.ptp(np.quantile(e - delay * v, (1.0 - _MOST, _MOST))) for e, v in blocks]
+    return float(np.median(spreads))
+
+
+def _against(series: _Series, role: str, step: Step | None, *, timed: bool) -> str:
+    """What shows that numbers without a unit are not in rad or N·m, if anything."""
+    values = series.values[role]
+    moved = np.abs(np.diff(values))
+    if not step:
+        whole = np.all(values == np.round(values)) and len(np.unique(values)) > _WHOLE
+        return 'whole numbers' if whole else ''
+    if np.ptp(values) > TURN and np.all(values == np.round(values)):
+        return 'whole numbers, such as counts'
+    if _HALF_TURN < np.max(moved, initial=0.0) <= np.ptp(values) <= 2.0 * _HALF_TURN:
+        return 'turns of 360, such as degrees'
+    if unit := other_unit(values, step).partition(':')[0]:
+        return f'positions in {unit}'
+    if timed and (moving := moved > 0.0).any():
+        seconds = np.maximum(np.diff(series.stamp)[moving], 1) / SECOND
+        if (speed := np.quantile(moved[moving] / seconds, _MOST)) > _FASTEST:
+            return f'speeds of {speed:.3g} a second, as in degrees'
+    return ''
+
+
+def _described(role: str, column: Column) -> str:
+    unit = column.unit or {'torque': 'N·m'}.get(role, 'rad, assumed')
+    side = ''
+    if role in {'angle', 'torque'}:
+        side = ' of the rotor' if column.on_rotor else ' at the output'
+    return f'{role}{side} [{unit.replace("nm", "N·m")}] from {column.name}'
+
+
+def _advice(path: Path, table: Table, sources: Sources, ratio: Fraction) -> str:
+    """List the columns with their first values, and end with a command line that works, if any."""
+    names = [name for name in table.names if name]
+    listed = ', '.join(f'{name} ({table.first.get(name, "")})' for name in names)
+    raw, _ = table.load([name for name in names if names.count(name) == 1][:_TRIED])
+    pairs = {}
+    for rotor, output in permutations(raw, 2):
+        if raw[rotor].dtype.kind + raw[output].dtype.kind != 'ff':
+            continue
+        pair = np.array([raw[rotor], raw[output]])[:, :_ROWS]
+        pair = np.diff(pair[:, np.isfinite(pair).all(axis=0)])
+        if pair.shape[1] > _FEWEST and (spread := np.std(pair, axis=1))[0] > spread[1] > 0.0:
+            pairs[abs(np.corrcoef(pair)[0, 1])] = rotor, output
+    text = f'among the columns {listed}; name them'
+    for likeness in sorted(pairs, reverse=True)[:_FEWEST]:
+        rotor, output = pairs[likeness]
+        for unit in (None, 'deg'):
+            named = replace(sources, rotor=rotor, output=output, unit=sources.unit or unit)
+            with suppress(ValueError):
+                _recording(path, table, named, ratio)
+                words = ['--rotor-column', rotor, '--output-column', output]
+                words += ['--angle-unit', unit] if unit else []
+                command = shlex.join([*sources.command.split(), str(path), *words])
+                return f'{text}, for example: {command}'
+    return f'{text} with --angle-column, --torque-column, --rotor-column, --output-column'
