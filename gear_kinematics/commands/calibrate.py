@@ -56,6 +56,8 @@ def run(options: argparse.Namespace) -> ExitCode:
         return ExitCode.UNUSABLE
     mechanism = gear if isinstance(gear, Mechanism) else None
     result = fit(recordings, gear.gear_ratio, mechanism)
+    for recording, _ in recordings:
+        say_columns(recording, options)
     if result.helps:
         write_text(options.output, result.calibration.text())
     reporter.write(
@@ -71,6 +73,7 @@ def _check(options: argparse.Namespace, config: NodeParameters, reporter: Report
     for recording, encoders in _read(options, config):
         try:
             judgements.append(judge(recording, encoders, calibration))
+            say_columns(recording, options)
         except RecordingError as error:
             complain(error)
     if judgements:
@@ -88,8 +91,6 @@ def _read(
     for path in options.recordings:
         try:
             with bags.naming(path), message_progress(path.name, quiet=options.quiet) as progress:
-                read = read_encoders(path, config, sources(options), progress)
-                say_columns(read[0], options)
-                yield read
+                yield read_encoders(path, config, sources(options), progress)
         except (ValueError, OSError) as error:
             complain(error)

@@ -5,7 +5,6 @@ import argparse
 from dataclasses import replace
 from pathlib import Path
 
-from gear_kinematics.bag import Bag
 from gear_kinematics.bag.roles import joints_on
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.encoders import add_recordings, ratio_text, say_columns, sources
@@ -16,7 +15,7 @@ from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.commissioning import analysis
 from gear_kinematics.measurement.commissioning.document import actuator_file, document
 from gear_kinematics.measurement.reading import read_encoders
-from gear_kinematics.measurement.tables import is_table
+from gear_kinematics.measurement.tables import is_table, open_bag
 from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.parameters.new_config import write_new
 from gear_kinematics.report.document import Verdict
@@ -101,13 +100,15 @@ def _read(options: argparse.Namespace, request: analysis.Request) -> analysis.Co
         topics = replace(known, rotor_topic=rotor.topic, encoder_topic=output.topic)
         with message_progress(path.name, quiet=options.quiet) as progress:
             recordings.append(read_encoders(path, joints, topics, progress))
-        say_columns(recordings[-1][0], options)
-    return analysis.commission(recordings, request)
+    result = analysis.commission(recordings, request)
+    for recording, _ in recordings:
+        say_columns(recording, options)
+    return result
 
 
 def _recorded(path: Path) -> list[analysis.Channel]:
     """List the joints in a bag."""
-    with Bag(path) as bag:
+    with open_bag(path) as bag:
         heard = joints_on(bag, [topic for topic in bag.topics if bag.topics[topic] == JOINT_STATE])
     return [analysis.Channel(topic, joint) for topic, joints in heard.items() for joint in joints]
 

@@ -50,6 +50,11 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: boo
             help='exact gear ratio, such as -19 or 1457/26 (default: the parameter gear_ratio, or '
             'from the teeth; gearkin commission finds it)',
         )
+    add_columns(parser, *roles)
+
+
+def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
+    """Add the options on the columns of tables, for quantities of `_COLUMNS`."""
     group = parser.add_argument_group(
         'columns of a table', "by default found by name; units may follow, as in 'ms_today [ms]'"
     )
@@ -89,7 +94,7 @@ def sources(options: argparse.Namespace) -> Sources:
         rotor_counts=options.rotor_counts,
         output_counts=options.output_counts,
         rotor_topic=options.rotor_topic,
-        encoder_topic=options.encoder_topic,
+        encoder_topic=getattr(options, 'encoder_topic', None),
         command=options.parser.prog,
     )
 

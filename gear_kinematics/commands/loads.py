@@ -7,6 +7,7 @@ from importlib import import_module
 
 from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.commands import ExitCode, arguments, bags
+from gear_kinematics.commands.encoders import add_columns, sources
 from gear_kinematics.commands.output import complain
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.measurement.loads.document import WORK, document
@@ -20,6 +21,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('bags', nargs='+', metavar='RECORDING', help='file, directory or glob')
     bags.add_rotor(parser)
     arguments.add_config(parser)
+    add_columns(parser, 'rotor', 'angle', 'torque')
     gear = arguments.group(parser, 'gear')
     gear.add_argument(
         '--cam-rating',
@@ -55,6 +57,7 @@ def run(options: argparse.Namespace) -> ExitCode:
             options.cam_rating,
             options.slot_friction,
             by_default=arguments.config_path(options, bag) == default_config(),
+            sources=sources(options),
             debug=options.debug,
         )
         for bag in found.bags

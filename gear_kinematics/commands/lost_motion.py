@@ -103,12 +103,13 @@ def _measured(path: Path, name: str, options: argparse.Namespace) -> LostMotion:
     with message_progress(name, quiet=options.quiet) as report_progress:
         try:
             recording = read(path, config, sources(options), report_progress)
+            found = measure(replace(recording, name=name), config, options.rated_torque)
             say_columns(recording, options)
-            return measure(replace(recording, name=name), config, options.rated_torque)
         except (ValueError, OSError):
             raise
         except Exception as error:  # the other recordings are worth reporting
             raise ValueError(unexpected(error, debug=options.debug)) from error
+        return found
 
 
 def _compared(

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 
 from gear_kinematics.bag import (
-    Bag,
     BagError,
     DamagedBagError,
     ReportProgress,
@@ -30,7 +29,7 @@ from gear_kinematics.measurement.recording import (
     locked_shaft,
     match,
 )
-from gear_kinematics.measurement.tables import is_table, read_table
+from gear_kinematics.measurement.tables import is_table, open_bag, read_table
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.output_encoder import measured_angle
@@ -78,7 +77,7 @@ def read_encoders(
     """
     sources = sources or Sources()
     if not is_table(path):
-        with Bag(path) as bag:
+        with open_bag(path) as bag:
             rotor = find_rotor_topic(bag, sources.rotor_topic, parameters.rotor_joint)
             if not find_encoder_topic(bag, rotor, sources.encoder_topic):
                 raise RecordingError(f'{path}: {missing_encoder(bag)}')
@@ -98,7 +97,7 @@ def _read_bag(
     progress: ReportProgress | None,
 ) -> Recording:
     damage = None
-    with Bag(path) as bag:
+    with open_bag(path) as bag:
         rotor = find_rotor_topic(bag, sources.rotor_topic, parameters.rotor_joint)
         encoder = find_encoder_topic(bag, rotor, sources.encoder_topic)
         states = States(rotor, encoder, parameters, _MOST_STATES)

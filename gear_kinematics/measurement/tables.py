@@ -2,8 +2,8 @@
 """Tables as recordings: which rows are used, in what units, and at what times."""
 
 import shlex
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from fractions import Fraction
 from itertools import permutations
@@ -12,6 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gear_kinematics.bag import Bag, BagError
+from gear_kinematics.bag.finding import BAG_NAME
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_turns
 from gear_kinematics.measurement.clocks import stamps, with_unit
 from gear_kinematics.measurement.columns import (
@@ -51,10 +53,10 @@ _HALF_TURN = 180.0
 """Degrees, by which the readings of a single-turn encoder jump at least."""
 _FASTEST, _MOST = 1000.0, 0.9
 """rad/s, above which a unit is asked for; share of the samples in motion that are slower."""
-_MOST_TWIST = 0.3
+_MOST_TWIST = 0.35
 """rad of the output under torque: a shaft that turns further is not locked."""
-_BLOCKS, _MOST_ERROR = 40, 0.05
-"""Parts of a recording in most of which the output follows the rotor within so many rad."""
+_BLOCKS, _LIKE = 40, (0.025, 1.0)
+"""Parts of a recording; rad by which the output leaves the rotor in most of them, in degrees."""
 _WHOLE = 50
 """Levels that show whole numbers to be no coincidence."""
 _TRIED, _FEWEST, _ROWS = 12, 10, 10_000
@@ -68,14 +70,56 @@ def is_table(path: Path) -> bool:
     return path.suffix.lower() in READERS
 
 
+@contextmanager
+def open_bag(path: Path) -> Iterator[Bag]:
+    """Open what is no table; a BagError names what can be read, unless the name is a bag's."""
+    try:
+        with Bag(path) as bag:
+            yield bag
+    except BagError as error:
+        if path.is_file() and not BAG_NAME.search(path.name):
+            kinds = f'{error}; bags are .mcap, .db3, .bag and folders, tables {", ".join(READERS)}'
+            raise BagError(kinds) from error
+        raise
+
+
 def read_table(path: Path, sources: Sources, ratio: Fraction) -> Recording:
     """Read a table of a gear with a ratio.
 
     Raises:
         RecordingError: if it cannot be read, or has no such columns.
     """
-    try:
+    with _naming(path):
         return _recording(path, _opened(path), sources, ratio)
+
+
+def read_rotor(path: Path, sources: Sources, ratio: Fraction) -> tuple[Array, Array, Array, str]:
+    """Read how the rotor of a gear with a ratio moves under torque.
+
+    Returns:
+        Stamps, ns, the rotor's angle, rad, and its torque, N·m, (n,) each; what was taken.
+
+    Raises:
+        RecordingError: if it cannot be read, or has no such columns.
+    """
+    with _naming(path):
+        found, series, said, _ = _read(path, _opened(path), sources, ratio)
+        if 'torque' not in found or not said[0].startswith('time'):
+            raise ValueError(
+                'no times or no torque: name them with --time-column, --torque-column'
+            )
+        role = 'rotor' if 'rotor' in found else 'angle'
+        one, torque = series[role], _torque(found, series, series[role], ratio) / float(ratio)
+        on_rotor = role == 'rotor' or found[role].on_rotor
+        angle = one.values[role] * (1.0 if on_rotor else float(ratio))
+        return one.stamp, angle, torque, ', '.join(said)
+
+
+@contextmanager
+def _naming(path: Path) -> Iterator[None]:
+    """Raise errors as RecordingError that name the path."""
+    try:
+        yield
     except (OSError, ValueError) as error:  # pandas raises the latter, too
         text = getattr(error, 'strerror', None) or ' '.join(str(error).split())
         if len(text) > _SHOWN:
@@ -107,6 +151,17 @@ class _Series(NamedTuple):
 
 
 def _recording(path: Path, table: Table, sources: Sources, ratio: Fraction) -> Recording:
+    found, series, said, remarks = _read(path, table, sources, ratio)
+    timed = said[0].startswith('time')
+    encoders, locked = _measured(found, series, sources, ratio, timed=timed)
+    used = len(series['output' if 'output' in found else 'angle'].stamp)
+    return Recording(path, path.name, tuple(said), used, encoders, locked, tuple(remarks))
+
+
+def _read(
+    path: Path, table: Table, sources: Sources, ratio: Fraction
+) -> tuple[dict[str, Column], dict[str, _Series], list[str], list[str]]:
+    """Return columns and samples by role, what was taken, and remarks."""
     try:
         found = find_columns(table.names, sources, table.units, table.clocks)
     except ColumnsError as error:
@@ -121,6 +176,8 @@ def _recording(path: Path, table: Table, sources: Sources, ratio: Fraction) -> R
     if clock and rest:
         raw[usual] = raw[usual].astype(np.int64) * SECOND + raw[rest].astype(np.int64)
         clock = clock._replace(unit='ns', scale=1.0 / SECOND)
+    if dates := [c.name for c in found.values() if raw[c.name].dtype.kind == 'M']:
+        raise ValueError(f'{dates[0]} has dates in place of numbers')
     data = {role: raw[column.name] * column.scale for role, column in found.items()}
     usable = {role: np.abs(values) <= LARGEST_ANGLE for role, values in data.items()}  # no NaN
     fewest = min(map(np.count_nonzero, usable.values()))
@@ -145,14 +202,10 @@ def _recording(path: Path, table: Table, sources: Sources, ratio: Fraction) -> R
         one = _Series(stamp, values, np.cumsum(~kept)[chosen] if not apart else 0 * stamp)
         series |= dict.fromkeys(roles, one)
     base = series['output' if 'output' in found else 'angle']
-    encoders, locked = _measured(found, series, sources, ratio, timed=clock is not None)
     said = [f'time [{clock.unit}] from {clock.name}'] if clock else []
     said += map(_described, found, found.values())
     rows = len(data[next(iter(base.values))]) if not apart else fewest
-    said.append(f'{len(base.stamp)} of {rows} rows')
-    return Recording(
-        path, path.name, tuple(said), len(base.stamp), encoders, locked, tuple(remarks)
-    )
+    return found, series, [*said, f'{len(base.stamp)} of {rows} rows'], remarks
 
 
 def _measured(
@@ -177,12 +230,7 @@ def _measured(
             how = option if role == 'torque' else 'with --angle-unit'
             raise ValueError(f'{found[role].name} has {cause}: give its unit {how}')
     main = series.get('rotor') or series['angle']
-    torque = None
-    if 'torque' in found:
-        torque = np.asarray(values['torque'])
-        if series['torque'] is not main:
-            torque = np.interp(main.stamp, series['torque'].stamp, torque)
-        torque = torque * float(ratio) if found['torque'].on_rotor else torque
+    torque = _torque(found, series, main, ratio) if 'torque' in found else None
     if torque is not None and 'angle' in found:
         angle = found['angle']
         locked = locked_shaft(
@@ -211,32 +259,38 @@ def _measured(
     both = Encoders(
         motion, timed, before, share, output[inside], steps['rotor'], steps['output'],
     )  # fmt: skip
-    if not (found['rotor'].unit or found['output'].unit) and _error(both) > _MOST_ERROR:
+    assumed = not (found['rotor'].unit or found['output'].unit)
+    if assumed and min(_LIKE) < _error(both.at_measured(rotor), both.measured) < max(_LIKE):
         raise ValueError(
-            f'{found["output"].name} differs from {found["rotor"].name} by more than any gear in '
-            'rad, as in degrees: give the unit with --angle-unit'
+            f'{found["output"].name} differs from {found["rotor"].name} by more than gears do '
+            'in rad, as in degrees: give the unit with --angle-unit'
         )
     return both, None
 
 
-def _error(both: Encoders) -> float:
+def _torque(
+    found: Mapping[str, Column], series: Mapping[str, _Series], at: _Series, ratio: Fraction
+) -> Array:
+    """Torque at the output, N·m, at the stamps of other samples."""
+    own = series['torque']
+    torque = own.values['torque']
+    torque = torque if own is at else np.interp(at.stamp, own.stamp, torque)
+    return torque * float(ratio) if found['torque'].on_rotor else torque
+
+
+def _error(rotor: Array, output: Array) -> float:
     """By how much the output leaves the rotor within most parts of a recording, rad."""
-    turned, output = both.rotor.turned, np.unwrap(both.measured)
-    rotor = both.at_measured(np.unwrap(turned) if count_wraps(turned, TURN) else turned)
+    rotor, output = (np.unwrap(v) if count_wraps(v, TURN) else v for v in (rotor, output))
+    every = max(1, len(rotor) // _ROWS)
+    rotor, output = rotor[::every], output[::every]
     ratio = output_by_rotor(rotor, output)
-    if ratio is None or len(rotor) < _BLOCKS * _BLOCKS:
+    if ratio is None or len(rotor) < _FEWEST * _BLOCKS:
         return 0.0
-    blocks = [
-        np.stack([error - np.median(error), speed])
-        for error, speed in zip(
-            np.array_split(output - ratio * rotor, _BLOCKS),
-            np.array_split(np.gradient(rotor), _BLOCKS),
-            strict=True,
-        )
-    ]
-    error, speed = np.concatenate(blocks, axis=1)
+    parts = np.array_split(np.stack([output - ratio * rotor, np.gradient(rotor)]), _BLOCKS, axis=1)
+    parts = [part - [[np.median(part[0])], [0.0]] for part in parts]
+    error, speed = np.concatenate(parts, axis=1)
     delay = error @ speed / max(speed @ speed, _LEAST)
-    spreads = [np.ptp(np.quantile(e - delay * v, (1.0 - _MOST, _MOST))) for e, v in blocks]
+    spreads = [np.ptp(np.quantile(e - delay * v, (1.0 - _MOST, _MOST))) for e, v in parts]
     return float(np.median(spreads))
 
 

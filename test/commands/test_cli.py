@@ -183,7 +183,7 @@ def test_help_is_everywhere(command):
 
 HEADINGS = (
     *('positional arguments', 'options', 'recording', 'motion', 'turn of a ring gear'),
-    *('stiffness', 'gear', 'columns of a CSV', 'limits', 'several recordings'),
+    *('stiffness', 'gear', 'columns of a table', 'limits', 'several recordings'),
     *('output', 'example'),
 )
 """Of the help of all commands, in this order."""

@@ -3,6 +3,7 @@
 
 import math
 from collections.abc import Iterator, Mapping
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -11,14 +12,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.bag import Bag, BagError, ReportProgress, by_topic
+from gear_kinematics.bag import BagError, ReportProgress, TopicMessages, by_topic
 from gear_kinematics.bag.roles import find_rotor_topic, only_joint
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.measurement.columns import Sources
+from gear_kinematics.measurement.tables import is_table, open_bag, read_rotor
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.effort_field import questioned
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.loads import Loads
-from gear_kinematics.wire.cdr import SECOND
+from gear_kinematics.wire.batches import encode
+from gear_kinematics.wire.cdr import SECOND, JointStateTemplate
 
 Array = NDArray[Any]
 
@@ -45,6 +49,8 @@ class Task:
     """μ of the slots, for their loss."""
     by_default: bool = False
     """Whether the parameters are those of the installed default file."""
+    sources: Sources | None = None
+    """What is known of the columns of a table."""
     debug: bool = False
     """Whether to print tracebacks of unexpected errors to stderr."""
 
@@ -188,21 +194,25 @@ def read_loads(task: Task, progress: ReportProgress | None = None) -> RecordedLo
     """Read a recording, up to any damage, and compute its loads.
 
     Raises:
-        BagError: if it cannot be read, or has nowhere what the loads need.
+        BagError, RecordingError: if it cannot be read, or has nowhere what the loads need.
         MechanismError: if the parameters describe no mechanism or no preload.
     """
     parameters, damage = task.parameters, ''
     stamps: list[Array] = []
     tables: list[Array] = []
-    with Bag(task.bag) as bag:
-        topic = find_rotor_topic(bag, task.rotor_topic, parameters.rotor_joint)
-        if task.only_joint:
-            joint = only_joint(bag, topic, parameters.rotor_joint)
-            parameters = replace(parameters, rotor_joint=joint)
+    with ExitStack() as opened:
+        if is_table(task.bag):
+            topic, batches = task.bag.name, _of_table(task)
+        else:
+            bag = opened.enter_context(open_bag(task.bag))
+            topic = find_rotor_topic(bag, task.rotor_topic, parameters.rotor_joint)
+            if task.only_joint:
+                joint = only_joint(bag, topic, parameters.rotor_joint)
+                parameters = replace(parameters, rotor_joint=joint)
+            batches = (by_topic(batch, [topic])[topic] for batch in bag.batches([topic], progress))
         gear, loads = GearState(parameters), Loads(parameters)
         try:
-            for batch in bag.batches([topic], progress):
-                messages = by_topic(batch, [topic])[topic]
+            for messages in batches:
                 samples = gear.samples(messages.data, messages.received)
                 found = loads.follow_batch(samples)
                 rows = [TURN * samples.turns + samples.angle, found.torque]
@@ -233,6 +243,15 @@ def read_loads(task: Task, progress: ReportProgress | None = None) -> RecordedLo
         dict(gear.input.rejected),
         damage,
     )
+
+
+def _of_table(task: Task) -> Iterator[TopicMessages]:
+    """Yield the rows of a table as messages, as of a driver."""
+    parameters, sources = task.parameters, task.sources or Sources()
+    stamp, angle, torque, _ = read_rotor(task.bag, sources, parameters.gear.gear_ratio)
+    stamp = stamp + max(0, SECOND - int(stamp[0]))  # no stamp is 0, which would be none
+    template = JointStateTemplate([parameters.rotor_joint], velocity=False, effort=True)
+    yield TopicMessages(encode(template, stamp, [angle, torque]), stamp.tolist())
 
 
 def _levels(values: Array) -> tuple[float, float, float]:
