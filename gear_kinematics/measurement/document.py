@@ -81,7 +81,10 @@ def _section(
         tuple(_tables(report)),
         (Verdict.PASS if passed else Verdict.FAIL) if judged else None,
         (
-            *(Finding('finding', f'{one.text[0].upper()}{one.text[1:]}.') for one in judged),
+            *(
+                Finding('finding', f'{one.text[0].upper()}{one.text[1:]}.')
+                for one in sorted(judged, key=lambda one: one.holds)
+            ),
             Finding('finding', said),
         ),
         remarked,

@@ -79,7 +79,7 @@ def _section(section: Section, number: int, drawings: Drawings) -> Iterator[str]
     name, kind = f'figure-{number}', section.verdict or ''
     moments = name if section.figure and section.figure.stacked else ''
     findings = [_sentence(finding, moments) for finding in section.findings]
-    if findings:
+    if findings and section.verdict != Verdict.PASS:
         yield f'<p class="first {kind}">{findings.pop(0)}</p>\n'
     yield f'<p>{escape(section.answer)}</p>\n' if section.answer else ''
     yield _list(findings, f'{len(findings)} more findings')

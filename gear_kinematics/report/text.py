@@ -85,12 +85,15 @@ def lines(document: Document, *, brief: bool = False) -> Iterator[str]:
 def section_lines(section: Section, *, brief: bool = False) -> Iterator[str]:
     """Yield one section line by line; a brief one is without values."""
     name = f'{section.name}: ' if section.name else ''
+    findings, answer = list(section.findings), section.answer
     if section.verdict:
-        yield f'{name}verdict: {OUTCOME[section.verdict]}'
-    for finding in section.findings:
+        passed = section.verdict == Verdict.PASS or not findings
+        gravest = '' if passed else f': {findings.pop(0).text.removesuffix(".")}'
+        yield f'{name}verdict: {OUTCOME[section.verdict]}{gravest}{f"; {answer}" * bool(answer)}'
+    for finding in findings:
         yield f'{name}{finding.kind}: {finding.text}'
-    if section.answer:
-        yield f'{name}result: {section.answer}'
+    if answer and not section.verdict:
+        yield f'{name}result: {answer}'
     for table in () if brief else section.tables:
         yield from (f'{name}{line}' for line in _table_lines(table))
     for remark in () if brief else section.remarks:
@@ -113,10 +116,11 @@ def _render_section(section: Section, console: Console, *, brief: bool) -> None:
     if section.name:
         verdict = (f'{OUTCOME[section.verdict].upper()} ', style) if section.verdict else ''
         console.print(Text.assemble(verdict, (section.name, 'bold'), overflow='fold'))
-    for finding in section.findings:
-        console.print(_bullet(finding.text, '' if section.verdict == Verdict.PASS else style))
+    sentences = [_bullet(finding.text, style) for finding in section.findings]
     if section.answer:
-        console.print(_bullet(section.answer))
+        first = 0 if section.verdict == Verdict.PASS else len(sentences)
+        sentences.insert(first, _bullet(section.answer))
+    console.print(*sentences, sep='\n', end='\n' * bool(sentences))
     for table in () if brief else filter(lambda table: table.rows, section.tables):
         if table.layout == Layout.ROWS:
             console.print()

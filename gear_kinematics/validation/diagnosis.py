@@ -16,6 +16,7 @@ Array = NDArray[np.float64]
 
 _REMEDY = 'validate with the parameters of the recorded node'
 _MAX_TEETH = 1000
+_MAX_DENOMINATOR, _CHANCE = 100, 0.01
 _MIN_TURNING = 0.1  # rad of the rotor, to determine a ratio
 _BLOCKS, _MIN_BLOCKS = 32, 4
 _ROUNDING = 5.1e-10
@@ -127,7 +128,7 @@ def diagnose(gear: Gear, fit: AngleFit, tolerance: float) -> str | None:
 
 
 def _another_ratio(gear: Gear, slope: Estimate) -> str:
-    ratio = _written(slope.inverse())
+    ratio = _as_fraction(slope.inverse())
     if _is_near(slope, -float(1 / gear.gear_ratio)):
         return (
             'the sign is flipped: the recorded output turns the other way (rotor_direction?), '
@@ -138,11 +139,17 @@ def _another_ratio(gear: Gear, slope: Estimate) -> str:
         ring, satellite = pair
         flipped = ' with the sign flipped' if slope.value > 0.0 else ''
         return (
-            f'the recorded ratio is {ratio}, as that of ring_teeth {ring}, satellite_teeth '
-            f'{satellite} ({Fraction(-satellite, ring - satellite)}){flipped}, not of '
-            f'{gear.ring_teeth}, {gear.satellite_teeth} ({gear.gear_ratio}): {_REMEDY}'
+            f'the recorded ratio is {ratio}, not {gear.gear_ratio}, as that of ring_teeth {ring}, '
+            f'satellite_teeth {satellite}{flipped}: {_REMEDY}'
         )
     return f'the recorded ratio is {ratio}, not {gear.gear_ratio}: {_REMEDY}'
+
+
+def _as_fraction(found: Estimate) -> str:
+    """Write a ratio as a fraction of small numbers, unless one is near by chance or none is."""
+    ratio = Fraction(found.value).limit_denominator(_MAX_DENOMINATOR)
+    by_chance = ratio.denominator**2 * found.expanded > _CHANCE
+    return _written(found) if by_chance or not _is_near(found, float(ratio)) else str(ratio)
 
 
 def _tooth_pair(mechanism: Mechanism, slope: float, uncertainty: float) -> tuple[int, int] | None:

@@ -152,7 +152,7 @@ def _summary(report: BagReport) -> Row:
         Cell(str(sum(topic.compared for topic in report.topics))),
         _measured(error, unit),
         _measured(tolerance, unit),
-        Cell(next((found.text for found in findings(report)), '')),
+        Cell('' if report.passed else next((found.text for found in findings(report)), '')),
     )
 
 

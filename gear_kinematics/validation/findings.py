@@ -2,15 +2,22 @@
 """All that is wrong with a recording, in sentences."""
 
 import math
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 
 from gear_kinematics.report import document
 from gear_kinematics.report.document import counted, number, printable
+from gear_kinematics.validation.recorder import AFTER, BEFORE, NO_INPUT
 from gear_kinematics.validation.report import BagReport, FieldReport, Finding, TopicReport
 from gear_kinematics.validation.task import QUANTITIES
 
 _FIRST = 'the first at'
+_SKIPPED = {
+    BEFORE: 'the recording had just begun',
+    AFTER: 'the recording ended first',
+    NO_INPUT: 'their input was not recorded',
+}
 
 
 def findings(report: BagReport) -> list[document.Finding]:
@@ -50,7 +57,10 @@ def answer(report: BagReport) -> str:
     if not report.rotor:
         return ''
     outputs = sum(topic.compared for topic in report.topics)
-    text = f'{counted(report.rotor.valid, "input")}, {counted(outputs, "output")} compared'
+    wrong = sum(topic.wrong for topic in report.topics)
+    compared = counted(outputs, 'output')
+    judged = f'{wrong} of {compared} wrong' if wrong else f'{compared} compared'
+    text = f'{counted(report.rotor.valid, "input")}, {judged}'
     if not (worst := worst_field(report)):
         return text
     error, unit = worst.max_error, printable(f' {worst.unit}')
@@ -91,7 +101,7 @@ def faults(report: BagReport) -> Iterator[Finding]:
                 yield Finding(text, topic=name, stamp=field.worst_stamp, when='at')
             for count, fault, stamp in (
                 (field.non_finite, 'not finite', field.first_non_finite),
-                (field.absent, 'in input or output only', field.first_absent),
+                (field.absent, 'without a counterpart', field.first_absent),
             ):
                 if count:
                     text = f'{counted(count, "value")} {fault}'
@@ -109,14 +119,10 @@ def _beyond(field: FieldReport) -> str:
 
 
 def _left_out(report: BagReport) -> Iterator[Finding]:
-    """Yield what the recorder lost, and is therefore not judged."""
-    left_out = [
-        f'{topic.topic} {count} {cause}'
-        for topic in report.topics
-        for cause, count in topic.left_out.items()
-    ]
-    if left_out:
-        yield Finding(f'not judged, as caused by the recorder: {", ".join(left_out)}')
+    """Yield how many messages are not judged, as the recorder lost what they belong to."""
+    left_out = sum((Counter(topic.left_out) for topic in report.topics), Counter[str]())
+    for cause, count in left_out.items():
+        yield Finding(f'{counted(count, "message")} skipped: {_SKIPPED[cause]}')
 
 
 def field_name(topic: TopicReport, field: FieldReport) -> str:

@@ -211,6 +211,7 @@ class OutputTopic:
         self.matcher = Matcher()
         self.missing = Missing()
         self._gear, self._tolerances, self._solver, self._changes = expectation
+        self._wrong = 0
         self._unrecorded = 0  # messages whose input was not recorded
         self._malformed = Occurrences()  # when they were received, as they have no stamp
         self._faults: defaultdict[str, Occurrences] = defaultdict(Occurrences)
@@ -244,8 +245,12 @@ class OutputTopic:
         self._changes.move(samples)
         fields = self._compare(usable[found], samples)
         angle = rotor_angle(samples)
+        wrong = np.zeros(len(samples), bool)
         for errors, field in zip(self.errors, fields, strict=True):
             errors.update(field, samples['stamp'], angle)
+            wrong |= np.abs(field.error) > errors.tolerance
+            wrong[field.one_sided] = True
+        self._wrong += int(np.count_nonzero(wrong))
         self.series.update(samples['stamp'], angle, *fields)
 
     def _adopt_stamps(self, stamps: Array, usable: Array, window: Array) -> None:
@@ -279,6 +284,7 @@ class OutputTopic:
             duplicates=matcher.duplicates,
             out_of_order=matcher.out_of_order.count,
             fields=tuple(errors.report() for errors in self.errors),
+            wrong=self._wrong,
             first_missing=missing.inputs.first,
             first_extra=matcher.extra.first,
             first_out_of_order=matcher.out_of_order.first,

@@ -89,6 +89,8 @@ class TopicReport:
     out_of_order: int
     """Messages with an earlier stamp than the previous one, unless the input restarts there."""
     fields: tuple[FieldReport, ...]
+    wrong: int = 0
+    """Compared messages with a field that does not pass."""
     first_missing: int | None = None
     first_extra: int | None = None
     first_out_of_order: int | None = None

@@ -72,7 +72,7 @@ def test_open_ratio_writes_nothing_unless_it_is_confirmed(positions, tmp_path, c
     csv = write_csv(tmp_path / 'short.csv', **{n: np.repeat(v, 3) for n, v in rows.items()})
     target = tmp_path / 'a.yaml'
     assert main(['commission', str(csv), '-o', str(target)]) == 1
-    assert 'short.csv: finding: The ratio is open: -' in capsys.readouterr().out
+    assert 'short.csv: verdict: failed: The ratio is open: -' in capsys.readouterr().out
     assert main(['commission', str(csv), '-o', str(target), '--quiet']) == 1
     assert 'The ratio is open: -' in capsys.readouterr().out
     assert not target.exists()

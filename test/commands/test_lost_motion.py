@@ -87,7 +87,7 @@ def test_a_limit_decides_the_exit_code_and_is_a_test_case(recording, tmp_path, c
     assert capsys.readouterr().out.startswith('gear.csv: verdict: passed; The hysteresis of ')
     assert main(['lost-motion', str(recording), *limits, '--max-backlash', '60']) == 1
     first, second, *_ = capsys.readouterr().out.splitlines()
-    assert first == 'gear.csv: verdict: failed'
+    assert first.startswith('gear.csv: verdict: failed: The backlash of 68.')
     assert 'hysteresis' in second
     suite = html.fromstring(report.read_bytes()).find('.//testsuite')
     assert (suite.get('tests'), suite.get('failures')) == ('3', '1')

@@ -112,6 +112,7 @@ FAILING = replace(
             OUTPUT,
             messages=4005,
             compared=3997,
+            wrong=12,
             missing=11,
             extra=8,
             duplicates=2,
