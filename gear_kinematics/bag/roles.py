@@ -51,6 +51,7 @@ def find_topics(
     outputs: bool = True,
     poses: bool = True,
     joint: str = '',
+    namespace: str | None = None,
 ) -> Topics:
     """Find the topics by type and name, in any namespace; that of the rotor's topic comes first.
 
@@ -60,6 +61,8 @@ def find_topics(
         outputs: whether the outputs must exist too.
         poses: whether the poses are one of the outputs.
         joint: of the rotor, to choose among several topics.
+        namespace: of the node, to choose among several sets of topics (default: that of a given
+            output).
 
     Returns:
         The names; that of poses that are not recorded at all, nor given, is empty.
@@ -77,10 +80,13 @@ def find_topics(
         if left.get(topic) != (wanted := TOPICS[_PARTS[part]].type):
             raise missing_topic(bag.path, left, topic, wanted)
         del left[topic]
+    if namespace is None and (output := found.get('output') or found.get('poses')):
+        namespace = output.rpartition('/')[0]
     if 'rotor' not in found:
-        found['rotor'] = _find_topic(bag, left, ROTOR_STATE, joint)
+        found['rotor'] = _find_topic(bag, left, ROTOR_STATE, joint, namespace)
         del left[found['rotor']]
-    beside = Topics.beside(found['rotor'])._asdict()
+    chosen = found['rotor'] if namespace is None else f'{namespace}/{ROTOR_STATE}'
+    beside = Topics.beside(chosen)._asdict()
     for part in parts:
         if part not in found:
             same_node = left.get(beside[part]) == TOPICS[_PARTS[part]].type
@@ -182,13 +188,20 @@ def find_beside(bag: Bag, names: Iterable[str], output: str) -> dict[str, str]:
     }
 
 
-def _find_topic(bag: Bag, available: Mapping[str, str], name: str, joint: str = '') -> str:
+def _find_topic(
+    bag: Bag,
+    available: Mapping[str, str],
+    name: str,
+    joint: str = '',
+    namespace: str | None = None,
+) -> str:
     of_type = _of_type(available, TOPICS[name].type)
     candidates = [topic for topic in of_type if base_name(topic) == name] or [
         topic for topic in of_type if base_name(topic) not in TOPICS
     ]
     if not candidates:
         raise missing_topic(bag.path, bag.topics, name, TOPICS[name].type, suggest=False)
+    candidates = [t for t in candidates if t.rpartition('/')[0] == namespace] or candidates
     joints: dict[str, list[str]] = {}
     if len(candidates) > 1 and name == ROTOR_STATE:
         joints = joints_on(bag, candidates[:_PEEKED])

@@ -87,7 +87,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _task(bag: Path, tolerances: Tolerances, options: argparse.Namespace) -> Task:
-    config = arguments.load_config(options, bag)
+    config, node = arguments.load_config(options, bag), options.node
     file = arguments.config_path(options, bag)
     calibration = bags.calibration_path(options, config, bag)
     return Task(
@@ -100,6 +100,7 @@ def _task(bag: Path, tolerances: Tolerances, options: argparse.Namespace) -> Tas
         rotor_topic=options.rotor_topic,
         output_topic=options.output_topic,
         poses_topic=options.poses_topic,
+        namespace=f'/{node.strip("/")}'.rpartition('/')[0] if '/' in node else None,
         calibration=bags.load_calibration(options, config, bag),
         debug=options.debug,
     )

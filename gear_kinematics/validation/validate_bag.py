@@ -3,17 +3,21 @@
 
 import time
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, in_batches
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.bag.roles import (
+    Topics,
     beside,
     find_beside,
     find_encoder_topic,
     find_topics,
+    joints_on,
     only_joint,
 )
 from gear_kinematics.bag.schedule import count_due
@@ -92,6 +96,7 @@ def _judged(
         outputs=not play,
         poses=known,
         joint=joint,
+        namespace=task.namespace,
     )
     encoder = find_encoder_topic(bag, topics.rotor) if task.parameters.absolute else ''
     found = only_joint(bag, topics.rotor, joint) if task.only_joint and joint else joint
@@ -121,10 +126,26 @@ def _judged(
     except BagError as error:
         damage = str(error)
     report = validator.report(damage)
-    if found == joint:
-        return report
-    taken = Finding(f'{found}, the only joint on {topics.rotor}, is taken')
-    return replace(report, findings=(taken, *report.findings))
+    if found != joint:
+        taken = Finding(f'{found}, the only joint on {topics.rotor}, is taken')
+        return replace(report, findings=(taken, *report.findings))
+    if not play and any(topic.wrong for topic in report.topics):
+        for other in joints_on(bag, [topics.rotor])[topics.rotor]:
+            if other != found and _fits(task, bag, topics, other):
+                text = f'the outputs are not those of {found}: they are those of {other}'
+                whose = Finding(f'{text}; repeat with --joint {other}', cause=True)
+                return replace(report, findings=(whose, *report.findings))
+    return report
+
+
+def _fits(task: Task, bag: Bag, topics: Topics, joint: str) -> bool:
+    """Whether the first outputs are those of another joint of the rotor's messages."""
+    parameters = replace(task.parameters, rotor_joint=joint)
+    validator = Validator(replace(task, parameters=parameters), topics)
+    with suppress(BagError):
+        validator.feed(islice(bag.batches(topics), 1))
+    judged = validator.report().topics
+    return bool(judged) and judged[0].compared > 0 and not judged[0].wrong
 
 
 def _lost(task: Task, cause: str) -> BagReport:

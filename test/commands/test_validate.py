@@ -8,9 +8,11 @@ import os
 import re
 import shlex
 import signal
+from itertools import product
 from xml.etree import ElementTree as ET
 
 import jsonschema
+import numpy as np
 import pytest
 from blocked_bags import (
     BAGS,
@@ -24,10 +26,13 @@ from blocked_bags import (
     wait_until,
 )
 from calibrations import calibration
-from shipped_bags import CONFIGS
+from replaying import edited
+from shipped_bags import CONFIGS, JOINT_STATE, ROTOR, TYPES, read_bag
 from terminals import ENVIRONMENT, Terminal
 
+from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.commands.cli import main
+from gear_kinematics.wire.batches import FIELDS
 
 SERVO, SINGLE_TURN = BAGS / 'servo_point_to_point', BAGS / 'single_turn_encoder'
 CONFIG = CONFIGS / 'actuator.yaml'
@@ -66,6 +71,37 @@ def test_what_a_recorder_loses_at_the_edges_is_said_and_fails_in_strict_mode_onl
         done = run('validate', '--strict', *options, 'late', cwd=bags)
         assert done.returncode == 1
         assert '/body_poses: 40 messages missing, the first at ' in done.stdout
+
+
+def test_the_node_chooses_among_sets_of_topics_and_the_joint_of_wrong_outputs_is_named(
+    tmp_path, capsys
+):
+    path = tmp_path / 'arm'
+    with BagWriter(path) as writer:
+        for side, topic in product(('/left', '/right'), TYPES):
+            writer.add_topic(side + topic, TYPES[topic])
+        for topic, received, data in read_bag(SERVO)[:300]:
+            whole = edited(data, JOINT_STATE, with_shoulder) if topic == ROTOR else data
+            writer.write(f'/left{topic}', received, whole)
+            writer.write(f'/right{topic}', received, whole)
+    words = ['validate', str(path), '--joint']
+    assert 'which topic is rotor_state? /left' in refusal(*words, 'elbow', report='.*')
+    assert main([*words, 'elbow', '--node', '/left/gear_state_publisher']) == 0
+    assert main([*words, 'elbow', '--output-topic', '/right/output_state']) == 0
+    capsys.readouterr()
+    assert main([*words, 'shoulder', '--output-topic', '/right/output_state']) == 1
+    assert capsys.readouterr().out.startswith(
+        f'{path}: verdict: failed: the outputs are not those of shoulder: they are those of '
+        'elbow; repeat with --joint elbow; 100 inputs, '
+    )
+
+
+def with_shoulder(message) -> None:
+    """Put another joint before that of the rotor."""
+    message.name = ['shoulder', 'elbow']
+    for field in FIELDS:
+        own = getattr(message, field)
+        setattr(message, field, np.append(0.5 + 0.9 * own, own))
 
 
 @pytest.mark.slow
