@@ -28,7 +28,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     'record': ('record what running nodes hear and publish', 'record monday'),
     'replay': ("publish a bag's rotor topic with its own timing", 'replay logs/monday --loop'),
     'demo': ('play the shipped bag into the live node and validate its outputs', 'demo'),
-    'init': ('list running drivers, and write a parameter file for one', 'init --joint m1'),
+    'init': ('list running drivers, and write a parameter file for one', 'init --ratio -19'),
     'watch': ('show a running node and its driver live', 'watch --text'),
     'describe': (
         'report ratio, mobility, vernier and teeth of a gear',

@@ -7,11 +7,16 @@ from pathlib import Path
 
 from gear_kinematics.bag.roles import joints_on
 from gear_kinematics.commands import ExitCode, arguments, bags
-from gear_kinematics.commands.encoders import add_recordings, ratio_text, say_columns, sources
+from gear_kinematics.commands.encoders import (
+    add_known_ratio,
+    add_recordings,
+    known_ratio,
+    say_columns,
+    sources,
+)
 from gear_kinematics.commands.joints import choose_joint
 from gear_kinematics.commands.output import Console, message_progress, warn_of_shared_memory
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
-from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.commissioning import analysis
 from gear_kinematics.measurement.commissioning.document import actuator_file, document
 from gear_kinematics.measurement.reading import read_encoders
@@ -33,13 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     recording.add_argument('--encoder-joint', metavar='NAME', help='joint of the output')
     gear = arguments.group(parser, 'gear')
-    known = gear.add_mutually_exclusive_group()
-    known.add_argument(
-        '--ratio', type=ratio_text, metavar='I', help='confirm this ratio, such as -19'
-    )
-    known.add_argument(
-        '--teeth', type=_teeth, metavar='ZK/ZS', help='confirm these teeth, e.g. 80/76'
-    )
+    known = add_known_ratio(parser, 'confirm this ratio, such as -19')
     known.add_argument('--check', type=Path, metavar='FILE', help='judge this parameter file')
     gear.add_argument(
         '--zero-here',
@@ -75,7 +74,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     request = analysis.Request(
         rotor=analysis.Channel(options.rotor_topic or '', options.joint or ''),
         output=analysis.Channel(options.encoder_topic or '', options.encoder_joint or ''),
-        ratio=file.gear.gear_ratio if file else _ratio(options),
+        ratio=file.gear.gear_ratio if file else known_ratio(options),
         teeth=options.teeth,
         zero_here=options.zero_here,
         file=file,
@@ -138,20 +137,6 @@ def _hear(request: analysis.Request) -> analysis.Commissioning:
         if stopped():
             raise KeyboardInterrupt
     return live.result()
-
-
-def _ratio(options: argparse.Namespace) -> GearRatio | None:
-    if options.teeth:
-        ring, satellite = options.teeth
-        return GearRatio(-satellite, ring - satellite)
-    return GearRatio.parse(options.ratio) if options.ratio else None
-
-
-def _teeth(text: str) -> tuple[int, int]:
-    ring, _, satellite = text.partition('/')
-    if not (ring.isdecimal() and satellite.isdecimal() and 0 < int(satellite) < int(ring)):
-        raise argparse.ArgumentTypeError(f'must be such as 80/76, not {text}')
-    return int(ring), int(satellite)
 
 
 def _moment(text: str) -> float | str:

@@ -84,6 +84,34 @@ def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
     )
 
 
+def add_known_ratio(
+    parser: argparse.ArgumentParser, purpose: str
+) -> argparse._MutuallyExclusiveGroup:
+    """Add the options `--ratio` and `--teeth`, of which `known_ratio` returns the ratio."""
+    known = arguments.group(parser, 'gear').add_mutually_exclusive_group()
+    known.add_argument('--ratio', type=ratio_text, metavar='I', help=purpose)
+    known.add_argument(
+        '--teeth', type=teeth, metavar='ZK/ZS', help='or that of the teeth of ring and satellite'
+    )
+    return known
+
+
+def known_ratio(options: argparse.Namespace) -> GearRatio | None:
+    """Return the ratio that the options of `add_known_ratio` give, if any."""
+    if options.teeth:
+        ring, satellite = options.teeth
+        return GearRatio(-satellite, ring - satellite)
+    return GearRatio.parse(options.ratio) if options.ratio else None
+
+
+def teeth(text: str) -> tuple[int, int]:
+    """Parse the teeth of ring gear and satellite, such as 80/76."""
+    ring, _, satellite = text.partition('/')
+    if not (ring.isdecimal() and satellite.isdecimal() and 0 < int(satellite) < int(ring)):
+        raise argparse.ArgumentTypeError(f'must be such as 80/76, not {text}')
+    return int(ring), int(satellite)
+
+
 def sources(options: argparse.Namespace) -> Sources:
     """The columns and topics given by the options."""
     names: dict[str, Any] = {role: getattr(options, f'{role}_column', None) for role in _COLUMNS}

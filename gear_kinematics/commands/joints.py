@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The choice of a joint among those of live or recorded messages."""
+"""Questions to the user: which of the joints in live or recorded messages it is."""
 
 import sys
 from collections.abc import Sequence
@@ -9,6 +9,20 @@ from gear_kinematics.measurement.commissioning.analysis import Channel
 from gear_kinematics.report.document import printable
 from gear_kinematics.wire.nearest import listed
 from gear_kinematics.wire.topics import OUTPUT_ENCODER, ROTOR_STATE, TOPICS, base_name
+
+
+def can_ask() -> bool:
+    """Whether a person is at a terminal."""
+    return sys.stdin.isatty() and sys.stdout.isatty()
+
+
+def ask(question: str) -> str:
+    """Return the answer to a question; ValueError where the input ends, as by Ctrl-D."""
+    try:
+        return input(question).strip()
+    except EOFError as error:
+        print()
+        raise ValueError('no answer was given, and nothing is written') from error
 
 
 def choose_joint(
@@ -35,13 +49,13 @@ def choose_joint(
     if len(found) == 1:
         return found[0]
     names = [f'{printable(joint)} on {topic}' for topic, joint in found or joints]
-    if not (found and sys.stdin.isatty() and sys.stdout.isatty()):
+    if not (found and can_ask()):
         option = {'rotor': '--joint', 'output': '--encoder-joint'}[role]
         remedy = f'Repeat with {option}, and its topic if needed: {listed(names)}'
         raise ValueError(f'which joint is the {role}? {remedy if names else "There is none."}')
     for number, name in enumerate(names, 1):
         print(f'{number:3}  {name}')
-    answer = input(f'Number of the joint of the {role}: ')
+    answer = ask(f'Number of the joint of the {role}: ')
     if not (answer.isdecimal() and 1 <= int(answer) <= len(found)):
         raise ValueError(f'{answer!r} is no number from 1 to {len(found)}')
     return found[int(answer) - 1]

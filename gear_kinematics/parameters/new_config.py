@@ -10,6 +10,7 @@ from pathlib import Path
 
 import yaml
 
+from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.parameters.atomic_file import replace_file
 from gear_kinematics.parameters.files import ConfigError
 from gear_kinematics.parameters.node_parameters import NODE, default_config
@@ -17,16 +18,25 @@ from gear_kinematics.share import PACKAGE
 from gear_kinematics.wire.topics import OUTPUT_ENCODER, ROTOR_STATE
 
 
-def new_config(topic: str, joint: str, name: str) -> str:
+def new_config(
+    topic: str, joint: str, name: str, ratio: GearRatio, teeth: tuple[int, int] | None = None
+) -> str:
     """Return the text of a named parameter file for a joint on a driver's topic.
 
-    The joint is an index where joints have no names.
+    The joint is an index where joints have no names. Without the `teeth` of ring and satellite,
+    only the ratio is known of the gear.
     """
+    values = {'rotor_joint': quoted(joint), 'gear_ratio': quoted(str(ratio))}
+    if teeth:
+        values |= zip(('ring_teeth', 'satellite_teeth'), map(str, teeth), strict=True)
+        values['gear_ratio'] = "''"
     # The head of the default file is about the default file.
     body = re.sub(r'\A(#.*\n)+', '', default_config().read_text('utf-8'))
-    body = re.sub(r'(?m)^( +rotor_joint: ).*', lambda match: match[1] + quoted(joint), body)
+    line = rf'(?m)^( +({"|".join(values)}): ).*'
+    body = re.sub(line, lambda match: match[1] + values[match[2]], body)
     return (
-        f'# For the joint {_one_line(joint)} on {_one_line(topic)}. Start the node with\n'
+        f'# For the joint {_one_line(joint)} on {_one_line(topic)}, with the gear ratio {ratio}.\n'
+        '# Start the node with\n'
         f'#     {start_command(topic, name)}\n'
         '# Check the mechanism, rotor_direction and rotor_encoder. SI units: m, rad, s.\n' + body
     )

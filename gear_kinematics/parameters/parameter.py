@@ -1,8 +1,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A parameter of the node: its type, meaning and bounds, and the check of its values."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 
@@ -28,7 +30,11 @@ class Parameter:
         """Return the fault of a value, or None."""
         kind = type(value)
         if kind is not self.kind:
-            return f'{name} must be of type {self.kind.__name__}, not {value!r}'
+            quoted = ''
+            if self.kind is str and kind in {int, float} and math.isfinite(value):
+                texts = dict.fromkeys((str(Fraction(str(value))), str(value)))
+                quoted = f'; quote it: {" or ".join(map(repr, texts))}'
+            return f'{name} must be of type {self.kind.__name__}, not {value!r}{quoted}'
         if isinstance(value, list) and not all(isinstance(item, self.items) for item in value):
             what = 'strings' if self.items is str else 'numbers with a decimal point'
             return f'{name} must be a list of {what}, not {value!r}'

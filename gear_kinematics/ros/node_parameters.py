@@ -34,12 +34,16 @@ def declared(
         ParameterException: if a value has a wrong type, or is refused.
         ValueError: if a parameter that the node does not have was given.
     """
+    # rclpy ignores undeclared parameters, and has no public access to them.
+    given = getattr(node, '_parameter_overrides', {})
+    for name in given.keys() & shared.keys():
+        fault = shared[name].fault(name, given[name].value)
+        if fault and 'quote it' in fault:
+            raise ValueError(fault)
     _declare(node, shared, default)
     branches = node.get_parameter('branches').value
     _declare(node, branch_parameters(branches), default)
     _declare(node, others, default)
-    # rclpy ignores undeclared parameters, and has no public access to them.
-    given = getattr(node, '_parameter_overrides', ())
     if faults := unknown_parameters(given, branches, others):
         raise ValueError('; '.join(faults))
     values = {name: p.value for name, p in node.get_parameters_by_prefix('').items()}

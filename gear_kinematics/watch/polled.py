@@ -55,8 +55,8 @@ class Polled:
             callback_group=NeverExecuted(),
         )
         self.last: Taken | None = None
-        self.rate = 0.0  # messages per second, over the last second
         self.count = 0
+        self._rate: float | None = None  # messages per second, once a second is over
         self._begun = 0  # ns
         self._before = time.monotonic(), 0  # s, and the count then
 
@@ -70,14 +70,21 @@ class Polled:
                     break
                 data, about = taken
                 new.append(Taken(data, about['received_timestamp'] or time.time_ns()))
-        if new:
-            self._begun, self.last = self._begun or new[0].received, new[-1]
-        self.count += len(new)
         now, (before, count) = time.monotonic(), self._before
+        if new and not self.last:  # a second that began before would have too few
+            self._begun, before, count = new[0].received, now, len(new)
+            self._before = before, count
+        self.last = new[-1] if new else self.last
+        self.count += len(new)
         if now >= before + _SPAN:
-            self.rate = (self.count - count) / (now - before)
+            self._rate = (self.count - count) / (now - before)
             self._before = now, self.count
         return new
+
+    @property
+    def rate(self) -> float:
+        """Messages per second, over the last second or since the first message."""
+        return self.mean_rate if self._rate is None else self._rate
 
     @property
     def mean_rate(self) -> float:

@@ -11,14 +11,24 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.parameters import ConfigError, NodeParameters, default_config
 from gear_kinematics.parameters.new_config import new_config, start_command, write_new
 
+HALF = GearRatio.parse('-50.5')
 
-def test_file_is_the_default_one_with_the_joint_of_the_driver(tmp_path):
+
+@pytest.mark.parametrize(
+    ('gear', 'values'),
+    [
+        ([HALF], {'gear_ratio': '-101/2'}),
+        ([GearRatio(-10), (11, 10)], {'ring_teeth': 11, 'satellite_teeth': 10}),
+    ],
+)
+def test_file_is_the_default_one_with_the_joint_of_the_driver_and_the_gear(tmp_path, gear, values):
     path = tmp_path / 'actuator.yaml'
-    write_new(path, new_config('/motor/joint_states', 'm1', path.name))
-    assert NodeParameters.load(path) == replace(NodeParameters.load(), rotor_joint='m1')
+    write_new(path, new_config('/motor/joint_states', 'm1', path.name, *gear))
+    assert NodeParameters.load(path) == replace(NodeParameters.load(), rotor_joint='m1', **values)
     text = path.read_text('utf-8')
     assert text.count("rotor_joint: 'm1'\n") == 1
     default = default_config().read_text('utf-8')
@@ -41,10 +51,11 @@ def test_head_says_how_to_start_the_node(tmp_path, monkeypatch, places, program)
         (tmp_path / place / 'gear_state_publisher').touch(0o755)
     monkeypatch.setenv('PATH', str(tmp_path / 'bin'))
     monkeypatch.setattr(sys, 'executable', str(tmp_path / 'python' / 'python3'))
-    text = new_config('/motor/joint_states', 'm1', 'my actuator.yaml')
+    text = new_config('/motor/joint_states', 'm1', 'my actuator.yaml', HALF)
     head = [line for line in text.splitlines() if line.startswith('#')]
-    assert head[0] == '# For the joint m1 on /motor/joint_states. Start the node with'
-    command = shlex.split(head[1].removeprefix('#'))
+    place = 'm1 on /motor/joint_states, with the gear ratio -101/2'
+    assert head[:2] == [f'# For the joint {place}.', '# Start the node with']
+    command = shlex.split(head[2].removeprefix('#'))
     assert command == [
         *program.format(tmp_path).split(), '--ros-args', '--params-file', 'my actuator.yaml',
         '-r', 'rotor_state:=/motor/joint_states',
@@ -55,14 +66,14 @@ def test_head_says_how_to_start_the_node(tmp_path, monkeypatch, places, program)
 @settings(max_examples=30)
 @given(st.text(min_size=1))
 def test_every_joint_name_survives(joint):
-    text = new_config('/driver', joint, 'a.yaml')
+    text = new_config('/driver', joint, 'a.yaml', HALF)
     values = yaml.safe_load(text)['/**']['ros__parameters']
     assert values['rotor_joint'] == joint
     assert values['ring_teeth'] == 80
 
 
 def test_joint_of_a_driver_without_names_is_a_text():
-    assert "rotor_joint: '0'\n" in new_config('/driver', '0', 'a.yaml')
+    assert "rotor_joint: '0'\n" in new_config('/driver', '0', 'a.yaml', HALF)
 
 
 def test_nothing_is_replaced(tmp_path):

@@ -63,10 +63,21 @@ def test_lines_in_a_pipe_say_what_there_is(tmp_path):
 
 def test_init_lists_the_joints_and_asks_in_a_terminal(tmp_path):
     with Person(tmp_path, 'init', '--topic', MOTOR, '-o', 'mine.yaml') as terminal:
-        terminal.wait_for(rf'{MOTOR}: brake, m1 at [1-9]\d+ Hz')
+        terminal.wait_for(rf'{MOTOR}: brake, m1 at (9\d\d|10\d\d) Hz')
         choice = terminal.wait_for(rf'\d  m1 on {MOTOR}')
         terminal.wait_for('Number of the joint of the rotor: ')
         terminal.type(f'{choice[0]}\n')
-        terminal.wait_for(f'mine.yaml is for the joint m1 on {MOTOR}')
+        terminal.wait_for('Ratio of the gear, .*: ')
+        terminal.type('50.5\n')
+        terminal.wait_for(f'mine.yaml is for the joint m1 on {MOTOR}, with the gear ratio 101/2')
         assert terminal.end() == 0
-        assert "rotor_joint: 'm1'\n" in (tmp_path / 'mine.yaml').read_text('utf-8')
+        assert "gear_ratio: '101/2'\n" in (tmp_path / 'mine.yaml').read_text('utf-8')
+
+
+def test_init_without_an_answer_writes_nothing(tmp_path):
+    with Person(tmp_path, 'init', '--topic', MOTOR, '--joint', 'm1') as terminal:
+        terminal.wait_for('Ratio of the gear, .*: ')
+        terminal.type('\x04')
+        terminal.wait_for('gearkin: no answer was given, and nothing is written')
+        assert terminal.end() == 2
+    assert not list(tmp_path.iterdir())

@@ -441,7 +441,14 @@ JOINTS = (
         (['--joint', 'm11'], JOINTS),
         (['--topic', 'motor/joint_state'], JOINTS),
         (['--topic', '/odd'], JOINTS),
-        (['-o', 'nowhere/a.yaml', '--joint', 'm1'], 'nowhere/a.yaml: No such file or directory'),
+        (
+            ['--joint', 'm1'],
+            'which ratio has the gear? Repeat with it, such as --ratio -19 or --teeth 80/76',
+        ),
+        (
+            ['-o', 'nowhere/a.yaml', '--joint', 'm1', '--ratio', '-19'],
+            'nowhere/a.yaml: No such file or directory',
+        ),
     ],
 )
 def test_init_says_why_it_writes_nothing(listening, capsys, arguments, cause):
@@ -453,8 +460,24 @@ def test_init_says_why_it_writes_nothing(listening, capsys, arguments, cause):
 
 
 def test_init_writes_what_is_named(listening, capsys):
-    assert main(['init', '--topic', '/motor/joint_states', '--joint', 'm1', '-o', 'a b.yaml']) == 0
-    assert NodeParameters.load(listening / 'a b.yaml').rotor_joint == 'm1'
+    assert (
+        main(
+            [
+                'init',
+                '--topic',
+                '/motor/joint_states',
+                '--joint',
+                'm1',
+                '-o',
+                'a b.yaml',
+                '--ratio',
+                '50.5',
+            ]
+        )
+        == 0
+    )
+    written = NodeParameters.load(listening / 'a b.yaml')
+    assert (written.rotor_joint, written.gear_ratio) == ('m1', '101/2')
     command = "gear_state_publisher --ros-args --params-file 'a b.yaml' -r rotor_state:="
     assert f'{command}/motor/joint_states\n' in capsys.readouterr().out
 
