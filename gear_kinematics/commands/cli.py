@@ -1,7 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Kinematics, validation and preload of hypocycloidal gears with Oldham couplings.
+"""Set up, record, prove and measure the output angle of any geared joint.
 
-Exit codes: 0 done, 1 a check failed, 2 unusable input or arguments.
+Of hypocycloidal gears with Oldham couplings, it knows all bodies, forces and the preload as well.
 """
 
 import argparse
@@ -21,54 +21,70 @@ from gear_kinematics.commands.output import closed_pipe_ignored, complain
 from gear_kinematics.share import version
 from gear_kinematics.wire.nearest import among
 
-COMMANDS: dict[str, tuple[str, str]] = {
-    'info': ('list the contents of recordings: topics, rates, joints and gaps', 'info logs/*/'),
-    'validate': ('compare recorded outputs with recomputed ones', 'validate logs/monday'),
-    'compute': ('write a bag with the outputs for a rotor topic', 'compute logs/monday computed'),
-    'record': ('record what running nodes hear and publish', 'record monday'),
-    'replay': ("publish a bag's rotor topic with its own timing", 'replay logs/monday --loop'),
-    'demo': ('play the shipped bag into the live node and validate its outputs', 'demo'),
-    'init': ('list running drivers, and write a parameter file for one', 'init --ratio -19'),
-    'watch': ('show a running node and its driver live', 'watch --text'),
-    'describe': (
-        'report ratio, mobility, vernier and teeth of a gear',
-        'describe --html gear.html',
-    ),
-    'index': (
-        'find the pin holes for a turn of the ring gear or the phase of branch B',
-        'index --degrees 0.15',
-    ),
-    'preload': (
-        'compute preload, torque limits and torque split, and the pin holes for them',
-        'preload --wanted-threshold 1 --branch-stiffness 3000 --shaft-stiffness 1000',
-    ),
-    'lost-motion': (
-        'measure hysteresis, lost motion, stiffness, play and transmission error in recordings',
-        'lost-motion ramps.csv --html ramps.html --max-hysteresis 90',
-    ),
-    'loads': (
-        'check whether the preload held in recordings, and report the forces at every joint',
-        'loads logs/monday --config actuator.yaml',
-    ),
-    'calibrate': (
-        'calibrate the real output from recordings of the encoders at rotor and output',
-        'calibrate encoder/monday encoder/tuesday -o calibration.yaml',
-    ),
-    'commission': (
-        'write a parameter file: ratio, directions, zeros and kind of encoder from a recording',
-        'commission logs/monday -o actuator.yaml',
-    ),
-    'plot': (
-        'draw figures: kinematic scheme, roses, slides, output over time',
-        'plot output output.svg --bag logs/monday',
-    ),
-    'animate': ('animate the mechanism as a GIF', 'animate servo.gif --bag logs/monday'),
-    'urdf': ('print the URDF, and write its meshes', 'urdf --meshes meshes > gear.urdf'),
-    'mjcf': (
-        'write the gear with its springs, play, preload and friction as a model of MuJoCo',
-        'mjcf --measured ramps.json -o gear.xml',
-    ),
+_EXIT_CODES = 'exit codes: 0 done, 1 a check failed, 2 unusable input or arguments'
+GROUPS: dict[str, dict[str, tuple[str, str]]] = {
+    'set up': {
+        'commission': (
+            'find ratio, directions, zeros and kind of encoder, and write a parameter file',
+            'commission logs/monday -o actuator.yaml',
+        ),
+        'init': ('list running drivers, and write a parameter file for one', 'init --ratio -19'),
+        'watch': ('show a running node and its driver live, and home it', 'watch --text'),
+    },
+    'record and prove': {
+        'record': ('record what running nodes hear and publish', 'record monday'),
+        'validate': ('compare recorded outputs with recomputed ones', 'validate logs/monday'),
+        'compute': (
+            'write a bag with the outputs for a rotor topic',
+            'compute logs/monday computed',
+        ),
+        'replay': ("publish a bag's rotor topic with its own timing", 'replay logs/monday --loop'),
+        'info': (
+            'list the contents of recordings: topics, rates, joints and gaps',
+            'info logs/*/',
+        ),
+        'demo': ('play the shipped bag into the live node and validate its outputs', 'demo'),
+    },
+    'measure the real gear': {
+        'calibrate': (
+            'calibrate the real output from recordings of the encoders at rotor and output',
+            'calibrate encoder/monday encoder/tuesday -o calibration.yaml',
+        ),
+        'lost-motion': (
+            'measure hysteresis, lost motion, stiffness, play and transmission error',
+            'lost-motion ramps.csv --html ramps.html --max-hysteresis 90',
+        ),
+        'loads': (
+            'check whether the preload held in recordings, and report the forces at every joint',
+            'loads logs/monday --config actuator.yaml',
+        ),
+        'preload': (
+            'compute preload, torque limits and torque split, and find the pin holes for them',
+            'preload --wanted-threshold 1 --branch-stiffness 3000 --shaft-stiffness 1000',
+        ),
+    },
+    'the mechanism': {
+        'describe': (
+            'report ratio, mobility, vernier and teeth of a gear',
+            'describe --html gear.html',
+        ),
+        'index': (
+            'find the pin holes for a turn of the ring gear (for a preload: gearkin preload)',
+            'index --degrees 0.15',
+        ),
+        'plot': (
+            'draw figures: kinematic scheme, roses, slides, output over time',
+            'plot output output.svg --bag logs/monday',
+        ),
+        'animate': ('animate the mechanism as a GIF', 'animate servo.gif --bag logs/monday'),
+        'urdf': ('print the URDF, and write its meshes', 'urdf --meshes meshes > gear.urdf'),
+        'mjcf': (
+            'write the gear with its springs, play, preload and friction as a model of MuJoCo',
+            'mjcf --measured ramps.json -o gear.xml',
+        ),
+    },
 }
+COMMANDS = {name: about for group in GROUPS.values() for name, about in group.items()}
 """The subcommands, each with its purpose and an example in a line."""
 
 
@@ -136,13 +152,23 @@ def make_parser(*called: str) -> argparse.ArgumentParser:
     Args:
         called: the subcommands whose modules are imported for their arguments; all if empty.
     """
-    parser = _Parser(prog='gearkin', description=__doc__)
+    listed = [
+        f'{title}:\n' + ''.join(f'  {name:12} {about[0]}\n' for name, about in group.items())
+        for title, group in GROUPS.items()
+    ]
+    parser = _Parser(
+        prog='gearkin',
+        description=__doc__,
+        epilog='\n'.join([*listed, _EXIT_CODES]),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument('--version', action='version', version=f'gearkin {version()}')
-    commands = parser.add_subparsers(title='commands', required=True, metavar='COMMAND')
+    commands = parser.add_subparsers(
+        title='commands', required=True, metavar='COMMAND', help='one of those below'
+    )
     for name, (purpose, example) in COMMANDS.items():
         added = commands.add_parser(
             name,
-            help=purpose,
             description=purpose,
             epilog=f'example:\n  gearkin {example}',
             formatter_class=argparse.RawDescriptionHelpFormatter,

@@ -54,13 +54,13 @@ def _of_ramps(figures: GearFigures) -> str:
         return f'{rests} How much of it is play is not known; {cause.value}.'
     if value := backlash.value:
         return f'{rests} Of it, {arc_minutes(value)}′ is play, the rest friction.'
-    low, high = (number(end * ARC_MINUTES) for end in (backlash.low, backlash.high))
+    low, high = (number(end * ARC_MINUTES, 2) for end in (backlash.low, backlash.high))
     said = cause.value
     enough = 2.0 * figures.friction.value if figures.friction else math.inf
     if cause in {Cause.BENT, Cause.SOFT} and enough < _SMALLER * figures.ramps[0].amplitude:
         said = f'to separate them, repeat slow ramps to ±{number(enough, 2)} N·m'
     rest = f'the rest friction; {said}.' if said else 'the rest friction.'
-    return f'{rests} Of it, at least {low}′ and at most {high}′ is play, {rest}'
+    return f'{rests[:-1]}; backlash: {low} to {high}′, {rest}'
 
 
 # Limits

@@ -50,7 +50,7 @@ def rounded(estimate: Estimate, scale: float) -> tuple[str, str]:
 def shown(value: str | float | None) -> str:
     """Write the value of a parameter; None is one that is open."""
     if value is None:
-        return 'open'
+        return 'undetermined'
     return f'{value:.6g}' if isinstance(value, float) else str(value) or "''"
 
 

@@ -46,7 +46,7 @@ class Homing:
     ) -> None:
         """Open the service; `path` is that of the home file, if there is to be one."""
         self._node, self._path, self._input, self._monitor = node, path, rotor_input, monitor
-        monitor.zero_kept = 'not kept: set home_file'
+        monitor.zero_kept = 'lost at restart: set home_file'
         if path:
             monitor.zero_kept = f'kept in {path}' if path.exists() else 'not kept: not homed yet'
         self._seen = 0.0  # time of the last valid input; s of a steady clock

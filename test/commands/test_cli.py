@@ -179,6 +179,11 @@ def test_help_is_everywhere(command):
         make_parser().parse_args(shlex.split(example.partition(' > ')[0]))
         headings = re.findall(r'^(\w.*):$', done.stdout, re.MULTILINE)
         assert headings == [heading for heading in HEADINGS if heading in headings]
+    else:
+        assert 'the output angle of any geared joint' in done.stdout.splitlines()[2]
+        listed = re.findall(r'^  ([a-z][a-z-]+) {2,}\w', done.stdout, re.MULTILINE)
+        assert sorted(listed) == sorted(COMMANDS)
+        assert listed.index('record') < listed.index('calibrate') < listed.index('describe')
 
 
 HEADINGS = (

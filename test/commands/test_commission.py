@@ -72,9 +72,9 @@ def test_open_ratio_writes_nothing_unless_it_is_confirmed(positions, tmp_path, c
     csv = write_csv(tmp_path / 'short.csv', **{n: np.repeat(v, 3) for n, v in rows.items()})
     target = tmp_path / 'a.yaml'
     assert main(['commission', str(csv), '-o', str(target)]) == 1
-    assert 'short.csv: verdict: failed: The ratio is open: -' in capsys.readouterr().out
+    assert 'short.csv: verdict: failed: The ratio is undetermined: -' in capsys.readouterr().out
     assert main(['commission', str(csv), '-o', str(target), '--quiet']) == 1
-    assert 'The ratio is open: -' in capsys.readouterr().out
+    assert 'The ratio is undetermined: -' in capsys.readouterr().out
     assert not target.exists()
     assert main(['commission', str(csv), '-o', str(target), '--teeth', '80/70']) == 1
     assert not target.exists()
@@ -96,7 +96,7 @@ def test_real_gears_over_a_few_degrees_are_confirmed_only(
 ):
     recording, target = str(REAL / f'{name}.csv'), tmp_path / 'a.yaml'
     assert main(['commission', recording, '-o', str(target), *options[:-2]]) == 1
-    assert 'The ratio is open' in capsys.readouterr().out
+    assert 'The ratio is undetermined' in capsys.readouterr().out
     assert main(['commission', recording, '-o', str(target), *options]) == 0
     file = NodeParameters.load(target)
     assert (file.gear_ratio, file.rotor_direction) == (ratio, direction)

@@ -12,6 +12,7 @@ from gear_kinematics.correction.uncertainty import Component, Estimate
 from gear_kinematics.measurement.answer import Limits, answer, remarks
 from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.measured import Measured
+from gear_kinematics.measurement.middle_line import Backlash, Cause
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.wording import rounded
 from gear_kinematics.report.document import Tone
@@ -93,11 +94,13 @@ def test_lost_motion_below_the_friction_is_said_and_not_judged(report_of, amplit
     ],
 )
 def test_the_answer_is_a_sentence_for_who_must_decide(report_of, friction, said):
-    sentence = answer(
-        report_of(angle=creep(GEAR._replace(friction=friction), SMALL), torque=SMALL)
-    )
+    report = report_of(angle=creep(GEAR._replace(friction=friction), SMALL), torque=SMALL)
+    sentence = answer(report)
     assert sentence.startswith('At zero torque the output rests anywhere within ')
     assert said in sentence
+    wide = Backlash(0.0, 0.132 * ARC_MINUTE, Cause.REPEATS)
+    figures = replace(report.figures, backlash=wide)
+    assert '′; backlash: 0 to 0.13′, the rest ' in answer(replace(report, figures=figures))
 
 
 def test_remarks_tell_what_a_single_loop_cannot(report_of):

@@ -67,8 +67,8 @@ def test_overloads_are_found_to_the_sample(tmp_path, config, capsys):
     assert moments == [(4e9, 300, 'a'), (9e9, 1, 'b'), (15e9, 497, 'a')]
     assert found['needed_preload'] == pytest.approx(19 * 0.5 / 2)
     assert found['answer'].startswith(
-        'With the ratio -19 of the given parameters, in 20 s both branches were in mesh but for '
-        '3 moments (0.798 s), the first at 4.000 s; '
+        'With the ratio -19 of the given parameters, in 20 s both branches were in mesh except '
+        '3 intervals (0.798 s), the first at 4.000 s; '
         'the least preload that would have held: 4.75 N·m (set: 3)'
     )
 
@@ -203,7 +203,7 @@ def test_several_recordings_are_computed_in_processes(tmp_path, config, capsys):
     bags = record(folders[0]), record(folders[1], overloads=())
     code = main(['loads', *map(str, bags), '--config', str(config), '--jobs', '2', '--quiet'])
     assert code == 1
-    assert 'but for 3 moments' in capsys.readouterr().out
+    assert 'except 3 intervals' in capsys.readouterr().out
 
 
 def test_spectrum_of_the_example_of_astm_e1049():

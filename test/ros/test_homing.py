@@ -46,7 +46,7 @@ def test_answer_can_be_checked_by_a_person(homing, tmp_path):
     drive(node, [TURNED])
     answer = home(node)
     words = 'the shaft was at 61.5° and is now 0.0° (rotor_zero -20.394 rad, '
-    assert (answer.success, answer.message) == (True, words + 'not kept: set home_file)')
+    assert (answer.success, answer.message) == (True, words + 'lost at restart: set home_file)')
     path = tmp_path / 'home.yaml'
     node = homing(home_file=str(path))
     assert values_of(node)['home file'] == 'not kept: not homed yet'

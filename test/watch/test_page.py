@@ -181,12 +181,14 @@ def test_home_is_asked_called_and_undone_with_the_keyboard(connected):
     expect(answer).to_have_text(
         re.compile(
             r'the shaft was at -?\d+\.\d° and is now 0\.0° \(rotor_zero -?\d+\.\d{3} rad, '
-            r'not kept: set home_file\)\.'
+            r'lost at restart: set home_file\)\.'
         )
     )
     shown = float(re.search(r'rotor_zero (\S+) rad', answer.inner_text())[1])
     assert shown == pytest.approx(rotor_zero(), abs=6e-4) != 0.0
-    expect(reading(connected, 'zero')).to_have_text(f'zero{shown:.3f} radnot kept: set home_file')
+    expect(reading(connected, 'zero')).to_have_text(
+        f'zero{shown:.3f} radlost at restart: set home_file'
+    )
     connected.get_by_role('button', name='Undo').focus()
     connected.keyboard.press('Enter')
     expect(answer).to_have_text('Undone: rotor_zero 0 again.')

@@ -93,7 +93,7 @@ def gear_node(**changes):
         topics.TRANSMISSION_ERROR: JointValue(math.radians(-1.5 / 60.0), None, 0.001),
     }
     values = {'peak to peak (rad)': '0.0002'}
-    kept = {'home file': 'not kept: set home_file'}
+    kept = {'home file': 'lost at restart: set home_file'}
     node = {
         'name': '/left/gear_state_publisher',
         'revision': 7,
@@ -118,7 +118,7 @@ def test_values_are_those_of_the_topics():
         Entry('rotor angle', '7030.000°', '19.528 turns'),
         Entry('output speed', '-9.55 rpm', 'rotor 181.4 rpm'),
         Entry('output rate', '1000 Hz'),
-        Entry('zero', '0.000 rad', 'not kept: set home_file'),
+        Entry('zero', '0.000 rad', 'lost at restart: set home_file'),
         Entry('corrected angle', '-370.250°', '± 30.000″ (95 %)'),
         Entry('transmission error', '-1′ 30.000″', 'peak to peak 0.0002 rad'),
     ]
@@ -250,9 +250,9 @@ def test_zero_that_a_node_has_lost_is_known(zeros, earlier, lost):
     view = view_of(gear_node(**shown))
     [entry] = [entry for entry in view.values if entry.name == 'zero']
     assert view.undo == ('' if earlier is None else f'rotor_zero {earlier:g}')
-    words = 'homed before; the zero is lost: it was 28.969 rad; not kept: set home_file'
+    words = 'homed before; the zero is lost: it was 28.969 rad; lost at restart: set home_file'
     assert entry.tone == ('notable' if lost else '')
-    assert entry.detail == (words if lost else 'not kept: set home_file')
+    assert entry.detail == (words if lost else 'lost at restart: set home_file')
 
 
 def test_question_before_homing_says_where_the_output_is():

@@ -43,13 +43,13 @@ def document(fit: Fit, target: str) -> Document:
     verdict = Verdict.PASS if fit.helps else Verdict.FAIL
     before, after = map(_arc_minutes, (errors.rms_before, errors.rms_after))
     finding = (
-        f'The error falls from {before} to {after} arcmin rms in what was left out of the fit, of '
-        f'which {100.0 * errors.coverage:.1f} % is within the {PERCENT} interval of '
+        f'The error falls from {before} to {after} arcmin rms on held-out data, '
+        f'{100.0 * errors.coverage:.1f} % of it within the {PERCENT} interval of '
         f'± {_arc_minutes(made.half_width)} arcmin. The node takes the file as its parameter '
         'calibration.'
         if fit.helps
         else f'No correction helps: with the best one the error is {after} arcmin rms instead of '
-        f'{before} in what was left out of the fit, of which {100.0 * errors.coverage:.1f} % is '
+        f'{before} on held-out data, {100.0 * errors.coverage:.1f} % of it '
         f'within the {PERCENT} interval. Nothing is written.'
     )
     terms = Table.of_items(

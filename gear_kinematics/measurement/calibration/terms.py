@@ -33,7 +33,7 @@ _BODIES: Mapping[str, tuple[int, str]] = {
 }
 """Multiples that are tried, and their likely cause."""
 _HYSTERESIS = 'play, or friction that winds up the gear'
-_TREND = 'not told by so short a travel; known over the calibrated output angles only'
+_TREND = 'undetermined by so short a travel; known over the calibrated output angles only'
 _CYCLES = 2.0  # cycles of an order that a recording must contain
 _RADII = 2.0 ** (np.arange(-28, 9) / 4.0)
 """Radii of stop operators as shares of the width of the error: 1/128 to 4, 19 % apart."""

@@ -124,10 +124,13 @@ def commission(
         values += _zeros(joints, between, request)
         travel = known.transmission_error_travel
         if delay := transmission_figures(encoders, between, travel).delay:
-            notes.append(f'The stamps of the output are late by {plus_minus(delay, 1e3)} ms.')
+            late = f'are late by {plus_minus(delay, 1e3)} ms' if delay.clear else ''
+            notes.append(f'The stamps of the output {late or "have no measurable delay"}.')
         else:
             advice = 'turn the output there and back three times, at different speeds'
-            values.append(Value('delay', None, f'it is not told from hysteresis; {advice}'))
+            values.append(
+                Value('delay', None, f'it cannot be separated from hysteresis; {advice}')
+            )
     elif ratio and ratio.advice:
         values.append(Value('ratio', None, f'{ratio.plus_minus}; {ratio.advice}'))
     if speed > known.max_rotor_speed:
@@ -147,12 +150,12 @@ def _decided(
             longest.turned, encoders.measured, encoders.seconds, encoders.interpolated
         )
     except RecordingError as error:
-        return None, None, f'The ratio is open: {error}.'
+        return None, None, f'The ratio is undetermined: {error}.'
     seen = f'{ratio.plus_minus} after {math.degrees(longest.travel):.1f}° of the output'
     if not (exact := given or ratio.taken):
         such = ', '.join(map(str, ratio.candidates))
         advice = f'{ratio.advice}, or give the ratio of the nameplate'
-        return ratio, None, f'The ratio is open: {seen}, such as {such}; {advice}.'
+        return ratio, None, f'The ratio is undetermined: {seen}, such as {such}; {advice}.'
     for between in (exact, -exact):
         if ratio.fits(between):
             why = 'which the given one fits' if given else 'the only simple fraction'

@@ -127,7 +127,7 @@ def _answer(loads: RecordedLoads, moments: Sequence[Moment], source: str) -> str
     if moments:
         total = number(sum(moment.duration for moment in moments))
         first = f'the first at {moments[0].start:.3f} s'
-        lost = f' but for {counted(len(moments), "moment")} ({total} s), {first}'
+        lost = f' except {counted(len(moments), "interval")} ({total} s), {first}'
     needed = f'{number(loads.needed_preload)} N·m (set: {number(preload)})'
     held = f'{gear}, in {time} both branches were in mesh{lost}'
     return f'{held}; the least preload that would have held: {needed}.'
