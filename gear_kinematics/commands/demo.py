@@ -2,9 +2,11 @@
 """`gearkin demo`: play the shipped bag into the live node."""
 
 import argparse
+import math
 
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.output import Console, warn_of_shared_memory
+from gear_kinematics.report.document import number
 from gear_kinematics.report.text import render
 from gear_kinematics.validation.document import document
 
@@ -20,6 +22,15 @@ def run(_options: argparse.Namespace) -> ExitCode:
     from gear_kinematics.ros import demo  # noqa: PLC0415
 
     console = Console()
-    report = demo.run(console)
+    report, angle = demo.run(console)
     render(document([report]), console, brief=True)
+    if report.passed:
+        error = number(math.degrees(report.topics[0].fields[0].max_error) * 60.0)
+        console.print(
+            f'The output turned by up to {math.degrees(angle):.1f}°, and each angle that the node '
+            f'published is right within {error}′.\n'
+            'Next: make simulator, and gearkin watch beside it; docs/first_hour.md goes on.',
+            soft_wrap=True,
+            highlight=False,
+        )
     return ExitCode.DONE if report.passed else ExitCode.FAILED

@@ -25,8 +25,12 @@ BAG = 'servo_point_to_point'
 _TOPICS = Topics()
 
 
-def run(console: Console) -> BagReport:
-    """Play the shipped bag's rotor states into a node process and validate its outputs."""
+def run(console: Console) -> tuple[BagReport, float]:
+    """Play the shipped bag's rotor states into a node process and validate its outputs.
+
+    Returns:
+        The report, and the greatest output angle, rad.
+    """
     config = NodeParameters.load()
     with Bag(share_directory() / 'bags' / BAG) as bag:
         count = sum(1 for _ in bag.messages([_TOPICS.rotor]))
@@ -34,7 +38,7 @@ def run(console: Console) -> BagReport:
             f'Playing {BAG}, {count} recorded rotor states, into gear_state_publisher over DDS.',
             soft_wrap=not console.is_terminal,
         )
-        published = _play(console, bag, config, count)
+        published, greatest = _play(console, bag, config, count)
     task = Task(
         Path(BAG),
         config,
@@ -44,12 +48,14 @@ def run(console: Console) -> BagReport:
     # Not the node's own formulas.
     validator = Validator(task, solver=matrix_method.solve)
     validator.feed([published])
-    return validator.report()
+    return validator.report(), greatest
 
 
-def _play(console: Console, bag: Bag, config: NodeParameters, count: int) -> list[Message]:
+def _play(
+    console: Console, bag: Bag, config: NodeParameters, count: int
+) -> tuple[list[Message], float]:
     """Play the bag, and show on a terminal how far it is and where the output is."""
-    received: list[Message] = []
+    received, greatest = list[Message](), 0.0
     reader = JointReader(config.output_joint)
     with Progress(
         TextColumn('{task.description}'),
@@ -70,5 +76,6 @@ def _play(console: Console, bag: Bag, config: NodeParameters, count: int) -> lis
             topic, _, data = message
             if topic == _TOPICS.output:
                 _, _, angle, *_ = reader.read(data)
+                greatest = max(greatest, abs(angle))
                 bars.update(task, description=f'output {math.degrees(angle):9.2f}°')
-    return received
+    return received, greatest

@@ -25,13 +25,17 @@ def test_demo_plays_the_shipped_bag_through_the_live_node_and_agrees():
     """In a pipe, as plain lines; positions to a picometre of the eccentricity."""
     done = gearkin('demo')
     assert (done.returncode, done.stderr) == (0, '')
-    first, verdict = done.stdout.splitlines()
+    first, verdict, learned, following = done.stdout.splitlines()
     assert first.startswith('Playing servo_point_to_point, 3000 recorded rotor states, into ')
     assert re.fullmatch(
         r'servo_point_to_point: verdict: passed; 3000 inputs, 6000 outputs compared, '
         r'largest error (\S+) \S+ \(tolerance (1e-12|1.1e-15) \S+\)',
         verdict,
     )
+    # The shipped trajectory has its peak at 130 rad of the rotor.
+    [angle] = re.findall(r'The output turned by up to (\S+)°, .* right within \S+′\.', learned)
+    assert float(angle) == pytest.approx(math.degrees(130.0 / 19.0), abs=0.05)
+    assert following.startswith('Next: make simulator')
 
 
 @pytest.mark.live
