@@ -25,9 +25,9 @@ from gear_kinematics.parameters import NODE, PARAMETERS, NodeParameters
 from gear_kinematics.parameters.files import require_any
 from gear_kinematics.ros.diagnostics import diagnostic_array, find_faults
 from gear_kinematics.ros.display import Display
+from gear_kinematics.ros.driver_log import DriverLog
 from gear_kinematics.ros.drivers import DEPTH, DriverInput
 from gear_kinematics.ros.homing import Homing, restored
-from gear_kinematics.ros.missing_publisher import MissingPublisher
 from gear_kinematics.ros.node_parameters import declared, fault_of
 from gear_kinematics.ros.outputs import Outputs, PublishingNode, latched
 from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
@@ -93,7 +93,7 @@ class GearStatePublisher(PublishingNode):
                 self, topics.OUTPUT_ENCODER, self._on_output_encoder, self._encoder_monitor
             ),
         )
-        self._missing_publisher = MissingPublisher(self)
+        self._driver_log = DriverLog(self, self._input)
         known = 'bodies unknown'
         if isinstance(self._gear, Mechanism):
             known = f'ring {self._gear.ring_teeth}, satellite {self._gear.satellite_teeth} teeth'
@@ -158,13 +158,15 @@ class GearStatePublisher(PublishingNode):
             self._homing.keep()
 
     def _on_rotor_state(self, data: bytes) -> None:
-        self._monitor.last_input = time.monotonic()
         try:
             answer = self._actuator.rotor(data, self._now)
         except RejectedInputError as rejection:
             self._warn_of(topics.ROTOR_STATE, rejection)
             return
+        self._monitor.last_input = time.monotonic()
         sample, segment, referenced, withheld = answer[:4]
+        if self._driver_log.awaited:
+            self._driver_log.heard(sample)
         self._homing.note(sample, segment)
         if referenced is not self._referenced:
             self._publish_referenced(referenced)
@@ -202,9 +204,10 @@ class GearStatePublisher(PublishingNode):
         return int(self.get_clock().now().nanoseconds)
 
     def _warn_of(self, topic: str, rejection: RejectedInputError) -> None:
-        others = topic == topics.ROTOR_STATE and JOINT_MISSING not in self._actuator.input.rejected
-        if str(rejection) == JOINT_MISSING and others:
-            return  # a message of another driver on a shared topic
+        if topic == topics.ROTOR_STATE:
+            if str(rejection) == JOINT_MISSING not in self._actuator.input.rejected:
+                return  # a message of another driver on a shared topic, and no input
+            self._monitor.last_input = time.monotonic()
         if time.monotonic() >= self._next_warning:
             detail = f': {rejection.detail}' if rejection.detail else ''
             self._warn(f'{topic} rejected: {rejection}{detail}')
@@ -212,9 +215,9 @@ class GearStatePublisher(PublishingNode):
     def _report(self) -> None:
         for driver in self._drivers:
             driver.count_losses()
-        self._missing_publisher.update(self._monitor.drivers)
         self._look_at_graph()
-        now = time.monotonic()
+        now, last = time.monotonic(), self._monitor.last_input
+        self._driver_log.update(self._monitor.drivers, now - (last or now))
         rotor, encoder = self._actuator.input, self._actuator.output_encoder
         errors = self._encoder_monitor.report(encoder, self._actuator.parameters, now)
         received = self._monitor.report(rotor, now, encoder.reference)

@@ -34,6 +34,7 @@ _DISAGREES = 'Check whether an encoder has slipped; then call ~/home, or restart
 _OUTSIDE = 'Check output_range, gear_ratio and the zeros of both encoders.'
 _NOT_COMPARED = 'Check that both drivers run and send often, and that their clocks agree.'
 _SLIPPED = 'Check the couplings and the zeros of both encoders; then call ~/home.'
+_FAR = 0.1  # rad, which no gear errs by
 _TOO_LARGE = 'Check the gear and its encoders, or raise transmission_error_limit.'
 
 
@@ -136,12 +137,13 @@ class InputMonitor(DriverMonitor):
     ) -> Report:
         """Report on an input in the time since the last report, until now."""
         elapsed = now - max(self._reported, self.started)
-        received = rotor_input.received - self._received
+        count = rotor_input.received - rotor_input.of_others
+        received = max(0, count - self._received)  # at first, others may count as rejected
         newly_unsent = self.unsent - self._unsent
         newly_unreferenced = self.unreferenced - self._unreferenced
         self._unreferenced = self.unreferenced
         shared, self._of_others = rotor_input.of_others > self._of_others, rotor_input.of_others
-        self._reported, self._received = now, rotor_input.received
+        self._reported, self._received = now, count
         self._unsent = self.unsent
         rate = received / elapsed if elapsed > 0.0 else 0.0
 
@@ -238,7 +240,9 @@ class EncoderMonitor(DriverMonitor):
             error.peak_to_peak is not None
             and error.peak_to_peak > parameters.transmission_error_limit
         ):
-            warnings.append(Fault(f'peak to peak {error.peak_to_peak:.3g} rad', _TOO_LARGE))
+            far = max(error.peak_to_peak, abs(error.mean or 0.0)) > _FAR
+            advice = _NOT_REFERENCED if far else _TOO_LARGE
+            warnings.append(Fault(f'peak to peak {error.peak_to_peak:.3g} rad', advice))
         if slip := encoder.slip_watch.slip:
             moved, when = math.degrees(slip.angle), slip.stamp / SECOND
             text = f'the output has slipped by {moved:.2f}° against the rotor, at {when:.3f} s'

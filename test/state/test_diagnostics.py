@@ -101,7 +101,7 @@ def test_drivers_of_other_joints_are_no_fault(bench):
     bench.monitor.drivers = 3
     report = bench.report(START + 1.0)
     assert (report.level, report.message) == (OK, 'ok')
-    assert report.values['of others'] == '2'
+    assert (report.values['of others'], report.values['rate (Hz)']) == ('2', '2.0')
     bench.feed(START + 1.5, good(3))  # the others are silent, and one of them sends the joint
     assert bench.report(START + 2.0).message == '3 drivers'
 

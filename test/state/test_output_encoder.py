@@ -134,6 +134,17 @@ def test_report_has_the_figures_of_the_window(bench):
     assert (report.level, report.message) == (WARN, 'peak to peak 0.002 rad')
 
 
+@pytest.mark.parametrize(('off', 'advised'), [(0.0, 'raise transmis'), (2.9, 'call ~/home')])
+def test_only_an_error_of_a_gear_suggests_another_limit(bench, off, advised):
+    for k in range(2):
+        bench.measure(START + k * MS, off + 0.01 * k)
+        bench.turn(START + k * MS, 0.0)
+    report = bench.report()
+    assert (report.level, report.message) == (WARN, 'peak to peak 0.01 rad')
+    assert advised in report.values['advice']
+    assert ('raise' in report.values['advice']) == (off == 0.0)
+
+
 @pytest.mark.parametrize('before', [True, False], ids=['after a report', 'at once'])
 def test_silence_is_a_warning_and_leaves_no_figures(bench, before):
     assert bench.report() is None

@@ -1,0 +1,100 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""What the node logs of the rotor's driver; without DDS."""
+
+import contextlib
+from types import SimpleNamespace
+
+import pytest
+from live import SECOND, rotor_bytes
+
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.ros.driver_log import DriverLog
+from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.wire.joint_reader import RejectedInputError
+from gear_kinematics.wire.topics import JOINT_STATE
+
+MISSING = (
+    '/rotor_state has no publisher; there are: /motor, /wheels; choose one with '
+    '-r rotor_state:=<topic>, or with ros2 launch rotor_state:=<topic>'
+)
+STOPPED = '/rotor_state has stopped: no input for 1.5 s'
+NOW = '/rotor_state is heard now'
+CHECK = 'check whether the drive restarted; then call ~/home'
+AWAY = f'/rotor_state is heard again, but the rotor is {{}}° from where it was: {CHECK}'
+GEARS = {'/output_state', '/transmission_error', '/left/angle', '/left/transmission_error'}
+
+
+class Graph:
+    """Stands in for the node, and the topics around it, two of which drivers publish."""
+
+    def __init__(self, *topics) -> None:
+        self._topics, self.logged = topics, []
+        self.get_logger = lambda: SimpleNamespace(warning=self.log('W'), info=self.log('I'))
+        self.input = RotorInput(NodeParameters.load())
+        self.driver_log = DriverLog(self, self.input)
+
+    def log(self, level):
+        return lambda text: self.logged.append((level, text))
+
+    def resolve_topic_name(self, name):
+        return f'/{name}'
+
+    def get_topic_names_and_types(self):
+        joint_states = [*self._topics, *GEARS, '/rotor_state', '/subscribed']
+        return [('/chatter', ['std_msgs/msg/String']), *((t, [JOINT_STATE]) for t in joint_states)]
+
+    def get_publishers_info_by_topic(self, topic):
+        name = 'gear' if topic in GEARS else 'motor'
+        end = SimpleNamespace(node_name=name, node_namespace=topic.rpartition('/')[0])
+        return [] if topic in {'/rotor_state', '/subscribed'} else [end]
+
+    def hear(self, stamp, position):
+        """Take a message as the node does."""
+        data = rotor_bytes(round(stamp * SECOND), position=[position])
+        sample = self.input.accept(data, lambda: SECOND)
+        if self.driver_log.awaited:
+            self.driver_log.heard(sample)
+
+
+def test_topics_of_drivers_are_named_once_until_one_is_heard():
+    graph = Graph('/wheels', '/motor')
+    for publishers in (0, 0, 0, 1, 0):
+        graph.driver_log.update(publishers, 0.0)
+    assert graph.logged == [('W', MISSING)]
+    graph.hear(1.0, 5.0)
+    assert graph.logged[1:] == [('I', NOW)]
+
+
+def test_nothing_is_said_where_no_driver_has_a_topic():
+    graph = Graph()
+    for _ in range(3):
+        graph.driver_log.update(0, 0.0)
+    assert not graph.logged
+
+
+@pytest.mark.parametrize('publishers', [0, 1], ids=['ended', 'hangs'])
+@pytest.mark.parametrize(
+    ('position', 'said'),
+    [(5.001, ('I', NOW)), (0.0, ('W', AWAY.format(-286))), (500.0, ('W', AWAY.format(28361)))],
+)
+def test_driver_that_stops_and_its_return_are_a_line_each(publishers, position, said):
+    graph = Graph('/wheels')
+    graph.hear(1.0, 5.0)
+    for silence in (0.1, 0.9, 1.5, 2.5, 3.5):
+        graph.driver_log.update(publishers, silence)
+    assert graph.logged == [('W', STOPPED)]
+    for number in range(4):
+        graph.hear(5.0 + 0.001 * number, position)
+    graph.driver_log.update(1, 0.0)
+    assert graph.logged[1:] == [said]
+
+
+def test_jump_of_the_encoder_is_one_warning():
+    graph = Graph()
+    for number in range(9):
+        with contextlib.suppress(RejectedInputError):
+            graph.hear(1.0 + 0.001 * number, 5.0 + 100.0 * (number > 3))
+    graph.driver_log.update(1, 0.0)
+    graph.driver_log.update(1, 0.0)
+    said = f"the rotor's encoder jumped by 100 rad at 1.004 s: {CHECK}"
+    assert graph.logged == [('W', said)]
