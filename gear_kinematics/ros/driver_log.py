@@ -74,8 +74,6 @@ class DriverLog:
             for topic, types in self._node.get_topic_names_and_types()
             if JOINT_STATE in types
         }
-        gears: set[str] = set()
-        for topic, nodes in publishers.items():
-            if base_name(topic) == TRANSMISSION_ERROR:
-                gears |= nodes
+        errors = [topic for topic in publishers if base_name(topic) == TRANSMISSION_ERROR]
+        gears = {gear for topic in errors for gear in publishers[topic]}
         return [topic for topic, nodes in publishers.items() if nodes - gears]

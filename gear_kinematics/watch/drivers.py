@@ -2,7 +2,7 @@
 """The ROS graph: the nodes of gears, and the drivers with their joints and rates."""
 
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -82,10 +82,10 @@ class DriverTopic:
 
 
 class Listener:
-    """Listens to topics of type JointState."""
+    """Listens to topics of type JointState, to all messages or those that are wanted."""
 
-    def __init__(self, node: Node) -> None:
-        self._node = node
+    def __init__(self, node: Node, wanted: Callable[[bytes], bool] = bool) -> None:
+        self._node, self._wanted = node, wanted
         self.heard: dict[str, Polled] = {}
 
     def look(self, found: Iterable[str]) -> None:
@@ -94,7 +94,7 @@ class Listener:
         for topic in self.heard.keys() - found:
             self.heard.pop(topic).close()
         for topic in found - self.heard.keys():
-            self.heard[topic] = Polled(self._node, topic)
+            self.heard[topic] = Polled(self._node, topic, wanted=self._wanted)
 
     def poll(self) -> list[Message]:
         """Take the messages that have arrived."""

@@ -5,6 +5,7 @@ import math
 import time
 from collections.abc import Mapping
 from concurrent import futures
+from contextlib import suppress
 from itertools import count
 from typing import Any, NamedTuple
 
@@ -21,8 +22,8 @@ from gear_kinematics.ros.diagnostics import full_name
 from gear_kinematics.watch.drivers import Graph, Listener
 from gear_kinematics.watch.polled import Polled
 from gear_kinematics.wire import topics
-from gear_kinematics.wire.cdr import SECOND
-from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError
+from gear_kinematics.wire.cdr import SECOND, MalformedMessageError
+from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError, joints_of
 
 _PATIENCE = 2.0  # s: a service that has not found this client yet loses the request
 _ZERO = 'rotor zero (rad)'  # in diagnostics
@@ -77,22 +78,22 @@ class GearNode:
         self.statuses: dict[str, Status] = {}  # diagnostics by subject
         self.homing = node.create_client(Trigger, f'{name}/home')
         self._topics: dict[str, str] = {}  # of what is shown, by names without remapping
-        self._outputs = Listener(node)
+        self._outputs = Listener(node, self._is_own)
         self._diagnostics = Polled(node, topics.DIAGNOSTICS, DiagnosticArray)
         self._client = AsyncParameterClient(node, name)
         self._due = math.inf  # when to ask for the parameters; s of a steady clock
         self._zero = ''  # in diagnostics
         self._publishers: set[bytes] = set()
 
-    def look(self, graph: Graph) -> None:
-        """Find in the graph whether the node runs, and which topics it has."""
+    def look(self, graph: Graph, *, shown: bool) -> None:
+        """Find in the graph whether the node runs, and which topics it has, to be `shown`."""
         self.running = self.name in graph.gears
         if not self.running:
             return
         self.seen = True
         found = graph.outputs_of(self.name)
         self._topics = {name: found[name] for name in _SHOWN if name in found}
-        self._outputs.look(self._topics.values())
+        self._outputs.look(self._topics.values() if shown else ())
         publishers = graph.publishers_of(self.name)
         if publishers - self._publishers:
             self.statuses.clear()
@@ -110,7 +111,8 @@ class GearNode:
                     values = {pair.key: pair.value[:_LONGEST] for pair in status.values}
                     if (zero := values.get(_ZERO, self._zero)) != self._zero:
                         self._zero = zero
-                        self.look(Graph(self._node))  # it may be another process by now
+                        # It may be another process by now.
+                        self.look(Graph(self._node), shown=bool(self._outputs.heard))
                         self._due = 0.0
                     message, at = status.message[:_LONGEST], time.monotonic()
                     self.statuses.pop(subject, None)  # the first is the oldest
@@ -132,6 +134,14 @@ class GearNode:
             return None
         age = (time.time_ns() - output.last.received) / SECOND
         return JointValue(position, velocity, age, output.rate)
+
+    def _is_own(self, data: bytes) -> bool:
+        """Whether a message has the output's joint: other gears may share the topic."""
+        if not (parameters := self.parameters):
+            return True
+        with suppress(MalformedMessageError):
+            return f'{parameters.frame_prefix}{parameters.output_joint}' in joints_of(data)
+        return False
 
     def hears(self, topic: str) -> bool:
         """Whether the node subscribes to a topic."""

@@ -11,6 +11,7 @@ _BODY = """\
 <header class="bar">
 <h1>gearkin watch</h1>
 <span id="node"></span>
+<select id="nodes" aria-label="node" hidden></select>
 <span id="state" class="badge">connecting</span>
 <span id="message"></span>
 <button type="button" id="home" disabled>Home</button>
@@ -56,8 +57,8 @@ def watch_page(server: str) -> str:
 
 
 def drawing(mechanism: Mechanism | None, module: float) -> str:
-    """Write the mechanism as HTML, or why there is no drawing; the module is in m."""
+    """Write the mechanism as HTML, '' if only the ratio is known; the module is in m."""
     if mechanism is None:
-        return '<p>Of this gear only the ratio is known, not its bodies.</p>'
+        return ''
     drawings = Drawings()
     return ''.join(drawings.branches(mechanism, module)) + drawings.shapes()

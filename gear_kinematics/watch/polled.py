@@ -2,6 +2,7 @@
 """Subscriptions that are polled: they cost nothing until someone looks."""
 
 import time
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from rclpy.callback_groups import CallbackGroup
@@ -43,9 +44,10 @@ class Polled:
         message_type: type = JointState,
         reliability: ReliabilityPolicy = ReliabilityPolicy.BEST_EFFORT,
         durability: DurabilityPolicy = DurabilityPolicy.VOLATILE,
+        wanted: Callable[[bytes], bool] = bool,
     ) -> None:
-        """Subscribe."""
-        self._node = node
+        """Subscribe to the messages that are `wanted`."""
+        self._node, self._wanted = node, wanted
         self._subscription = node.create_subscription(
             message_type,
             topic,
@@ -65,11 +67,12 @@ class Polled:
         new: list[Taken] = []
         source = self._subscription
         with source.handle:
-            while len(new) < DEPTH:
+            for _ in range(DEPTH):
                 if (taken := source.handle.take_message(source.msg_type, source.raw)) is None:
                     break
                 data, about = taken
-                new.append(Taken(data, about['received_timestamp'] or time.time_ns()))
+                if self._wanted(data):
+                    new.append(Taken(data, about['received_timestamp'] or time.time_ns()))
         now, (before, count) = time.monotonic(), self._before
         if new and not self.last:  # a second that began before would have too few
             self._begun, before, count = new[0].received, now, len(new)

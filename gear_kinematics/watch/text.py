@@ -52,8 +52,12 @@ def show(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> Non
     def frame(pressed: str) -> tuple[list[Entry], bool]:
         nonlocal asked, asking
         view = watcher.view
+        others = [node.name for node in view.nodes if node.name != view.node]
         if pressed == 'u':
             asked = watcher.ask({'do': 'undo', 'revision': view.revision})
+        elif pressed == 'n' and others:
+            following = next((name for name in others if name > view.node), others[0])
+            asked = watcher.ask({'do': 'show', 'node': following})
         elif (asking and pressed == 'y') or (pressed == 'h' and not view.question):
             # Without a question it is refused, and why.
             asked = watcher.ask({'do': 'home', 'revision': asking or view.revision})
@@ -70,7 +74,8 @@ def show(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> Non
         if asking:
             rows.append(Entry('', f'{view.question}   y yes   n no'))
         undo = f'   u undo: {view.undo} again' if view.undo else ''
-        rows.append(Entry('', '', f'h home{undo}   q end'))
+        more = '   n next node' * bool(others)
+        rows.append(Entry('', '', f'h home{undo}{more}   q end'))
         return rows, pressed != 'q'
 
     _show(console, stopped, frame)

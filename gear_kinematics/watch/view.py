@@ -3,7 +3,7 @@
 
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -16,6 +16,7 @@ from gear_kinematics.state.diagnostics import ERROR, OK, WARN
 from gear_kinematics.watch.drivers import DriverTopic
 from gear_kinematics.watch.gear import GearNode, JointValue, Status
 from gear_kinematics.wire import topics
+from gear_kinematics.wire.nearest import among
 
 Tone = Literal['', 'stale', 'notable', 'bad', 'pass', 'fail', 'unusable']
 """The names are those of the page's classes."""
@@ -50,6 +51,7 @@ class Guide:
 class View:
     """Everything that is shown at a moment."""
 
+    nodes: tuple[Entry, ...] = ()  # all that run, with joint and ratio
     node: str = ''  # full name of the node; '' as long as there was none
     revision: int = 0  # which a command repeats that answers this view
     state: str = 'no node'  # or connecting, connected, no output, ended, or fault
@@ -66,14 +68,21 @@ class View:
     guide: Guide | None = None  # while a gear is commissioned
 
 
-def view_of(gear: GearNode | None) -> View:
-    """Compose the view of the node that was found or asked for."""
-    state, message = _state_of(gear)
-    tone = _TONES.get(state, 'fail')
-    if not gear:
-        return View('', 0, state, tone, message)
-    view = View(gear.name, gear.revision, state, tone, message)
-    if not gear.running:
+def view_of(
+    gear: GearNode | None, gears: Collection[GearNode] = (), *, looking: bool = False
+) -> View:
+    """Compose the view of the node that was found or asked for, beside all that run.
+
+    While `looking`, not all nodes may have been found yet.
+    """
+    nodes = tuple(map(_choice, gears))
+    state, message = _state_of(gear, [node.name for node in nodes])
+    if looking and state == 'no node':
+        state, message = 'connecting', 'Looking for nodes.'
+    view = View(nodes, state=state, tone=_TONES.get(state, 'fail'), message=message)
+    if gear:
+        view = replace(view, node=gear.name, revision=gear.revision)
+    if not (gear and gear.running):
         return view
     statuses = tuple(status_entry(s, time.monotonic()) for s in gear.statuses.values())
     percent = _number(_diagnostic(gear, 'preload', 'margin (% of the preload)'))
@@ -87,19 +96,28 @@ def view_of(gear: GearNode | None) -> View:
     angle, home = _degrees(output.position, 1), _degrees(parameters.home_angle, 1)
     return replace(
         view,
-        rotor=_finite(math.degrees(parameters.gear.gear_ratio.rotor_angle(output.position))),
-        output=_finite(math.degrees(output.position)),
+        rotor=math.degrees(parameters.gear.gear_ratio.rotor_angle(output.position)),
+        output=math.degrees(output.position),
         question=f'The output is at {angle}. Set it to {home}?',
         undo=', '.join(f'{name} {shown(value)}' for name, value in earlier.items()),
     )
 
 
-def _state_of(gear: GearNode | None) -> tuple[str, str]:
+def _choice(gear: GearNode) -> Entry:
+    """Name a node that runs, with its joint and ratio once they are known."""
+    if not (parameters := gear.parameters):
+        return Entry(gear.name, '')
+    joint = parameters.rotor_joint or 'the only joint'
+    return Entry(gear.name, f'{joint}, ratio {parameters.gear.gear_ratio}')
+
+
+def _state_of(gear: GearNode | None, running: Collection[str]) -> tuple[str, str]:
     start = 'gearkin init writes a parameter file for a driver.'
     if gear is None:
         return 'no node', f'No gear_state_publisher is running. {start}'
     if not gear.seen:
-        return 'no node', f'{gear.name} is not running. {start}'
+        hint = among(gear.name, running) if running else ''
+        return 'no node', f'{gear.name} is not running{hint}. {start}'
     if not gear.running:
         return 'ended', f'{gear.name} has ended. Waiting for it to start again.'
     if gear.fault:
@@ -171,15 +189,10 @@ def _diagnostic(gear: GearNode, subject: str, key: str) -> str:
 
 
 def _number(text: str) -> float | None:
-    """Read a number that any node may have sent; None if it is none, or not finite."""
+    """Read a number that any node may have sent; None if it is none that JSON has."""
     with suppress(ValueError):
-        return _finite(float(text))
+        return number if math.isfinite(number := float(text)) else None
     return None
-
-
-def _finite(number: float) -> float | None:
-    """Return a number if JSON has it, else None."""
-    return number if math.isfinite(number) else None
 
 
 def _freshness(joint: JointValue, parameters: NodeParameters) -> Tone:

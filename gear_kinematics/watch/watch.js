@@ -5,8 +5,8 @@
   const RETRY = 1000; // ms
   const SPAN = 10; // s of the curve
   const find = id => document.getElementById(id);
-  const [mechanism, home, question, undo, commission, guide] =
-    ['mechanism', 'home', 'question', 'undo', 'commission', 'guide'].map(find);
+  const [nodes, mechanism, home, question, undo, commission, guide] =
+    ['nodes', 'mechanism', 'home', 'question', 'undo', 'commission', 'guide'].map(find);
   const form = commission.querySelector('form');
   let server;
   let revision = 0; // of what is shown, which commands answer
@@ -61,6 +61,17 @@
     });
   }
 
+  function showNodes(found, node) {
+    const texts = found.map(({name, value}) => `${name}: ${value}`);
+    nodes.hidden = found.every(({name}) => name === node);
+    if (nodes.dataset.texts !== String(texts)) {
+      nodes.replaceChildren(...texts.map((text, k) => new Option(text, found[k].name)));
+      nodes.dataset.texts = texts;
+    }
+    if (nodes.value !== node) nodes.value = node;
+    set(find('node'), nodes.hidden ? texts[0] ?? node : '');
+  }
+
   function showGuide(now) {
     guide.hidden = !now;
     set(form.querySelector('button'), now ? 'Change' : 'Start');
@@ -77,6 +88,7 @@
   }
 
   function show(now) {
+    if (now.revision !== revision) points = []; // they were of another gear or zero
     revision = now.revision;
     if (asked !== revision) question.close();
     if (now.rotor !== null) {
@@ -87,7 +99,7 @@
     find('margin').hidden = now.margin === null;
     find('margin').lastElementChild.value = now.margin ?? 0;
     showState(now.state, now.tone, now.message);
-    set(find('node'), now.node);
+    showNodes(now.nodes, now.node);
     allow(now.question, now.undo);
     showEntries(find('values'), now.values);
     showEntries(find('diagnostics'), now.diagnostics);
@@ -137,6 +149,7 @@
   });
   question.addEventListener('close', () => question.returnValue && send({do: 'home', revision: asked}));
   undo.firstElementChild.addEventListener('click', () => send({do: 'undo'}));
+  nodes.addEventListener('change', () => send({do: 'show', node: nodes.value}));
   form.addEventListener('submit', event => {
     event.preventDefault();
     const [rotor, output] = [form.rotor, form.output].map(select => JSON.parse(select.value));

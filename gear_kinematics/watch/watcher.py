@@ -23,6 +23,7 @@ from gear_kinematics.watch.view import View, view_of
 PERIOD = 1.0 / 30.0
 """Period at which messages are taken, s."""
 _LOOK = 0.5  # s between two looks at the graph
+_SEARCH = 4.0  # s, in which nodes are found that announce themselves every 3 s
 
 
 class Watcher:
@@ -36,6 +37,7 @@ class Watcher:
         self._asked: SimpleQueue[tuple[Any, Future[Answer]]] = SimpleQueue()
         self._ending = Event()
         self._gear: GearNode | None = None
+        self._gears: dict[str, GearNode] = {}
         self._live: LiveCommissioning | None = None
 
     def __enter__(self) -> Self:
@@ -69,7 +71,7 @@ class Watcher:
         return answer
 
     def _watch(self, executor: SingleThreadedExecutor) -> None:
-        next_look = 0.0
+        next_look, found = 0.0, time.monotonic() + _SEARCH
         while not self._ending.is_set():
             end = time.monotonic() + PERIOD
             while (left := end - time.monotonic()) > 0.0:
@@ -90,25 +92,28 @@ class Watcher:
             try:
                 if self._live:
                     self._live.take(messages)
-                if self._gear:
-                    self._gear.poll()
-                view = view_of(self._gear)
+                running = [gear for _, gear in sorted(self._gears.items()) if gear.running]
+                for gear in running:
+                    gear.poll()
+                view = view_of(self._gear, running, looking=end < found)
             except Exception as error:  # noqa: BLE001, a message that no one expected ends nothing
                 message = f'The messages cannot be shown: {type(error).__name__}: {error}'
                 view = View(state='fault', tone='fail', message=message)
             if self._gear and (parameters := self._gear.parameters):
-                gear = parameters.gear
-                self.drawn = gear if isinstance(gear, Mechanism) else None, parameters.module
+                ring = parameters.gear
+                self.drawn = ring if isinstance(ring, Mechanism) else None, parameters.module
             guide = self._live.shown if self._live else None
             self.view = replace(view, drivers=tuple(self._drivers.drivers()), guide=guide)
 
     def _look(self, graph: Graph) -> None:
         self._drivers.look(graph.drivers())
-        wanted = [self._wanted] if self._wanted else graph.gears
-        if wanted and not (self._gear and (self._gear.running or self._gear.name in wanted)):
-            self._gear = GearNode(self._node, wanted[0])
-        if self._gear:
-            self._gear.look(graph)
+        for name in sorted({*graph.gears, self._wanted} - {'', *self._gears}):
+            self._gears[name] = GearNode(self._node, name)
+        first = self._gears[graph.gears[0]] if graph.gears else None
+        going_on = self._gear if self._gear and self._gear.name in graph.gears else None
+        self._gear = self._gears.get(self._wanted) or going_on or first or self._gear
+        for gear in self._gears.values():
+            gear.look(graph, shown=gear is self._gear)
 
     def _ready_gear(self, command: Mapping[str, Any]) -> GearNode:
         """Return the node; raises ValueError if none is ready, or a command answers another."""
@@ -138,6 +143,10 @@ class Watcher:
                 values = live.changes(gear)
                 done = f'{gear.name} has taken {", ".join(values) or "nothing new"}, until it ends'
                 gear.set(values, f'{done}; the file keeps them.', answer)
+            case {'do': 'show', 'node': str(node)} if node in self._gears:
+                self._wanted = node
+                self._look(Graph(self._node))
+                answer.set_result(Answer('', done=True))
             case {'do': 'end'}:
                 self._live = None
                 answer.set_result(Answer('', done=True))

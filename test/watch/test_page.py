@@ -15,6 +15,7 @@ from watching import (
     MOTOR,
     NAMESPACE,
     NODE,
+    OTHER,
     WatcherStandIn,
     driving,
     gearkin,
@@ -194,6 +195,19 @@ def test_home_is_asked_called_and_undone_with_the_keyboard(connected):
     expect(answer).to_have_text('Undone: rotor_zero 0 again.')
     expect(connected.locator('#undo')).not_to_have_text('Undo sets rotor_zero 0 again')
     assert rotor_zero() == 0.0
+
+
+def test_another_node_is_chosen_from_those_that_run(connected, folder):
+    expect, nodes = connected.expect, connected.locator('#nodes')
+    expect(nodes).to_be_hidden()
+    expect(connected.locator('#node')).to_have_text(f'{NODE}: m1, ratio -19')
+    with node(folder, OTHER):
+        expect(nodes.locator('option').last).to_have_text(f'{OTHER}: m1, ratio -19')
+        for name in (OTHER, NODE):
+            nodes.select_option(name)
+            expect(nodes).to_have_value(name)
+            expect(connected.locator('#home')).to_be_enabled()
+    expect(nodes).to_be_hidden()
 
 
 def test_phone_shows_everything_within_its_width(connected):

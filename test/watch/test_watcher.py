@@ -18,8 +18,10 @@ from types import SimpleNamespace
 import pytest
 from blocked_bags import wait_until
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from rclpy.node import Node
 from rclpy.serialization import serialize_message
 from rich.console import Console
+from sensor_msgs.msg import JointState
 from watching import WatcherStandIn
 
 from gear_kinematics.commands.cli import main
@@ -83,6 +85,8 @@ def test_node_of_a_gear_is_known_by_its_topics(own, output):
 
 # Words
 
+NEAREST = '/lefd/gear is not running; did you mean `/left/gear`? there are: /left/gear. gearkin'
+
 
 def gear_node(**changes):
     """Stand in for a node that has told everything."""
@@ -137,8 +141,7 @@ def test_a_gear_at_rest_has_no_negative_zero():
 def test_what_another_node_says_under_its_name_breaks_no_view(margin):
     values = dict.fromkeys(('margin (N·m)', 'margin (% of the preload)'), margin)
     status = Status('preload', 0, 'ok', values, time.monotonic())
-    far = {topics.OUTPUT_STATE: JointValue(1e307, 1e307, 0.001, 1000.0)}
-    view = view_of(gear_node(statuses={'preload': status}, joint=far.get))
+    view = view_of(gear_node(statuses={'preload': status}))
     assert view.margin is None
     json.dumps(asdict(view), allow_nan=False)
 
@@ -195,6 +198,7 @@ def test_values_that_are_out_of_date_say_so_and_move_nothing():
     [
         (None, 'no node', 'No gear_state_publisher is running'),
         (gear_node(seen=False, running=False), 'no node', 'is not running. gearkin init'),
+        (gear_node(seen=False, running=False, name='/lefd/gear'), 'no node', NEAREST),
         (gear_node(running=False), 'ended', 'has ended. Waiting'),
         (gear_node(fault='module must be'), 'fault', 'cannot be used: module must be'),
         (gear_node(parameters=None), 'connecting', ''),
@@ -208,9 +212,74 @@ def test_values_that_are_out_of_date_say_so_and_move_nothing():
     ],
 )
 def test_state_of_the_node_is_told(gear, state, words):
-    view = view_of(gear)
+    others = [gear_node(name='/left/gear')] if words is NEAREST else []
+    view = view_of(gear, others)
     assert view.state == state
     assert words in view.message
+    if state != 'connected':
+        assert (view.output, view.question) == (None, '')
+    if state in {'no node', 'ended'}:  # nothing of what is gone
+        assert view.values == view.diagnostics == ()
+    # Nodes that run may not be found yet.
+    early = view_of(gear, others, looking=True).state
+    assert early == ('connecting' if state == 'no node' else state)
+
+
+def test_nodes_that_run_are_listed_with_joint_and_ratio():
+    parameters = replace(NodeParameters.load(), rotor_joint='m1', gear_ratio='-58/3')
+    nodes = [gear_node(parameters=parameters), gear_node(name='/new', parameters=None)]
+    assert view_of(None, nodes).nodes == (
+        Entry('/left/gear_state_publisher', 'm1, ratio -58/3'),
+        Entry('/new', ''),
+    )
+
+
+def test_another_node_is_shown_when_chosen_or_when_the_first_has_ended(monkeypatch):
+    def node(_, name):
+        gear = gear_node(name=name)
+        gear.look = lambda graph, shown: looked.append((name, name in graph.gears, shown))
+        return gear
+
+    def look(*gears):
+        looked.clear()
+        watcher._look(SimpleNamespace(gears=list(gears), drivers=list))
+        return looked
+
+    looked = []
+    monkeypatch.setattr('gear_kinematics.watch.watcher.GearNode', node)
+    watcher = Watcher()
+    watcher._drivers, watcher._node = SimpleNamespace(look=lambda _: None), None
+    assert look() == []
+    assert look('/b') == [('/b', True, True)]
+    assert look('/a', '/b') == [('/b', True, True), ('/a', True, False)]
+    assert look('/a') == [('/b', False, False), ('/a', True, True)]
+    both = SimpleNamespace(gears=['/a', '/b'], drivers=list)
+    monkeypatch.setattr('gear_kinematics.watch.watcher.Graph', lambda _: both)
+    watcher._do({'do': 'show', 'node': '/b'}, Future())
+    assert watcher._gear.name == '/b'
+    assert look('/a') == [('/b', False, True), ('/a', True, False)]  # it was asked for
+    with pytest.raises(ValueError, match='not possible'):
+        watcher._do({'do': 'show', 'node': '/nobody'}, Future())
+
+
+@pytest.mark.live
+def test_rate_is_that_of_the_joint_on_a_topic_of_several_gears(context):
+    own, other = (JointState(name=[j], position=[float(len(j))]) for j in ('elbow', 'hand'))
+    node = Node('rates', context=context)
+    gear = GearNode(node, '/gear')
+    gear.parameters = replace(NodeParameters.load(), output_joint='elbow')
+    gear._topics = {topics.OUTPUT_STATE: '/rates/output_state'}
+    gear._outputs.look(gear._topics.values())
+    publisher = node.create_publisher(JointState, '/rates/output_state', 100)
+    wait_until(publisher.get_subscription_count, 'the subscription')
+    for message in 20 * [own, other, other]:
+        publisher.publish(message)
+    heard = gear._outputs.heard['/rates/output_state']
+    taken = []
+    wait_until(lambda: taken.extend(heard.take()) or len(taken) >= 20, 'its messages')
+    assert len(taken) == 20
+    assert gear.joint(topics.OUTPUT_STATE).position == own.position[0]
+    node.destroy_node()
 
 
 def test_parameters_of_an_odd_type_are_a_fault():
@@ -324,7 +393,7 @@ def test_names_do_not_reach_the_terminal_raw(capsys):
 
 @pytest.mark.live
 def test_watcher_goes_on_after_what_it_cannot_show(monkeypatch):
-    def broken(*_):
+    def broken(*_, **__):
         raise OverflowError('too odd')
 
     with Watcher() as going_on:
@@ -700,4 +769,4 @@ def test_page_that_is_closed_before_the_answer_leaves_no_trace(watcher, caplog):
 
 
 def test_of_a_ratio_there_is_no_drawing():
-    assert drawing(None, 0.0) == '<p>Of this gear only the ratio is known, not its bodies.</p>'
+    assert drawing(None, 0.0) == ''  # which leaves its room to the curve
