@@ -2,7 +2,7 @@
 """The diagnostics of a node, and checks of its connections in the ROS graph."""
 
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
@@ -42,10 +42,12 @@ def find_faults(
     subscriptions: Iterable[Subscription],
     publishers: Iterable[Publisher],
     exclusive: Collection[str],
+    clash: Callable[[str, str], bool] = lambda _other, _topic: True,
 ) -> GraphFaults:
     """Find incompatible QoS, an error for a node's subscriptions and a warning for its publishers.
 
-    Another publisher on an exclusive topic is a warning, as is another node of the same name.
+    Another publisher on an exclusive topic is a warning if it clashes, given the full name of its
+    node and the topic, as is another node of the same name.
     """
     own_name = node.get_fully_qualified_name()
     errors = [
@@ -69,7 +71,8 @@ def find_faults(
             ]
         if topic in exclusive:
             for other in offers:
-                shared[other].append(topic)
+                if clash(other, topic):
+                    shared[other].append(topic)
     for other, topics in shared.items():
         warnings.append(Fault(f'{other} also publishes {", ".join(topics)}', _TWO_NODES))
     names = node.get_node_names_and_namespaces()

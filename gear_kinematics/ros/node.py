@@ -29,6 +29,7 @@ from gear_kinematics.ros.driver_log import DriverLog
 from gear_kinematics.ros.drivers import DEPTH, DriverInput
 from gear_kinematics.ros.homing import Homing, restored
 from gear_kinematics.ros.node_parameters import declared, fault_of
+from gear_kinematics.ros.other_gears import OtherGears
 from gear_kinematics.ros.outputs import Outputs, PublishingNode, latched
 from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
 from gear_kinematics.state.gear_state import GearState
@@ -94,6 +95,7 @@ class GearStatePublisher(PublishingNode):
             ),
         )
         self._driver_log = DriverLog(self, self._input)
+        self._other_gears = OtherGears(self)
         known = 'bodies unknown'
         if isinstance(self._gear, Mechanism):
             known = f'ring {self._gear.ring_teeth}, satellite {self._gear.satellite_teeth} teeth'
@@ -230,8 +232,9 @@ class GearStatePublisher(PublishingNode):
         """Check the connections with other nodes, and log new faults."""
         known = self._monitor.graph
         inputs = (driver.subscription for driver in self._drivers)
+        publishers = self._outputs.publishers.values()
         found = self._monitor.graph = find_faults(
-            self, inputs, self._outputs.publishers.values(), exclusive=topics.STATE_TOPICS
+            self, inputs, publishers, topics.STATE_TOPICS, self._other_gears.clash
         )
         for fault in (*found.errors, *found.warnings):
             if fault not in (*known.errors, *known.warnings):

@@ -98,3 +98,16 @@ def test_jump_of_the_encoder_is_one_warning():
     graph.driver_log.update(1, 0.0)
     said = f"the rotor's encoder jumped by 100 rad at 1.004 s: {CHECK}"
     assert graph.logged == [('W', said)]
+
+
+@pytest.mark.live
+def test_node_logs_silence_of_its_joint_on_a_shared_topic(make, capfd):
+    node = make('/shared')
+    for stamp, name, position in ((1, 'rotor', 5.0), (2, 'wheel', 0.0), (9, 'rotor', 0.0)):
+        node._on_rotor_state(rotor_bytes(stamp * SECOND, [name], [position]))
+        if name == 'rotor':
+            node._monitor.last_input -= 1.5
+        node._report()
+    said = capfd.readouterr().err
+    assert said.count('/shared/rotor_state has stopped: no input for ') == 2
+    assert said.count('is heard again, but the rotor is -286° from where it was') == 1
