@@ -7,11 +7,11 @@ The default values are in config/actuator.yaml alone.
 import math
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass
 from functools import cache
 from operator import attrgetter
 from pathlib import Path
-from typing import Any, Self, get_origin
+from typing import Any, Self
 
 import yaml
 
@@ -26,7 +26,7 @@ from gear_kinematics.parameters.body_parameters import (
     branch_parameters,
 )
 from gear_kinematics.parameters.files import FILES, ConfigError, default_values, given_parameters
-from gear_kinematics.parameters.parameter import Parameter
+from gear_kinematics.parameters.parameter import Parameter, declared_in, parameter
 from gear_kinematics.parameters.yaml_file import Dumper
 from gear_kinematics.share import share_directory
 from gear_kinematics.wire.nearest import nearest
@@ -38,9 +38,6 @@ _EVERY_NODE = re.compile(r'use_sim_time|start_type_description_service|qos_overr
 """Parameters that every node has and that are ignored here."""
 
 
-def _parameter(*arguments: Any, **named: Any) -> Any:
-    """Declare a field as a parameter; the arguments are those of `Parameter`."""
-    return field(metadata={'parameter': Parameter(*arguments, **named)})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,127 +48,125 @@ class NodeParameters:
     `a.cam_phase`. Values in the bounds can still describe no mechanism: see `gear`.
     """
 
-    ring_teeth: int = _parameter('Teeth of the ring gears, zk', 2, 100_000, read_only=True)
-    satellite_teeth: int = _parameter('Teeth of the satellites, zs', 1, 99_999, read_only=True)
-    eccentricity: float = _parameter('Eccentricity of the cams, m', 1e-6, 1.0, read_only=True)
-    module: float = _parameter(
-        'Module of the teeth, m; for their shape', 1e-6, 0.1, read_only=True
-    )
-    branches: tuple[Branch, ...] = _parameter('Names of the branches', read_only=True)
-    gear_ratio: str = _parameter(
+    ring_teeth: int = parameter('Teeth of the ring gears, zk', 2, 100_000, read_only=True)
+    satellite_teeth: int = parameter('Teeth of the satellites, zs', 1, 99_999, read_only=True)
+    eccentricity: float = parameter('Eccentricity of the cams, m', 1e-6, 1.0, read_only=True)
+    module: float = parameter('Module of the teeth, m; for their shape', 1e-6, 0.1, read_only=True)
+    branches: tuple[Branch, ...] = parameter('Names of the branches', read_only=True)
+    gear_ratio: str = parameter(
         "Exact ratio of a gear that is not ours, such as '-19' or '1457/26'; '': from the teeth",
         read_only=True,
         check=lambda text: text and GearRatio.parse(text),
     )
-    rotor_joint: str = _parameter(
+    rotor_joint: str = parameter(
         "Joint to look up in rotor_state, or its index if joints have no names; '' takes the "
         'only joint'
     )
-    rotor_direction: int = _parameter('1, or -1 if the encoder counts backwards', -1, 1, step=2)
-    rotor_zero: float = _parameter('Encoder position at rotor angle 0, rad', -1e15, 1e15)
-    rotor_encoder: str = _parameter(
+    rotor_direction: int = parameter('1, or -1 if the encoder counts backwards', -1, 1, step=2)
+    rotor_zero: float = parameter('Encoder position at rotor angle 0, rad', -1e15, 1e15)
+    rotor_encoder: str = parameter(
         'Whether the position wraps once a turn', choices=('multi_turn', 'single_turn')
     )
-    rotor_encoder_range: float = _parameter(
+    rotor_encoder_range: float = parameter(
         'Angle after which the position repeats, rad, such as 25.0 for ±12.5 rad; 0: never, or '
         'one turn with single_turn',
         0.0,
         1e9,
         check=checks.encoder_range,
     )
-    rotor_effort_factor: float = _parameter(
+    rotor_effort_factor: float = parameter(
         'Torque of the rotor per unit of the effort in the messages, N·m; not 0',
         *(-1e9, 1e9),
         check=checks.factor,
     )
-    max_rotor_speed: float = _parameter('Greatest speed of the rotor, rad/s', 1e-3, 1e6)
-    max_rotor_acceleration: float = _parameter(
+    max_rotor_speed: float = parameter('Greatest speed of the rotor, rad/s', 1e-3, 1e6)
+    max_rotor_acceleration: float = parameter(
         'Greatest acceleration of the rotor, rad/s²; with the velocities of the messages, it '
         'bounds the turn of a single-turn encoder in a gap',
         1e-3,
         1e9,
     )
-    unreferenced_outputs: str = _parameter(
+    unreferenced_outputs: str = parameter(
         "Whether outputs are published while the rotor's turns are not known",
         choices=('publish', 'withhold'),
     )
-    input_timeout: float = _parameter('Time without input that is an ERROR, s', 1e-3, 1e6)
-    output_joint: str = _parameter('Name of the output shaft in output_state and the URDF')
-    output_range: tuple[float, ...] = _parameter(
+    input_timeout: float = parameter('Time without input that is an ERROR, s', 1e-3, 1e6)
+    output_joint: str = parameter('Name of the output shaft in output_state and the URDF')
+    output_range: tuple[float, ...] = parameter(
         'Least and greatest angle of the output, rad, less than a turn apart: they tell its turn '
         'where the encoder at the output leaves it open; empty: unknown',
         read_only=True,
         items=float,
         check=checks.output_range,
     )
-    output_encoder_joint: str = _parameter(
+    output_encoder_joint: str = parameter(
         "Joint to look up in output_encoder, or its index if joints have no names; '' takes the "
         'only joint'
     )
-    output_encoder_direction: int = _parameter(
+    output_encoder_direction: int = parameter(
         '1, or -1 if the encoder at the output counts backwards', -1, 1, step=2
     )
-    output_encoder_zero: float = _parameter(
+    output_encoder_zero: float = parameter(
         "Position of the output's encoder at output angle 0, rad", -1e15, 1e15
     )
-    output_encoder_reference: str = _parameter(
+    output_encoder_reference: str = parameter(
         "absolute: the encoder at the output finds the rotor's turns; none: it does not",
         choices=('none', 'absolute'),
     )
-    transmission_error_window: float = _parameter(
+    transmission_error_window: float = parameter(
         'Sliding window of the transmission error in diagnostics, s', 0.1, 60.0
     )
-    transmission_error_limit: float = _parameter(
+    transmission_error_limit: float = parameter(
         'Peak-to-peak transmission error above which diagnostics report WARN, rad', 1e-9, 10.0
     )
-    transmission_error_max_gap: float = _parameter(
+    transmission_error_max_gap: float = parameter(
         'Gap between rotor states beyond which nothing is interpolated, s', 1e-6, 10.0
     )
-    transmission_error_travel: float = _parameter(
+    transmission_error_travel: float = parameter(
         'Travel of the output after a reversal until its direction counts, rad', 1e-9, 10.0
     )
-    calibration: str = _parameter(
+    calibration: str = parameter(
         "Path of a calibration file, from which corrected_state is computed; '' takes none"
     )
-    home_angle: float = _parameter('Output angle that ~/home sets, rad', -1e9, 1e9)
-    home_max_speed: float = _parameter(
+    home_angle: float = parameter('Output angle that ~/home sets, rad', -1e9, 1e9)
+    home_max_speed: float = parameter(
         'Speed of the output above which ~/home is refused, rad/s', 0.0, 1e6
     )
-    home_file: str = _parameter(
+    home_file: str = parameter(
         'Path of the file that keeps rotor_zero when ~/home or a change sets it, and from which '
         "it is restored at the start; '': none",
         read_only=True,
     )
-    preload: float = _parameter(
+    preload: float = parameter(
         'Torque T0 by which two branches are braced against each other, N·m at the output; '
         'negative if branch A pushes the output in the negative direction; 0: unknown',
         *(-1e6, 1e6),
         read_only=True,
         least=1e-6,
     )
-    branch_stiffness: tuple[float, ...] = _parameter(
+    branch_stiffness: tuple[float, ...] = parameter(
         'Torsional stiffness of the branches, of both or of each, N·m/rad at the output; 0: rigid',
         read_only=True,
         items=float,
         least=1e-3,
         check=checks.stiffness,
     )
-    shaft_stiffness: float = _parameter(
+    shaft_stiffness: float = parameter(
         'Stiffness between both arms, N·m/rad; 0: rigid', 0.0, 1e12, read_only=True, least=1e-3
     )
     loads: Bodies
     """In ROS, each of its values is a parameter, such as `loads.rotor_inertia`."""
-    frame_prefix: str = _parameter('Prefix of every frame id and joint name')
-    markers_rate: float = _parameter(
+    frame_prefix: str = parameter('Prefix of every frame id and joint name')
+    markers_rate: float = parameter(
         'Highest rate of markers, Hz; 0: none', 0.0, 1000.0, read_only=True
     )
-    meshes: str = _parameter(
+    meshes: str = parameter(
         'URI of the folder with the meshes of the URDF; auto: the installed ones, if they are of '
         'this mechanism; none: simple shapes',
         read_only=True,
         check=meshes.check,
     )
-    executor: str = _parameter(
+    executor: str = parameter(
         'rclpy executor; auto: events if this ROS has it',
         choices=('auto', 'events', 'single_threaded'),
         read_only=True,
@@ -306,16 +301,9 @@ class NodeParameters:
         return self.output_encoder_reference == 'absolute'
 
 
-PARAMETERS: Mapping[str, Parameter] = {
-    each.name: replace(
-        each.metadata['parameter'],
-        kind=list if get_origin(each.type) is tuple else each.type,
-    )
-    for each in fields(NodeParameters)
-    if 'parameter' in each.metadata
-} | LOADS_PARAMETERS
+PARAMETERS: Mapping[str, Parameter] = declared_in(NodeParameters) | LOADS_PARAMETERS
 """All parameters but those of the branches, by name."""
-_LISTS = [name for name, parameter in PARAMETERS.items() if parameter.items is float]
+_LISTS = [name for name, each in PARAMETERS.items() if each.items is float]
 
 
 @cache

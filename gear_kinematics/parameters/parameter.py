@@ -3,9 +3,9 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields, replace
 from fractions import Fraction
-from typing import Any
+from typing import Any, get_origin
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,3 +58,20 @@ class Parameter:
         except ValueError as error:
             return f'{name}: {error}'
         return None
+
+
+def parameter(*arguments: Any, **named: Any) -> Any:
+    """Declare a field of a dataclass as a parameter; the arguments are those of `Parameter`."""
+    return field(metadata={'parameter': Parameter(*arguments, **named)})
+
+
+def declared_in(kind: type) -> dict[str, Parameter]:
+    """List the parameters that a dataclass declares, by name, with the types of its fields."""
+    return {
+        each.name: replace(
+            each.metadata['parameter'],
+            kind=list if get_origin(each.type) is tuple else each.type,
+        )
+        for each in fields(kind)
+        if 'parameter' in each.metadata
+    }

@@ -8,9 +8,9 @@ from rclpy.event_handler import QoSRequestedIncompatibleQoSInfo, SubscriptionEve
 from rclpy.node import Node
 from rclpy.qos import QoSPolicyKind, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
-from rclpy.subscription import Subscription
 from sensor_msgs.msg import JointState
 
+from gear_kinematics.ros.workarounds.private import pass_message_info, with_info
 from gear_kinematics.state.diagnostics import DriverMonitor
 from gear_kinematics.state.losses import Losses
 
@@ -49,8 +49,7 @@ class DriverInput:
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             event_callbacks=SubscriptionEventCallbacks(incompatible_qos=self._on_incompatible),
         )
-        # By the signature of `_take`, rclpy would pass the message alone.
-        self.subscription._callback_type = Subscription.CallbackType.WithMessageInfo  # noqa: SLF001
+        pass_message_info(self.subscription)
 
     def _on_incompatible(self, event: QoSRequestedIncompatibleQoSInfo) -> None:
         name = self.subscription.topic_name
@@ -64,8 +63,7 @@ class DriverInput:
 
     def _take(self, message: Any, about: Any = None) -> None:
         """Take a message, with its number where the middleware and this rclpy count."""
-        if type(message) is tuple:  # the EventsExecutor of rclpy 7.1 passes both as one
-            message, about = message
+        message, about = with_info(message, about)
         self._losses.note(about and about['publication_sequence_number'])
         self._on_message(message)
 

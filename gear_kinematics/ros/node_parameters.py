@@ -15,6 +15,7 @@ from gear_kinematics.parameters import PARAMETERS, default_value
 from gear_kinematics.parameters.body_parameters import branch_parameters
 from gear_kinematics.parameters.node_parameters import unknown_parameters
 from gear_kinematics.parameters.parameter import Parameter as Declaration
+from gear_kinematics.ros.workarounds.private import given_parameters
 
 _QOS_DEPTH = re.compile(r'qos_overrides\..+\.depth')
 _MAX_DEPTH = 2**31 - 1  # messages; the middleware counts them in 32 bits
@@ -35,7 +36,7 @@ def declared(
         ValueError: if a parameter that the node does not have was given.
     """
     # rclpy ignores undeclared parameters, and has no public access to them.
-    given = getattr(node, '_parameter_overrides', {})
+    given = given_parameters(node)
     for name in given.keys() & shared.keys():
         fault = shared[name].fault(name, given[name].value)
         if fault and 'quote it' in fault:

@@ -62,18 +62,18 @@ class GearSimulator(PublishingNode):
             lambda name: (twin.default_value if name in twin.PARAMETERS else shared)(name),
             {name: replace(each, read_only=True) for name, each in PARAMETERS.items()},
         )
-        parameters = NodeParameters.of(values)
-        gear = TwinGear.of(parameters, values, files.get(parameters.calibration))
-        self._model = _make_model(values['model'], gear)
+        parameters, own = NodeParameters.of(values), twin.TwinParameters.of(values)
+        gear = TwinGear.of(parameters, own, files.get(parameters.calibration))
+        self._model = _make_model(own.model, gear)
         self._driver = Driver(
             self._model,
-            max_torque=values['max_rotor_torque'],
-            rotor_counts=values['rotor_counts'],
-            output_counts=values['output_counts'],
-            dropout=values['dropout'],
+            max_torque=own.max_rotor_torque,
+            rotor_counts=own.rotor_counts,
+            output_counts=own.output_counts,
+            dropout=own.dropout,
         )
         self._joint, self._load = parameters.rotor_joint, 0.0
-        self._period = round(SECOND / values['rate'])
+        self._period = round(SECOND / own.rate)
         self._outputs = Outputs(self, lambda _: None, self._note_unsent)
         qos = QoSProfile(depth=DEPTH)
         output = parameters.output_encoder_joint or parameters.output_joint
@@ -93,7 +93,7 @@ class GearSimulator(PublishingNode):
         self.create_service(Trigger, '~/wear', self._wear)
         self.get_logger().info(
             f'simulating a gear of ratio {parameters.gear.gear_ratio} with '
-            f'{type(self._model).__name__} at {values["rate"]:g} Hz'
+            f'{type(self._model).__name__} at {own.rate:g} Hz'
         )
         self._offset = 0
         """Of the node's clock, ns."""

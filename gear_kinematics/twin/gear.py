@@ -27,7 +27,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 
@@ -35,7 +35,7 @@ from gear_kinematics.correction.calibration_file import Calibration, Order
 from gear_kinematics.kinematics import Mechanism, MechanismError
 from gear_kinematics.kinematics.preload import Preload, Stiffness, braced
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.twin.parameters import NODE, PARAMETERS, own_values
+from gear_kinematics.twin.parameters import NODE, PARAMETERS, TwinParameters
 
 _BRACED = 2  # branches, which have a shaft between their arms
 
@@ -135,13 +135,13 @@ class TwinGear:
             ValueError: if a file cannot be used, or the gear cannot be simulated.
         """
         shared = NodeParameters.load(config, node, PARAMETERS)
-        return cls.of(shared, own_values(config, node), calibration)
+        return cls.of(shared, TwinParameters.load(config, node), calibration)
 
     @classmethod
     def of(
-        cls, parameters: NodeParameters, values: dict[str, Any], calibration: Path | None = None
+        cls, parameters: NodeParameters, own: TwinParameters, calibration: Path | None = None
     ) -> Self:
-        """Make a gear from valid parameters; `values` are those of `twin.parameters`."""
+        """Make a gear from valid parameters."""
         gear, file = parameters.gear, calibration or parameters.calibration
         count = len(gear.branches) if isinstance(gear, Mechanism) else 1
         stiffness, preload = parameters.branch_stiffness, parameters.preload
@@ -152,12 +152,12 @@ class TwinGear:
             parameters=parameters,
             stiffness=tuple(each or math.inf for each in (stiffness * count)[:count]),
             shaft_stiffness=parameters.shaft_stiffness or math.inf,
-            interference=-values['play'],
-            play=values['play'],
-            friction=values['friction'],
+            interference=-own.play,
+            play=own.play,
+            friction=own.friction,
             errors=Calibration.load(Path(file), gear).orders if file else (),
-            rotor_damping=values['rotor_damping'],
-            output_inertia=values['output_inertia'],
+            rotor_damping=own.rotor_damping,
+            output_inertia=own.output_inertia,
         )
         if preload:
             braced(parameters.mechanism)

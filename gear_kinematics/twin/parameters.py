@@ -2,55 +2,78 @@
 """The additional parameters of a simulated actuator, and their file."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from gear_kinematics import parameters
 from gear_kinematics.parameters import ConfigError
 from gear_kinematics.parameters.files import default_values, given_parameters
-from gear_kinematics.parameters.parameter import Parameter
+from gear_kinematics.parameters.parameter import Parameter, declared_in, parameter
 from gear_kinematics.share import share_directory
 
 NODE = 'gear_simulator'
 """The default name of the node that simulates an actuator."""
 
-PARAMETERS: Mapping[str, Parameter] = {
-    'play': Parameter(
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TwinParameters:
+    """The parameters that only a simulated actuator has, under their names in ROS."""
+
+    play: float = parameter(
         'Angle between the flanks of each branch, before a preload closes it, rad at the output',
         *(0.0, 1.0),
         read_only=True,
-    ),
-    'friction': Parameter(
+    )
+    friction: float = parameter(
         'Friction of the output against the stator, N·m', 0.0, 1e6, read_only=True
-    ),
-    'rotor_damping': Parameter(
+    )
+    rotor_damping: float = parameter(
         'Torque of the rotor against its speed, N·m·s/rad', 0.0, 1e6, read_only=True
-    ),
-    'output_inertia': Parameter(
+    )
+    output_inertia: float = parameter(
         'Inertia of the output shaft and of what it moves, kg·m²', 1e-9, 1e9, read_only=True
-    ),
-    'model': Parameter(
+    )
+    model: str = parameter(
         'What computes the motion; auto: mujoco if it is installed',
         choices=('auto', 'mujoco', 'fast'),
-        kind=str,
         read_only=True,
-    ),
-    'rate': Parameter('Rate of rotor_state and output_encoder, Hz', 1.0, 5000.0, read_only=True),
-    'max_rotor_torque': Parameter(
+    )
+    rate: float = parameter(
+        'Rate of rotor_state and output_encoder, Hz', 1.0, 5000.0, read_only=True
+    )
+    max_rotor_torque: float = parameter(
         'Greatest torque of the motor, N·m; max_rotor_speed bounds what is commanded, too',
         *(0.0, 1e6),
         read_only=True,
-    ),
-    'rotor_counts': Parameter(
-        'Steps per turn of the encoder of the rotor; 0: exact', 0, 2**31, kind=int, read_only=True
-    ),
-    'output_counts': Parameter(
-        "Steps per turn of the output's encoder; 0: exact", 0, 2**31, kind=int, read_only=True
-    ),
-    'dropout': Parameter('Share of the messages that are not sent', 0.0, 1.0, read_only=True),
-    'wear': Parameter('What ~/wear takes off the flanks, rad at the output', 0.0, 1.0),
-}
-"""Parameters that only a simulated actuator has, by their names in ROS."""
+    )
+    rotor_counts: int = parameter(
+        'Steps per turn of the encoder of the rotor; 0: exact', 0, 2**31, read_only=True
+    )
+    output_counts: int = parameter(
+        "Steps per turn of the output's encoder; 0: exact", 0, 2**31, read_only=True
+    )
+    dropout: float = parameter('Share of the messages that are not sent', 0.0, 1.0, read_only=True)
+    wear: float = parameter('What ~/wear takes off the flanks, rad at the output', 0.0, 1.0)
+
+    @classmethod
+    def load(cls, path: Path, node: str) -> Self:
+        """Read those of a node from a file; raises ConfigError if a value is invalid."""
+        given = given_parameters(path, node)
+        known = (name for name in PARAMETERS if name in given)
+        faults = filter(None, (PARAMETERS[name].fault(name, given[name]) for name in known))
+        if text := '; '.join(faults):
+            raise ConfigError(f'{path}: {text}')
+        return cls.of(given)
+
+    @classmethod
+    def of(cls, values: Mapping[str, Any]) -> Self:
+        """Create them from valid values by names in ROS; others have their defaults."""
+        return cls(**{name: values.get(name, default_value(name)) for name in PARAMETERS})
+
+
+PARAMETERS: Mapping[str, Parameter] = declared_in(TwinParameters)
+"""The same by name."""
 
 
 def default_config() -> Path:
@@ -62,13 +85,3 @@ def default_value(name: str) -> Any:
     """Default from config/simulated_actuator.yaml, or else that of gear_state_publisher."""
     values = default_values(default_config(), NODE)
     return values[name] if name in values else parameters.default_value(name)
-
-
-def own_values(path: Path, node: str) -> dict[str, Any]:
-    """Read the values of `PARAMETERS` for a node; raises ConfigError if a value is invalid."""
-    given = given_parameters(path, node)
-    values = {name: given.get(name, default_value(name)) for name in PARAMETERS}
-    faults = (PARAMETERS[name].fault(name, value) for name, value in values.items())
-    if found := [fault for fault in faults if fault]:
-        raise ConfigError(f'{path}: {"; ".join(found)}')
-    return values

@@ -26,6 +26,7 @@ from gear_kinematics.twin.fast_model import FastModel
 from gear_kinematics.twin.gear import TwinGear
 from gear_kinematics.twin.measured import measured
 from gear_kinematics.twin.model import Model
+from gear_kinematics.twin.parameters import TwinParameters
 
 PRINTED = 'dual_encoders/transmission_stiffness_sspg.csv'
 READ_PRINTED = {'ratio': '36/5', 'on_rotor': True}
@@ -73,7 +74,9 @@ def real_gear(
     report.write_text(json.dumps(document([found], None, Limits()).data), 'utf-8')
     gear = TwinGear.of(
         NodeParameters.of({'loads.rotor_inertia': 1e-5, 'branch_stiffness': [1e3]}),
-        {'play': 0.0, 'friction': 0.0, 'rotor_damping': 0.0, 'output_inertia': 1e-3},
+        TwinParameters.of(
+            {'play': 0.0, 'friction': 0.0, 'rotor_damping': 0.0, 'output_inertia': 1e-3}
+        ),
     )
     gear, notes = measured(gear, [report])
     assert notes == []

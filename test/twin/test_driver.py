@@ -9,6 +9,7 @@ from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.twin.driver import Command, Driver
 from gear_kinematics.twin.fast_model import FastModel
 from gear_kinematics.twin.gear import TwinGear
+from gear_kinematics.twin.parameters import TwinParameters
 
 VALUES = {'play': 1e-3, 'friction': 0.05, 'rotor_damping': 0.0, 'output_inertia': 0.005}
 SHARED = {'preload': 1.5, 'branch_stiffness': [3000.0], 'loads.rotor_inertia': 1e-5}
@@ -17,7 +18,7 @@ FREE = Command(None, None, None)
 
 
 def driver(shared=(), *, max_torque=0.5, **options) -> Driver:
-    gear = TwinGear.of(NodeParameters.of({**SHARED, **dict(shared)}), VALUES)
+    gear = TwinGear.of(NodeParameters.of({**SHARED, **dict(shared)}), TwinParameters.of(VALUES))
     return Driver(FastModel(gear), max_torque=max_torque, **options)
 
 
@@ -50,7 +51,7 @@ def test_position_is_reached_and_held_against_a_load(direction):
 @pytest.mark.parametrize('heavy', [1.0, 200.0])
 def test_step_overshoots_little_with_any_inertia_of_the_output(heavy):
     values = {**VALUES, 'output_inertia': heavy * 0.005}
-    gear = TwinGear.of(NodeParameters.of(SHARED), values)
+    gear = TwinGear.of(NodeParameters.of(SHARED), TwinParameters.of(values))
     stepped = Driver(FastModel(gear), max_torque=0.5)
     stepped.follow(Command(5.0, None, None))
     reached = []

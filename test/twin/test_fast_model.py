@@ -16,6 +16,7 @@ from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.twin.fast_model import FastModel
 from gear_kinematics.twin.gear import TwinGear
 from gear_kinematics.twin.model import Model
+from gear_kinematics.twin.parameters import TwinParameters
 
 VALUES = {'play': 1e-3, 'friction': 0.0, 'rotor_damping': 0.0, 'output_inertia': 0.005}
 SHARED = {
@@ -28,7 +29,8 @@ RATIO = -19.0
 
 
 def gear(shared=(), **values) -> TwinGear:
-    return TwinGear.of(NodeParameters.of({**SHARED, **dict(shared)}), {**VALUES, **values})
+    own = TwinParameters.of({**VALUES, **values})
+    return TwinGear.of(NodeParameters.of({**SHARED, **dict(shared)}), own)
 
 
 def branch(**values) -> TwinGear:
