@@ -26,7 +26,7 @@ from gear_kinematics.parameters.body_parameters import (
     branch_parameters,
 )
 from gear_kinematics.parameters.files import FILES, ConfigError, default_values, given_parameters
-from gear_kinematics.parameters.parameter import Parameter, declared_in, parameter
+from gear_kinematics.parameters.parameter import Parameter, declared_in, faults_of, parameter
 from gear_kinematics.parameters.yaml_file import Dumper
 from gear_kinematics.share import share_directory
 from gear_kinematics.wire.nearest import nearest
@@ -36,8 +36,6 @@ NODE = 'gear_state_publisher'
 
 _EVERY_NODE = re.compile(r'use_sim_time|start_type_description_service|qos_overrides\..*')
 """Parameters that every node has and that are ignored here."""
-
-
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -191,9 +189,9 @@ class NodeParameters:
         """
         path = path or default_config()
         given = given_parameters(path, node)
-        if not (faults := _faults(given, PARAMETERS)):
+        if not (faults := faults_of(given, PARAMETERS)):
             branches = given.get('branches', default_value('branches'))
-            faults = _faults(given, branch_parameters(branches))
+            faults = faults_of(given, branch_parameters(branches))
             faults += unknown_parameters(given, branches, others)
         if faults:
             raise ConfigError(f'{path}: {"; ".join(faults)}')
@@ -330,8 +328,3 @@ def unknown_parameters(
         hint = f'; `{branch}` is not in `branches`' if of_a_branch else nearest(name, known)
         faults.append(f'unknown parameter `{name}`{hint}')
     return [*faults, f'there are: {", ".join(known)}'] if faults else []
-
-
-def _faults(given: Mapping[str, Any], known: Mapping[str, Parameter]) -> list[str]:
-    checked = (known[name].fault(name, given[name]) for name in known if name in given)
-    return [fault for fault in checked if fault]

@@ -9,7 +9,7 @@ from typing import Any, Self
 from gear_kinematics import parameters
 from gear_kinematics.parameters import ConfigError
 from gear_kinematics.parameters.files import default_values, given_parameters
-from gear_kinematics.parameters.parameter import Parameter, declared_in, parameter
+from gear_kinematics.parameters.parameter import Parameter, declared_in, faults_of, parameter
 from gear_kinematics.share import share_directory
 
 NODE = 'gear_simulator'
@@ -60,10 +60,8 @@ class TwinParameters:
     def load(cls, path: Path, node: str) -> Self:
         """Read those of a node from a file; raises ConfigError if a value is invalid."""
         given = given_parameters(path, node)
-        known = (name for name in PARAMETERS if name in given)
-        faults = filter(None, (PARAMETERS[name].fault(name, given[name]) for name in known))
-        if text := '; '.join(faults):
-            raise ConfigError(f'{path}: {text}')
+        if faults := faults_of(given, PARAMETERS):
+            raise ConfigError(f'{path}: {"; ".join(faults)}')
         return cls.of(given)
 
     @classmethod
