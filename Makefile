@@ -82,6 +82,7 @@ fuzz: $(VENV)/test.stamp $(VENV)/fuzz.stamp ## Fuzz messages and bags for FUZZ_S
 lock: ## Pin the newest versions (needs uv)
 	cd requirements && $(LOCK) --output-file demo.txt demo.in
 	cd requirements && $(LOCK) --constraint demo.txt --output-file test.txt test.in
+	cd requirements && $(LOCK) --output-file kilted.txt kilted.in
 	cd requirements && $(LOCK) --output-file fuzz.txt fuzz.in
 
 clean: ## Remove everything that was generated

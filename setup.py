@@ -73,6 +73,12 @@ setup(
             *ROSBAGS,
             *WATCH,
         ],
+        'ros-kilted': [
+            'ros-kilted-rclpy[fastrtps]==9.1.2',
+            'ros-kilted-common-interfaces==5.5.1',
+            *ROSBAGS,
+            *WATCH,
+        ],
         'watch': WATCH,
         # `gearkin validate --html`; rosdep has no key for it.
         'html': ['plotly>=5.24'],

@@ -5,6 +5,8 @@ import atexit
 import os
 import signal
 import socket
+from contextlib import suppress
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 
@@ -33,9 +35,11 @@ def _free_domain() -> int:
 # Before anything else is imported: middleware reads the environment once.
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 os.environ['ROS_DOMAIN_ID'] = str(_free_domain())
-os.environ['FASTRTPS_DEFAULT_PROFILES_FILE'] = str(
-    Path(__file__).with_name('support') / 'discovery.xml'
-)
+with suppress(PackageNotFoundError):
+    # From Kilted on, Fast DDS warns of its former name.
+    name = 'FASTRTPS' if int(version('rclpy').split('.')[0]) < 9 else 'FASTDDS'
+    PROFILES = f'{name}_DEFAULT_PROFILES_FILE'
+    os.environ[PROFILES] = str(Path(__file__).with_name('support') / 'discovery.xml')
 # Threads of linear algebra that wait for a busy processor take ten times as long as one alone.
 os.environ['OPENBLAS_NUM_THREADS'] = '1'
 

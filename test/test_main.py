@@ -24,6 +24,7 @@ from blocked_bags import (
 )
 from mounts import with_mounts
 
+from gear_kinematics.commands.extras import remedy
 from gear_kinematics.ros.workarounds import shared_memory
 from gear_kinematics.ros.workarounds.shared_memory import check_shared_memory
 
@@ -292,6 +293,13 @@ def test_without_ros_or_its_messages_there_is_one_line_that_names_the_extra(prog
         f'{program}: {package} is not installed: source a ROS 2 installation, or '
         "pip install 'gear_kinematics[ros]'\n"
     )
+
+
+def test_without_middleware_there_is_one_line_that_names_the_extra():
+    """The wheels of rclpy bring none by themselves; these are the words of their import."""
+    words = 'librmw_fastrtps_cpp.so: cannot open shared object file: No such file or directory'
+    line = remedy(ImportError(f'{words}\nThe C extension could not be imported'))
+    assert "pip install 'ros-jazzy-rclpy[fastrtps]'" in line
 
 
 # Shared memory.

@@ -27,6 +27,9 @@ def remedy(error: ImportError) -> str:
     """Describe in one line what is missing and how to install it."""
     package = (error.name or '').partition('.')[0]
     extra = EXTRAS.get(package) or ('ros' if package.endswith(_MESSAGES) else None)
+    if 'librmw_' in str(error):
+        wheel = 'ros-jazzy-rclpy[fastrtps]'  # or that of another distribution
+        return f"rclpy has no middleware: install it with the extra, as in pip install '{wheel}'"
     if not (isinstance(error, ModuleNotFoundError) and extra):
         return ' '.join(str(error).split())
     instead = 'source a ROS 2 installation, or ' if extra == 'ros' else ''

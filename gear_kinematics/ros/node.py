@@ -106,14 +106,6 @@ class GearStatePublisher(PublishingNode):
             f'on {self._rotor_driver.subscription.topic_name}'
         )
 
-    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
-        """Set parameters; the reason of a refusal always names the parameter."""
-        result = super().set_parameters_atomically(parameter_list)
-        names = ', '.join(parameter.name for parameter in parameter_list)
-        if not result.successful and names not in result.reason:
-            result.reason = f'{names}: {result.reason}'
-        return result
-
     def _note_subscribers(self, _event: object = None) -> None:
         """Let only the outputs with subscribers be computed."""
         self._actuator.choose(self._outputs.subscribed(self._actuator.topics))

@@ -1,13 +1,16 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The outputs of a node: its publishers, by topic, and its warnings."""
 
+import re
 import time
 from collections.abc import Callable, Iterable
 
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks, QoSPublisherMatchedInfo
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.qos_overriding_options import QoSOverridingOptions
@@ -90,6 +93,16 @@ class PublishingNode(Node):  # type: ignore[misc]  # rclpy has no types
     _outputs: Outputs
     _next_warning = 0.0
     """s of a steady clock. The logger's own throttle takes 0.3 ms for each text that it drops."""
+
+    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
+        """Set parameters; the reason of a refusal names the parameter and types."""
+        result = super().set_parameters_atomically(parameter_list)
+        names = ', '.join(parameter.name for parameter in parameter_list)
+        if result.reason.startswith('Wrong parameter type'):  # rclpy 9.1 numbers them
+            result.reason = re.sub(r'\d+', lambda n: Parameter.Type(int(n[0])).name, result.reason)
+        if not result.successful and names not in result.reason:
+            result.reason = f'{names}: {result.reason}'
+        return result
 
     def wait_for_delivery(self, timeout: float) -> None:
         """Wait until reliable subscribers have received all outputs; `timeout` is in s."""

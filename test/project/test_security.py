@@ -314,7 +314,8 @@ def downloaded(tmp_path) -> Path:
 def test_nothing_in_the_current_folder_is_run_or_obeyed(
     arguments, downloaded, tmp_path, monkeypatch
 ):
-    monkeypatch.delenv('FASTRTPS_DEFAULT_PROFILES_FILE')
+    for library in ('FASTRTPS', 'FASTDDS'):
+        monkeypatch.delenv(f'{library}_DEFAULT_PROFILES_FILE', raising=False)
     program = tmp_path / 'gearkin'  # a script, beside which Python looks and not in its folder
     program.write_text(f"if __name__ == '__main__': {GEARKIN}")
     done = finished([sys.executable, program, *arguments], cwd=downloaded)

@@ -42,7 +42,7 @@ bool REMOVE_ENTITY(void *graph, const void *gid, bool reader)
 /* What rmw_fastrtps does first when it destroys a participant. */
 int SET_LISTENER(void *participant, void *listener)
 {
-    int (*real)(void *, void *) = REAL("libfastrtps.so.2.14", SET_LISTENER);
+    int (*real)(void *, void *) = REAL("librmw_fastrtps_cpp.so", SET_LISTENER);
     for (int milliseconds = 0; !running && milliseconds < 1000; ++milliseconds)
         usleep(1000);
     return real(participant, listener);
