@@ -1,6 +1,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Show the mechanism: gear_state_publisher, robot_state_publisher and RViz."""
 
+from pathlib import Path
+
 from launch import LaunchContext, LaunchDescription
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription, OpaqueFunction
 from launch.conditions import IfCondition
@@ -9,7 +11,7 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackagePrefix, FindPackageShare
 
-from gear_kinematics.ros.launch_arguments import node_arguments
+from gear_kinematics.ros.launch_arguments import node_arguments, reads_description_topic
 
 
 def check(context: LaunchContext) -> None:
@@ -22,10 +24,15 @@ def check(context: LaunchContext) -> None:
 def start_viewers(context: LaunchContext) -> list[Node]:
     """Describe the nodes, with the parameters of gear_state_publisher."""
     parameters = node_arguments(context.launch_configurations).parameters
-    # robot_state_publisher needs the URDF as a parameter, and publishes it again. That topic is
-    # renamed below, so that it does not collide with the node's.
-    description = parameters.urdf()
     fixed_frame = f'{parameters.frame_prefix}stator'
+    remappings = [('joint_states', 'mechanism_joint_states')]
+    share = FindPackageShare('robot_state_publisher').perform(context)
+    if reads_description_topic(Path(share)):
+        description = {'use_robot_description_topic': True}
+    else:
+        description = {'robot_description': ParameterValue(parameters.urdf(), value_type=str)}
+        # It publishes the URDF again, which must not collide with the topic of the node.
+        remappings.append(('robot_description', '~/robot_description'))
     return [
         Node(
             package='robot_state_publisher',
@@ -33,16 +40,13 @@ def start_viewers(context: LaunchContext) -> list[Node]:
             namespace=LaunchConfiguration('namespace'),
             parameters=[
                 {
-                    'robot_description': ParameterValue(description, value_type=str),
+                    **description,
                     'publish_frequency': ParameterValue(
                         LaunchConfiguration('publish_frequency'), value_type=float
                     ),
                 }
             ],
-            remappings=[
-                ('joint_states', 'mechanism_joint_states'),
-                ('robot_description', '~/robot_description'),
-            ],
+            remappings=remappings,
             output='screen',
         ),
         Node(

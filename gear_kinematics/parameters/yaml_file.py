@@ -26,6 +26,8 @@ class Loader(getattr(yaml, 'CSafeLoader', yaml.SafeLoader)):  # type: ignore[mis
     """
     aliases: ClassVar[bool] = False
     """Whether aliases are allowed: text written from their values can expand without end."""
+    tags: ClassVar[bool] = False
+    """Whether tags other than !!str are allowed: ROS before Lyrical ignores them."""
 
     def flatten_mapping(self, node: yaml.MappingNode) -> None:
         """Leave merge keys (`<<`), which can expand without end, to be refused as unknown."""
@@ -97,8 +99,12 @@ def load_yaml(text: str, loader: type[Loader] = Loader) -> Any:
             raise ValueError(f'more than {loader.max_events} values')
         if depth > _MAX_DEPTH:
             raise ValueError(f'nested deeper than {_MAX_DEPTH} levels')
+        tag, problem = getattr(event, 'tag', None), ''
         if isinstance(event, yaml.AliasEvent) and not loader.aliases:
             problem = 'aliases are not supported'
+        elif tag not in {None, _TEXT} and not loader.tags:
+            problem = f'the tag {tag!r} has no effect before ROS Lyrical: leave it out'
+        if problem:
             raise yaml.MarkedYAMLError(problem=problem, problem_mark=event.start_mark)  # type: ignore[arg-type]
     return yaml.load(text, loader)  # noqa: S506, it is safe
 

@@ -2,6 +2,7 @@
 """Arguments of the node, from those of the launch files."""
 
 import posixpath
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -42,3 +43,15 @@ def node_arguments(configurations: Mapping[str, str]) -> NodeArguments:
         name: configurations[name] for name in _OVERRIDES if configurations[name]
     }
     return NodeArguments(config, replace(loaded, **given), given)
+
+
+def reads_description_topic(share: Path) -> bool:
+    """Return whether a robot_state_publisher has the parameter use_robot_description_topic.
+
+    `share` is its share directory; its package.xml states the version.
+    """
+    manifest = (share / 'package.xml').read_text('utf-8')
+    version = [
+        int(number) for number in re.findall(r'<version>(.+)</version>', manifest)[0].split('.')
+    ]
+    return version >= [3, 5, 3] or [3, 4, 4] <= version < [3, 5]  # Lyrical, and Kilted

@@ -322,6 +322,8 @@ def test_every_way_to_write_a_number_in_a_node_file_is_read(tmp_path, number):
         (b'a: [1', "expected ',' or ']'"),
         (b'a: b: c', 'mapping values are not allowed'),
         (b'a: &x 1\nb: *x', 'aliases are not supported in line 2'),
+        (b'a: !!float 10', "'tag:yaml.org,2002:float' has no effect before ROS Lyrical"),
+        (b'a: !!set {}', "'tag:yaml.org,2002:set' has no effect before ROS Lyrical"),
         (b'[1, 2]', 'no ros__parameters in it'),
         (b'/**: {ros__parameters: 5}', 'no ros__parameters in it'),
         (b'a b: {ros__parameters: {ring_teeth: 80}}', '/a b is not a valid node name'),

@@ -4,7 +4,11 @@
 import pytest
 
 from gear_kinematics.parameters import ConfigError, NodeParameters, default_config
-from gear_kinematics.ros.launch_arguments import NODE_ARGUMENTS, node_arguments
+from gear_kinematics.ros.launch_arguments import (
+    NODE_ARGUMENTS,
+    node_arguments,
+    reads_description_topic,
+)
 
 NODES = {
     '/gear_state_publisher': 81,
@@ -77,3 +81,13 @@ def test_file_that_is_not_there_or_without_parameters_of_the_node_is_refused(con
         arguments('nowhere.yaml')
     with pytest.raises(ConfigError, match='no parameters of /right/gear_state_publisher in it'):
         arguments(config, 'right')
+
+
+@pytest.mark.parametrize(
+    ('version', 'reads'),
+    # Of Jazzy, of Kilted before and since its backport, and of Rolling before and since the change
+    [('3.3.3', False), ('3.4.3', False), ('3.4.4', True), ('3.5.2', False), ('3.10.0', True)],
+)
+def test_robot_state_publisher_is_told_how_to_get_the_description(tmp_path, version, reads):
+    (tmp_path / 'package.xml').write_text(f'<package><version>{version}</version></package>')
+    assert reads_description_topic(tmp_path) == reads

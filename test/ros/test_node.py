@@ -207,6 +207,7 @@ OF_ANY_NODE = (
             (80, 1.0),
         ),
         (sections(('/**', TEETH), ('/**', 'rotor_zero: 15e-1')), LEFT, (81, 1.5)),
+        (sections((LEFT, f'{TEETH}, output_joint: !!str 12')), LEFT, (81, 0.0)),
         (sections((LEFT, OF_ANY_NODE)), LEFT, (81, 0.0)),
     ],
 )
