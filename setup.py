@@ -95,7 +95,7 @@ setup(
         # `gearkin urdf --meshes`
         'mesh': MESH,
         # `gearkin mjcf` and gear_simulator, which do with less without it; Ubuntu has no package.
-        'twin': ['mujoco>=3.2', *MESH],
+        'twin': ['mujoco>=3.14', *MESH],
         # colcon test looks here to see that the package is tested with pytest.
         'test': ['pytest'],
     },

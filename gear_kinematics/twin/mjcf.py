@@ -67,7 +67,9 @@ def mjcf(gear: TwinGear, remarks: Sequence[str] = (), *, shown: bool = True) -> 
       rotor angle / gear ratio - angle of its arm,
 
   and its springlength the play of the flanks. Positive torques push the output forwards. In the
-  sensors of the branches, the third value is the torque on the output. A spring that bends is
+  sensors of the branches, the third value is the torque on the output, from MuJoCo 3.14 on: older
+  ones read a hundredth of it. MuJoCo needs double precision for this model. There is no gravity,
+  and the arms weigh nothing: their inertia is that of the output. A spring that bends is
   several tendons. Of friction that depends on the load, the mean is given. MuJoCo has no kinematic
   errors: a program has to subtract them from springlength of all branches at each step. Numbers of
   its orders, if any, are cycles per turn of the rotor, and their cos and sin, rad.
@@ -90,7 +92,7 @@ def mjcf(gear: TwinGear, remarks: Sequence[str] = (), *, shown: bool = True) -> 
 </default>
 <custom>{orders}</custom>
 <worldbody>
-  <body name="stator">{parts['stator']}</body>
+  <body name="stator">{_inertial()}{parts['stator']}</body>
   <body name="rotor">
     {_inertial(loads.rotor_inertia)}
     <joint name="rotor" damping="{gear.rotor_damping!r}"/>

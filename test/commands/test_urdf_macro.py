@@ -56,9 +56,9 @@ def test_installed_macro_is_that_of_the_default_actuator(capsys):
 def test_arm_has_both_actuators_and_their_mounts(xacro, capsys, tmp_path):
     arm = parsed(xacro.process_file(str(ROOT / ARM)).toxml())
     mounts = {
-        'shoulder/stator': ('base', '<origin rpy="0 0 0" xyz="0 0 0.1"></origin>'),
+        'shoulder_stator': ('base', '<origin rpy="0 0 0" xyz="0 0 0.1"></origin>'),
         'elbow/stator': (
-            'shoulder/output_shaft',
+            'shoulder_output_shaft',
             '<origin rpy="0 1.5708 0" xyz="0.25 0 0.2"></origin>',
         ),
     }
@@ -68,7 +68,7 @@ def test_arm_has_both_actuators_and_their_mounts(xacro, capsys, tmp_path):
             f'<child link="{name}"></child>{origin}</joint>'
         )
     assert arm.pop(('link', 'base'))
-    assert arm == (expected(capsys, tmp_path, 'shoulder/') | expected(capsys, tmp_path, 'elbow/'))
+    assert arm == (expected(capsys, tmp_path, 'shoulder_') | expected(capsys, tmp_path, 'elbow_'))
 
 
 @pytest.mark.parametrize('prefix', ['', 'left_'])

@@ -175,7 +175,7 @@ def test_a_ramp_is_that_of_the_fast_model(gear, values):
 
 
 def test_a_fast_rotor_is_as_fast_as_that_of_the_fast_model():
-    """Up to 3600 rad/s, as the reference says; faster, it is held, else loops feed in energy."""
+    """As the reference says; faster, MuJoCo's loops feed in energy, and the rotor is held."""
     gear = TwinGear.load(default_config())
     mujocos, fast = MujocoModel(gear), FastModel(gear)
     for _ in range(400):
