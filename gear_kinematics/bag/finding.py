@@ -148,7 +148,7 @@ class _Loader(Loader):
 
     max_bytes = 2**22
     max_events = 400_000
-    aliases = tags = True
+    aliases = True
 
 
 def parse_yaml(text: str) -> Any:

@@ -147,6 +147,7 @@ class _RosLoader(Loader):
 
     max_bytes = 2**20
     max_events = 2**17
+    tags = False
 
 
 _RosLoader.add_constructor(

@@ -26,7 +26,7 @@ class Loader(getattr(yaml, 'CSafeLoader', yaml.SafeLoader)):  # type: ignore[mis
     """
     aliases: ClassVar[bool] = False
     """Whether aliases are allowed: text written from their values can expand without end."""
-    tags: ClassVar[bool] = False
+    tags: ClassVar[bool] = True
     """Whether tags other than !!str are allowed: ROS before Lyrical ignores them."""
 
     def flatten_mapping(self, node: yaml.MappingNode) -> None:
