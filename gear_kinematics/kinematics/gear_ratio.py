@@ -9,7 +9,10 @@ from functools import lru_cache
 from types import ModuleType
 from typing import Any, Self
 
-from gear_kinematics.kinematics.rotor_turns import TURN, largest, nearest_turn
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.kinematics.rotor_turns import TURN, largest, lists_as_arrays, nearest_turn
 
 _TEXT = re.compile(r'[-+]?\d{1,16}(/\d{1,16}|\.\d{1,16})?', re.ASCII)
 _LARGEST_PRODUCT = 2**53
@@ -92,11 +95,15 @@ class GearRatio(Fraction):
 
     def output_rate(self, rotor_rate: Any) -> Any:
         """Output rate ω5 = ω2/i (eq. 3); accelerations are converted in the same way."""
-        return self._p * rotor_rate / self._q
+        return self._p * lists_as_arrays(rotor_rate) / self._q
 
-    def rotor_angle(self, output_angle: float) -> float:
+    def rotor_angle(self, output_angle: Any) -> Any:
         """Rotor angle φ2 = i φ5 (eq. 5), rad."""
-        return output_angle * self.numerator / self.denominator
+        return lists_as_arrays(output_angle) * self.numerator / self.denominator
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> 'NDArray[np.float64]':
+        """Convert to a float for products with arrays, which would be arrays of Fractions."""
+        return np.array(float(self), dtype=dtype)
 
 
 def simplest_fraction(low: Fraction, high: Fraction) -> Fraction:

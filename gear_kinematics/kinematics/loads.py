@@ -38,6 +38,7 @@ from gear_kinematics.kinematics.errors import MechanismError
 from gear_kinematics.kinematics.mechanism import Mechanism
 from gear_kinematics.kinematics.motion import Array, BranchPosition, MotionState, read_only
 from gear_kinematics.kinematics.preload import Pair, Preload, braced
+from gear_kinematics.kinematics.rotor_turns import lists_as_arrays
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,7 +191,7 @@ class LoadEquations:
 def solve(
     mechanism: Mechanism,
     state: MotionState,
-    branch_torques: ArrayLike,
+    branch_torques: 'ArrayLike',
     bodies: Bodies = Bodies(),
 ) -> Loads:
     """Solve the loads of all bodies.
@@ -270,6 +271,7 @@ class TorqueSharing:
             The torque T of each branch, N·m, and the angle between its flanks, rad at the
             output, which is 0 in mesh. Each has the shape of Σ T.
         """
+        torque = lists_as_arrays(torque)
         if self._preload is None:
             return (torque / self._count,) * self._count, (0.0,) * self._count
         sign = self._direction
@@ -278,6 +280,7 @@ class TorqueSharing:
 
     def margin(self, torque: Any) -> Any:
         """Remaining preload as in `Preload.margin`, N·m, at an output torque; NaN without one."""
+        torque = lists_as_arrays(torque)
         if self._preload is None:
             return torque * math.nan
         return self._preload.margin(-self._direction * torque)

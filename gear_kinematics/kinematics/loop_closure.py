@@ -22,7 +22,7 @@ from gear_kinematics.kinematics.transforms import (
 )
 
 
-def residual(mechanism: Mechanism, rotor_angle: ArrayLike, state: MotionState) -> Array:
+def residual(mechanism: Mechanism, rotor_angle: 'ArrayLike', state: MotionState) -> Array:
     """Compute the closure error of the vector loops of a state for each branch, (..., B), m.
 
     The greatest of three distances: between the centre of the Oldham coupling by eq. (11) and by
@@ -63,7 +63,7 @@ def mobility_by_counting(mechanism: Mechanism) -> int:
     return 3 * (bodies - 1) - 2 * (rotary + sliding) - general
 
 
-def constraint_jacobian(mechanism: Mechanism, rotor_angle: ArrayLike) -> Array:
+def constraint_jacobian(mechanism: Mechanism, rotor_angle: 'ArrayLike') -> Array:
     """Derivative of the constraints with respect to the coordinates, (..., 4 + 7 B, 3 (2 + 2 B)).
 
     Columns: (x, y, angle) of the rotor, then of satellite and coupling of each branch, then of the

@@ -60,11 +60,11 @@ class _Jet(NamedTuple):
 @np.errstate(invalid='ignore')  # values that are not finite give NaN
 def solve(
     mechanism: Mechanism,
-    rotor_angle: ArrayLike,
-    rotor_velocity: ArrayLike = 0.0,
-    rotor_acceleration: ArrayLike = 0.0,
+    rotor_angle: 'ArrayLike',
+    rotor_velocity: 'ArrayLike' = 0.0,
+    rotor_acceleration: 'ArrayLike' = 0.0,
     *,
-    rotor_turns: ArrayLike = 0,
+    rotor_turns: 'ArrayLike' = 0,
 ) -> MotionState:
     """Solve the motion of all bodies; arguments and result are those of `motion.solve`.
 

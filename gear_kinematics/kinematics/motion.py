@@ -31,7 +31,7 @@ def read_only(results: Any) -> None:
         object.__setattr__(results, field.name, array)
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, eq=False, repr=False, slots=True)
 class MotionState:
     """The motion of all bodies. `...` is the inputs' broadcast shape, B the number of branches.
 
@@ -70,6 +70,19 @@ class MotionState:
     def __post_init__(self) -> None:
         """Convert the fields to read-only arrays."""
         read_only(self)
+
+    def __repr__(self) -> str:
+        """Describe the shape, and show the output angle at a few samples."""
+        angle, branches = self.output_angle, self.satellite_centre.shape[-2]
+        few = np.array2string(angle, precision=6, threshold=6, edgeitems=2, separator=', ')
+        return f'MotionState(shape={angle.shape}, branches={branches}, output_angle={few} rad)'
+
+    @property
+    def poses(self) -> Array:
+        """Poses (x, y, yaw) of each satellite, then of each coupling, (..., 2 B, 3), m and rad."""
+        centres = np.concatenate([self.satellite_centre, self.oldham_centre], axis=-2)
+        yaw = self.output_turn_angle[..., np.newaxis, np.newaxis]
+        return np.append(centres, np.broadcast_to(yaw, (*centres.shape[:-1], 1)), axis=-1)
 
     @classmethod
     def from_orders(
@@ -130,6 +143,11 @@ class ClosedForm:
     """
 
     def __init__(self, mechanism: Mechanism) -> None:
+        if not isinstance(mechanism, Mechanism):
+            raise TypeError(
+                f'solve needs a Mechanism, not a {type(mechanism).__name__}; of a GearRatio, call '
+                'output_angle(*split_turns(rotor_angle), numpy)'
+            )
         self._eccentricity = mechanism.eccentricity
         self._cams = tuple(branch.cam_direction for branch in mechanism.branches)
         self._slide_ratio = mechanism.ring_teeth / mechanism.satellite_teeth
@@ -192,11 +210,11 @@ _CHUNK = 12288  # samples, so that the arrays of a chunk fit into the processor'
 @np.errstate(invalid='ignore')  # values that are not finite give NaN
 def solve(
     mechanism: Mechanism,
-    rotor_angle: ArrayLike,
-    rotor_velocity: ArrayLike = 0.0,
-    rotor_acceleration: ArrayLike = 0.0,
+    rotor_angle: 'ArrayLike',
+    rotor_velocity: 'ArrayLike' = 0.0,
+    rotor_acceleration: 'ArrayLike' = 0.0,
     *,
-    rotor_turns: ArrayLike = 0,
+    rotor_turns: 'ArrayLike' = 0,
 ) -> MotionState:
     """Solve the motion of all bodies in closed form.
 
@@ -210,6 +228,7 @@ def solve(
             ±`MOST_TURNS`.
 
     Raises:
+        TypeError: if only the ratio of the gear is known, with what to call instead.
         ValueError: if `rotor_turns` are not integers up to ±`MOST_TURNS`.
     """
     form, ratio = closed_form(mechanism), mechanism.gear_ratio

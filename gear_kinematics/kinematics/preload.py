@@ -34,6 +34,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gear_kinematics.kinematics.errors import MechanismError
 from gear_kinematics.kinematics.mechanism import Branch, Mechanism
+from gear_kinematics.kinematics.rotor_turns import lists_as_arrays
 from gear_kinematics.kinematics.vernier import angle_between, turns
 
 Pair = tuple[Any, Any]
@@ -249,7 +250,7 @@ class Preload:
         """Least abs(M) at which a branch leaves mesh, N·m: T0 (kAe + kB)/max(kAe, kB)."""
         return min(self.threshold_a, -self.threshold_b)
 
-    def split(self, load: ArrayLike) -> TorqueSplit:
+    def split(self, load: 'ArrayLike') -> TorqueSplit:
         """Split an external torque between the branches.
 
         Args:
@@ -271,6 +272,7 @@ class Preload:
         with A alone and with B alone. Without load, each branch has half of the play. Floats and
         arrays give the same results to the bit.
         """
+        M = lists_as_arrays(M)
         cA, cB, share_a, share_b, T0 = self._constants
         larger, interference = _larger(M), self.interference
         torque_a = larger(larger(T0 - share_a * M, -M), 0.0) + 0.0  # no -0.0
@@ -282,6 +284,7 @@ class Preload:
 
     def margin(self, M: Any) -> Any:
         """Preload that a load leaves in the branch it relieves, N·m; below 0 out of mesh."""
+        M = lists_as_arrays(M)
         _, _, share_a, share_b, T0 = self._constants
         return T0 - _larger(M)(share_a * M, -share_b * M)
 

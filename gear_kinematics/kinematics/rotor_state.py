@@ -19,7 +19,7 @@ import numpy as np
 
 from gear_kinematics.kinematics.gear_ratio import GearRatio
 from gear_kinematics.kinematics.mechanism import Gear
-from gear_kinematics.kinematics.rotor_turns import TURN, split_turns
+from gear_kinematics.kinematics.rotor_turns import TURN, lists_as_arrays, split_turns
 
 
 class RotorState(NamedTuple):
@@ -39,13 +39,14 @@ class RotorState(NamedTuple):
 def rotor_state_for(
     gear: Gear, angle: Any, velocity: Any = None, effort: Any = None, *, turns: Any = 0
 ) -> RotorState:
-    """Find the state of the rotor from that of the output: φ5 in rad, ω5, τ5; floats or arrays.
+    """Find the state of the rotor from that of the output: φ5 (rad), ω5, τ5, numbers or arrays.
 
     `turns`, shaped like `angle`, are added to it; those of the rotor are exact up to 2^52.
 
     Raises:
         ValueError: if a float angle is beyond ±`LARGEST_ANGLE` or not finite; arrays give NaN.
     """
+    angle, velocity, effort, turns = map(lists_as_arrays, (angle, velocity, effort, turns))
     whole, rest = split_turns(angle)
     xp, i = np if isinstance(angle, np.ndarray) else math, float(gear.gear_ratio)
     position = GearRatio(1 / gear.gear_ratio).output_angle(turns + whole, rest, xp)

@@ -53,6 +53,11 @@ class RotorSample(NamedTuple):
     """N·m; None if it is not known."""
 
 
+def lists_as_arrays(value: Any) -> Any:
+    """Convert a list or tuple to an array; return anything else as it is."""
+    return np.asarray(value, np.float64) if isinstance(value, (list, tuple)) else value
+
+
 @overload
 def split_turns(angle: float) -> RotorPosition: ...
 @overload
@@ -64,7 +69,7 @@ def split_turns(angle: Any) -> Any:
     it can exceed π by the rounding error of TURN times the number of turns.
 
     Args:
-        angle: rad, up to ±`LARGEST_ANGLE`; a float, or an array of any shape.
+        angle: rad, up to ±`LARGEST_ANGLE`; a float, or a list or array of any shape.
 
     Returns:
         Turns (an int; for arrays whole numbers as float64) and the rest in rad. In arrays both
@@ -74,6 +79,8 @@ def split_turns(angle: Any) -> Any:
         ValueError: if a float angle is not finite or too large.
     """
     # A float is recognised first and fast: the node calls this for every message.
+    if not isinstance(angle, float):
+        angle = lists_as_arrays(angle)
     xp = np if not isinstance(angle, float) and isinstance(angle, np.ndarray) else math
     size = abs(angle) if xp is math else largest(angle)
     if not size <= LARGEST_ANGLE:  # NaN compares false
@@ -109,7 +116,7 @@ def largest(values: NDArray[np.float64]) -> np.float64:
     return magnitude
 
 
-def whole_turns(turns: ArrayLike) -> NDArray[np.float64]:
+def whole_turns(turns: 'ArrayLike') -> NDArray[np.float64]:
     """Convert numbers of turns to float64.
 
     Raises:

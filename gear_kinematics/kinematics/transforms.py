@@ -14,7 +14,7 @@ from gear_kinematics.kinematics.mechanism import Mechanism
 Array = NDArray[np.float64]
 
 
-def rotation_z(angle: ArrayLike) -> Array:
+def rotation_z(angle: 'ArrayLike') -> Array:
     """Rotation by `angle` (rad) about z, (..., 4, 4)."""
     cosine, sine = np.cos(angle), np.sin(angle)
     transform = np.zeros((*np.shape(angle), 4, 4))
@@ -24,7 +24,7 @@ def rotation_z(angle: ArrayLike) -> Array:
     return transform
 
 
-def translation(x: ArrayLike, y: ArrayLike, z: ArrayLike = 0.0) -> Array:
+def translation(x: 'ArrayLike', y: 'ArrayLike', z: 'ArrayLike' = 0.0) -> Array:
     """Translation by (x, y, z), m, (..., 4, 4)."""
     x, y, z = np.broadcast_arrays(x, y, z)
     transform = np.zeros((*x.shape, 4, 4))
@@ -41,13 +41,13 @@ def cam_translation(mechanism: Mechanism) -> Array:
     return translation(-e * np.sin(phase), e * np.cos(phase), position)
 
 
-def satellite_turn(mechanism: Mechanism, rotor_angle: ArrayLike) -> Array:
+def satellite_turn(mechanism: Mechanism, rotor_angle: 'ArrayLike') -> Array:
     """Turn φ3_2 = φ5 - φ2 of the satellites on their cams (eqs. 5 and 6), (...), rad."""
     angle: Array = np.asarray(rotor_angle, dtype=np.float64)
     return output_turn(mechanism, angle) - angle
 
 
-def output_turn(mechanism: Mechanism, rotor_angle: ArrayLike) -> Array:
+def output_turn(mechanism: Mechanism, rotor_angle: 'ArrayLike') -> Array:
     """Output angle φ5 = φ2/i (eq. 5), (...), rad."""
     ratio = mechanism.gear_ratio
     angle: Array = np.asarray(rotor_angle, dtype=np.float64)

@@ -115,10 +115,10 @@ def arrows(mechanism: Mechanism, length: float) -> Polygons:
 
 def poses(
     mechanism: Mechanism,
-    rotor_angle: ArrayLike,
+    rotor_angle: 'ArrayLike',
     branch: int = 0,
     *,
-    rotor_turns: ArrayLike = 0,
+    rotor_turns: 'ArrayLike' = 0,
 ) -> dict[str, Pose]:
     """Compute the poses of the bodies of a branch.
 

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from gear_kinematics.kinematics import GearRatio
+from gear_kinematics.kinematics import GearRatio, rotor_state_for
 from gear_kinematics.kinematics.gear_ratio import simplest_fraction, tooth_pairs
 
 RATIOS = st.builds(
@@ -129,3 +129,15 @@ def test_tooth_pairs_are_all_of_the_interval(low, width):
         if low <= Fraction(-satellite, ring - satellite) <= high
     ]
     assert list(tooth_pairs(low, high, 60)) == expected
+
+
+def test_products_with_arrays_are_floats_and_lists_are_taken():
+    ratio, angle = GearRatio(-19), np.array([0.5, 1.0])
+    for product in (ratio * angle, angle * ratio, ratio.rotor_angle([0.5, 1.0])):
+        assert product.dtype == np.float64
+        assert product.tolist() == [-9.5, -19.0]
+    assert (angle / ratio).tolist() == ratio.output_rate([0.5, 1.0]).tolist()
+    state = rotor_state_for(ratio, [0.5, 1.0], [1.0, 2.0], [38.0, 19.0])
+    np.testing.assert_allclose(state.position, [-9.5, -19.0], rtol=1e-15)
+    assert (state.velocity.tolist(), state.effort.tolist()) == ([-19.0, -38.0], [-2.0, -1.0])
+    assert isinstance(2 * ratio, Fraction)

@@ -1,6 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The closed form against 50-digit matrix products, and the properties of the motion."""
 
+import inspect
 import math
 import re
 import tracemalloc
@@ -26,6 +27,7 @@ from properties import (
 
 from gear_kinematics.kinematics import (
     Branch,
+    GearRatio,
     Mechanism,
     MotionState,
     matrix_method,
@@ -278,3 +280,27 @@ def test_turns_of_any_type_are_taken(actuator, solver, turns):
     same = solver(actuator, 0.25, rotor_turns=np.array(turns, np.float64))
     assert_same(state, same)
     assert state.output_angle.shape == np.shape(turns)
+
+
+def test_poses_are_those_of_satellites_then_couplings_with_the_angle_within_a_turn(actuator):
+    state = solve(actuator, [0.5, 400.0])
+    assert state.poses.shape == (2, 4, 3)
+    for k, centre in enumerate((state.satellite_centre, state.oldham_centre)):
+        np.testing.assert_array_equal(state.poses[:, 2 * k : 2 * k + 2, :2], centre)
+    # 400 rad of the rotor are -21.0526 rad of the output: 3 turns less 2.2031 rad.
+    np.testing.assert_allclose(state.poses[1, :, 2], -400.0 / 19.0 + 6.0 * math.pi, atol=1e-14)
+
+
+def test_a_state_and_the_signature_are_short_to_read(actuator):
+    shown = repr(solve(actuator, np.linspace(0.0, 19.0, 1000)))
+    assert shown.startswith('MotionState(shape=(1000,), branches=2, output_angle=[')
+    assert '..., ' in shown
+    assert len(shown) < 150
+    assert str(inspect.signature(solve)).count("'ArrayLike'") == 4
+
+
+def test_a_ratio_alone_is_refused_with_what_to_call_instead():
+    with pytest.raises(TypeError, match=r'not a GearRatio; .* call output_angle\(\*split_turns'):
+        solve(GearRatio(-19), 0.5)
+    turns, rest = GearRatio(-19).output_angle(*split_turns([0.5, 19.0 * 7.0]), np)
+    np.testing.assert_allclose(2.0 * math.pi * turns + rest, [-0.5 / 19.0, -7.0], rtol=1e-15)

@@ -1,6 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The examples do what they say."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -72,6 +73,19 @@ def test_the_documented_test_of_a_package_holds_its_recording_to_its_parameters(
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 1, done.stdout
     assert 'as that of ring_teeth 80, satellite_teeth 76' in done.stdout
+
+
+def test_the_examples_of_the_library_run_and_one_of_them_plots(tmp_path):
+    pytest.importorskip('matplotlib', reason='matplotlib is not installed')
+    page = (EXAMPLES.parent / 'docs/api.md').read_text('utf-8')
+    source = '\n'.join(re.findall(r'```python\n(.*?)```', page, re.DOTALL))
+    check = (
+        'assert s.poses.shape == (3, 4, 3) and r.velocity == -19.0 and f.rotor_torque.size == 3'
+    )
+    command = [sys.executable, '-c', f'{source}\n{check}']
+    environment = {**os.environ, 'MPLBACKEND': 'agg'}
+    subprocess.run(command, cwd=tmp_path, env=environment, check=True)
+    assert (tmp_path / 'couplings.png').stat().st_size > 10_000
 
 
 def test_a_wrong_recording_fails_the_example(tmp_path):
