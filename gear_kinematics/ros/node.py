@@ -94,7 +94,7 @@ class GearStatePublisher(PublishingNode):
                 self, topics.OUTPUT_ENCODER, self._on_output_encoder, self._encoder_monitor
             ),
         )
-        self._driver_log = DriverLog(self, self._input)
+        self._driver_log = DriverLog(self, self._actuator.input)
         self._other_gears = OtherGears(self)
         known = 'bodies unknown'
         if isinstance(self._gear, Mechanism):
