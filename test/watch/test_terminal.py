@@ -3,7 +3,7 @@
 
 import pytest
 from terminals import Person
-from watching import DEADLINE, MOTOR, OTHER, driving, gearkin, node
+from watching import DEADLINE, MOTOR, NODE, OTHER, driving, gearkin, node
 
 pytestmark = pytest.mark.live
 
@@ -36,6 +36,23 @@ def test_table_in_a_terminal_homes_with_keys(tmp_path):
         terminal.wait_for('u undo: rotor_zero 0 again')
         terminal.type('u')
         terminal.wait_for(r'Undone: rotor_zero 0 again\.')
+        terminal.type('q')
+        assert terminal.end() == 0
+
+
+@pytest.mark.usefixtures('running')
+def test_key_shows_the_next_node_and_a_mistyped_one_is_corrected(tmp_path):
+    with (
+        node(tmp_path, NODE),
+        Person(tmp_path, 'watch', '--text', '--node', f'{OTHER}s') as terminal,
+    ):
+        terminal.wait_for('connecting')
+        terminal.wait_for(r'did\s+you\s+mean')
+        terminal.wait_for('n next node')
+        terminal.type('n')
+        terminal.wait_for(f'{NODE} +connected')
+        terminal.type('n')
+        terminal.wait_for(f'{OTHER} +connected')
         terminal.type('q')
         assert terminal.end() == 0
 
