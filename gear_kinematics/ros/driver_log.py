@@ -7,10 +7,10 @@ from rclpy.node import Node
 
 from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.ros.diagnostics import full_name
+from gear_kinematics.ros.graph import Graph
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.nearest import listed
-from gear_kinematics.wire.topics import JOINT_STATE, ROTOR_STATE, TRANSMISSION_ERROR, base_name
+from gear_kinematics.wire.topics import ROTOR_STATE
 
 _ELSEWHERE = 0.1  # rad, of a rotor that was turned by hand, or counted from another zero
 _HOME = 'check whether the drive restarted; then call ~/home'
@@ -46,7 +46,7 @@ class DriverLog:
             self._log.warning(f'{self._topic} has stopped: no input for {silence:.1f} s')
             self.awaited, self._before = True, last
         # At the first update, not all publishers are discovered yet.
-        elif not (publishers or last) and looked and (others := self._of_drivers()):
+        elif not (publishers or last) and looked and (others := Graph(self._node).drivers()):
             self._log.warning(
                 f'{self._topic} has no publisher; there are: {listed(others)}; choose one with '
                 f'-r {ROTOR_STATE}:=<topic>, or with ros2 launch {ROTOR_STATE}:=<topic>'
@@ -66,14 +66,3 @@ class DriverLog:
             self._log.warning(f'{self._topic} is heard again, but {at}: {_HOME}')
         else:
             self._log.info(f'{self._topic} is heard now')
-
-    def _of_drivers(self) -> list[str]:
-        """The topics of joint states that others than gears publish."""
-        publishers = {
-            topic: {full_name(end) for end in self._node.get_publishers_info_by_topic(topic)}
-            for topic, types in self._node.get_topic_names_and_types()
-            if JOINT_STATE in types
-        }
-        errors = [topic for topic in publishers if base_name(topic) == TRANSMISSION_ERROR]
-        gears = {gear for topic in errors for gear in publishers[topic]}
-        return [topic for topic, nodes in publishers.items() if nodes - gears]

@@ -19,7 +19,8 @@ from std_srvs.srv import Trigger
 
 from gear_kinematics.parameters import BRANCH_PARAMETERS, PARAMETERS, NodeParameters
 from gear_kinematics.ros.diagnostics import full_name
-from gear_kinematics.watch.drivers import Graph, Listener
+from gear_kinematics.ros.graph import Graph
+from gear_kinematics.watch.drivers import Listener
 from gear_kinematics.watch.polled import Polled
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.cdr import SECOND, MalformedMessageError

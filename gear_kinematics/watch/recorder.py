@@ -11,7 +11,7 @@ from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
 from gear_kinematics.bag import Message
 from gear_kinematics.parameters import NODE
-from gear_kinematics.watch.drivers import Graph
+from gear_kinematics.ros.graph import Graph
 from gear_kinematics.watch.polled import Polled
 from gear_kinematics.wire import topics
 

@@ -14,9 +14,10 @@ from rclpy.executors import SingleThreadedExecutor
 
 from gear_kinematics.kinematics import GearRatio, Mechanism
 from gear_kinematics.measurement.commissioning.analysis import Channel, Request
+from gear_kinematics.ros.graph import Graph
 from gear_kinematics.ros.live import replay_node
 from gear_kinematics.watch.commissioning import LiveCommissioning
-from gear_kinematics.watch.drivers import Graph, Listener
+from gear_kinematics.watch.drivers import Listener
 from gear_kinematics.watch.gear import Answer, GearNode
 from gear_kinematics.watch.view import View, view_of
 

@@ -43,6 +43,9 @@ class Graph:
         joint_states = [*self._topics, *GEARS, '/rotor_state', '/subscribed']
         return [('/chatter', ['std_msgs/msg/String']), *((t, [JOINT_STATE]) for t in joint_states)]
 
+    def get_service_names_and_types(self):
+        return [(f'{name}/home', ['std_srvs/srv/Trigger']) for name in ('/gear', '/left/gear')]
+
     def get_publishers_info_by_topic(self, topic):
         name = 'gear' if topic in GEARS else 'motor'
         end = SimpleNamespace(node_name=name, node_namespace=topic.rpartition('/')[0])

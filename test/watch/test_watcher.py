@@ -26,8 +26,9 @@ from watching import WatcherStandIn
 
 from gear_kinematics.commands.cli import main
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.ros.graph import Graph
 from gear_kinematics.watch import drivers
-from gear_kinematics.watch.drivers import DriverTopic, Graph
+from gear_kinematics.watch.drivers import DriverTopic
 from gear_kinematics.watch.gear import Answer, GearNode, JointValue, Status
 from gear_kinematics.watch.page import drawing
 from gear_kinematics.watch.text import line, list_drivers, rows_of, table
