@@ -39,6 +39,7 @@ _AHEAD = 1000
 SAMPLES = [
     ('number', np.int64),
     ('told', np.bool_),
+    ('referenced', np.bool_),
     *((name, np.int64) for name in ('stamp', 'received', 'segment')),
     *((name, np.float64) for name in ('turns', 'angle', 'velocity', 'effort')),
 ]

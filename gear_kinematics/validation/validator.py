@@ -238,7 +238,9 @@ class Validator:
             self._changes.move(latest)
             latest['segment'] = segments + self._changes.count  # after a change, plays are unknown
             names = 'stamp', 'turns', 'angle', 'velocity', 'effort', 'segment'
-            found = self._corrector.correct_batch(*(latest[name] for name in names))
+            found = self._corrector.correct_batch(
+                *(latest[name] for name in names), referenced=latest['referenced']
+            )
             for name, values in found._asdict().items():
                 self._window[name][-len(segments) :] = values
 

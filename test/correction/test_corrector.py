@@ -4,7 +4,6 @@
 import math
 from dataclasses import replace
 from fractions import Fraction
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -85,24 +84,6 @@ def test_deviation_and_unknown_part_are_those_of_the_definition(steps, turns):
         inside = math.isclose(half_width - float(expected[1]), made.half_width, abs_tol=1e-14)
         outside = made.outside_half_width
         assert inside or math.isclose(half_width - float(expected[1]), outside, abs_tol=1e-14)
-
-
-@given(motions(), st.lists(st.integers(0, 40), max_size=3), st.booleans())
-def test_batches_give_the_same_as_single_samples(motion, cuts, referenced):
-    made = calibration()
-    single = np.array(correct_all(Corrector(made), motion, referenced=referenced))
-    corrector = Corrector(made)
-    bounds = sorted({0, *(min(cut, len(motion)) for cut in cuts), len(motion)})
-    found = []
-    for k, (start, stop) in enumerate(pairwise(bounds)):
-        part = motion[start:stop]
-        if k % 2:  # a batch and single samples can follow each other
-            found += correct_all(corrector, part, referenced=referenced)
-        else:
-            batch = corrector.correct_batch(*columns(part), referenced=referenced)
-            found += np.transpose(batch).tolist()
-    scale = np.array([1.0, 100.0, 1.0, 1.0])  # the slope is not in rad
-    np.testing.assert_allclose(found / scale, single / scale, rtol=0.0, atol=1e-15)
 
 
 def test_slope_is_the_derivative_along_the_output_angle():

@@ -42,6 +42,7 @@ KINDS = {
 }
 CHANGES = {
     'jump': {'offset': 100.0},
+    'far jump': {'offset': 6e9},
     'stray': {'position': 1e4},
     'not finite': {'position': math.nan},
     'no velocity': {'velocity': None},

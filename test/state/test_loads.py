@@ -6,8 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState, MultiDOFJointState
 
@@ -17,7 +15,6 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.diagnostics import OK, WARN
 from gear_kinematics.state.loads import Acceleration, Loads, PreloadMonitor
-from gear_kinematics.state.rotor_samples import RotorSamples
 
 DEFAULT = NodeParameters.load()
 BRACED = replace(DEFAULT, preload=3.0, branch_stiffness=(2000.0, 1000.0), shaft_stiffness=5000.0)
@@ -35,14 +32,6 @@ def accelerated(count: int = 60, rate: float = 700.0) -> list[RotorSample]:
     ]
 
 
-def as_batch(samples: list[RotorSample], segment: int = 0) -> RotorSamples:
-    rows = [
-        (s.stamp, *s.position, s.velocity, s.effort, k, s.stamp, segment, True)
-        for k, s in enumerate(samples)
-    ]
-    return RotorSamples.of(rows, np.zeros(0, np.int64))
-
-
 def test_output_torque_is_what_the_inertias_leave_of_the_rotors():
     """The torques that `kinematics.loads` needs for the rotor's effort, at the true motion."""
     followed, last = Loads(HEAVY), None
@@ -56,20 +45,6 @@ def test_output_torque_is_what_the_inertias_leave_of_the_rotors():
     for k, (_, mesh, cam, *_) in enumerate(found.branches):
         assert cam == pytest.approx(expected.cam_force[k], rel=1e-6)
         assert mesh == pytest.approx(expected.mesh_force[k], rel=1e-6)
-
-
-@pytest.mark.parametrize('parameters', [DEFAULT, BRACED, HEAVY], ids=['plain', 'braced', 'heavy'])
-@given(split=st.integers(0, 60), missing=st.integers(0, 59))
-def test_batches_give_the_same_messages_as_samples(parameters, split, missing):
-    samples = accelerated()
-    samples[missing] = samples[missing]._replace(velocity=None, effort=None)
-    single, many = Loads(parameters), Loads(parameters)
-    one_by_one = [dict(single.encode(s.stamp, single.follow(s, 0))) for s in samples]
-    for part in (slice(0, split), slice(split, 60)):
-        batch = as_batch(samples[part])
-        encoded = many.encode_batch(batch.stamp, many.follow_batch(batch))
-        for topic, messages in encoded.items():
-            assert messages == [each.get(topic, b'') for each in one_by_one[part]]
 
 
 def test_messages_are_those_of_the_contract():

@@ -1,42 +1,48 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The classes of the node in the order in which its messages arrive, without ROS."""
+"""What a node answers to messages in the order in which they arrive, without ROS."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
+from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 
-from shipped_bags import OUTPUT, POSES, ROTOR
+from shipped_bags import ROTOR
 
 from gear_kinematics.bag import Message
+from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.output_encoder import OutputEncoder
-from gear_kinematics.state.rotor_input import RotorInput
-from gear_kinematics.state.state_messages import state_messages
-from gear_kinematics.state.turn_reference import TurnReference
+from gear_kinematics.state.gear_state import GearState
+from gear_kinematics.wire.joint_reader import RejectedInputError
 
 ENCODER = '/output_encoder'
 
 
 def answered(
-    parameters: NodeParameters, messages: Iterable[Message], home_after: int = -1
+    parameters: NodeParameters,
+    messages: Iterable[Message],
+    *,
+    topics: Collection[str] = ('output_state', 'body_poses'),
+    calibration: Calibration | None = None,
+    home_after: int = -1,
 ) -> list[Message]:
     """Return messages with the outputs of a node, which is homed after a number of rotor states.
 
     The outputs are recorded as soon as they are there.
     """
-    rotor, outputs, recorded = RotorInput(parameters), state_messages(parameters), []
-    encoder = OutputEncoder(parameters, TurnReference(rotor))
+    gear, recorded = GearState(parameters, calibration), []
+    gear.choose(topics)
     for topic, received, data in messages:
         recorded.append((topic, received, data))
-        if topic == ENCODER:
-            encoder.accept(data, lambda: 0)
-        elif topic == ROTOR:
-            sample = rotor.accept(data, lambda: 0)
-            encoded = dict(outputs.encode(sample, ('output_state', 'body_poses')))
-            recorded += [(name, received, encoded[name[1:]]) for name in (OUTPUT, POSES)]
-            if encoder.received:
-                encoder.follow(sample)
-            if rotor.received == home_after:
-                angle = parameters.gear.gear_ratio.rotor_angle(parameters.home_angle)
-                rotor.parameters = replace(parameters, rotor_zero=rotor.zero_for(angle))
-                rotor.home(angle)
+        now = partial(int, received)
+        with suppress(RejectedInputError):
+            if topic == ENCODER:
+                gear.encoder(data, now)
+            elif topic == ROTOR:
+                encoded = gear.encode(gear.rotor(data, now))
+                recorded += [(f'/{name}', received, message) for name, message in encoded]
+                if gear.input.received == home_after:
+                    angle = parameters.gear.gear_ratio.rotor_angle(parameters.home_angle)
+                    homed = replace(parameters, rotor_zero=gear.input.zero_for(angle))
+                    gear.apply(homed, calibration)
+                    gear.input.home(angle)
     return recorded

@@ -11,20 +11,18 @@ import replaying
 import validating
 from calibrations import calibration
 from live import rotor_bytes
+from node_loop import answered
 from shipped_bags import BAGS, JOINT_STATE, read_bag
 from validating import texts, topic_of
 
 from gear_kinematics.bag import Message
 from gear_kinematics.correction.calibration_file import Order
-from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
-from gear_kinematics.state.rotor_input import RotorInput
-from gear_kinematics.state.state_messages import state_messages
 
 STATE, INTERVAL = '/corrected_state', '/corrected_interval'
 NAMES = {'corrected_state': STATE, 'corrected_interval': INTERVAL}
-IDEAL = ('output_state', 'body_poses')
+ALL = ('output_state', 'body_poses', *NAMES)
 MADE = replace(calibration(), spans=replace(calibration().spans, speed=(-40.0, 40.0)))
 WITHIN_TURN = replace(
     MADE,
@@ -33,17 +31,9 @@ WITHIN_TURN = replace(
 )
 
 
-def corrected(messages, config, made=MADE, *, referenced=True) -> list[Message]:
+def corrected(messages, config, made=MADE, topics=tuple(NAMES)) -> list[Message]:
     """Add the corrected output that the node publishes."""
-    states = state_messages(config)
-    corrector = Corrector(made, config.max_rotor_acceleration)
-
-    def answer(sample, rotor):
-        correction = corrector.correct(sample, segment=rotor.segment, referenced=referenced)
-        found = states.encode_corrected(sample, correction)
-        return [(NAMES[name], message) for name, message in found]
-
-    return validating.with_answers(messages, config, answer)
+    return answered(config, messages, calibration=made, topics=topics)
 
 
 @pytest.fixture(scope='module')
@@ -141,31 +131,22 @@ def test_calibration_that_was_set_later_leaves_the_rest_judged(config, servo):
         assert [found.missing for found in report.topics] == [[1, 0, 0, 0], [0, 0, 1, 0]][k]
 
 
-def swings(config) -> list[Message]:
-    """Simulate a rotor that swings, and the ideal outputs."""
+def swings(jump: float = 0.0) -> list[Message]:
+    """Simulate a rotor that swings, and whose encoder jumps after 2.5 s, rad."""
     messages = []
     for k in range(4000):
         phase = math.tau * k / 1000
         angle, velocity = 5.0 * math.sin(phase), 5.0 * math.tau * math.cos(phase)
+        angle += jump * (k >= 2500)
         stamp = 10**18 + k * 10**6
         data = rotor_bytes(stamp, position=[angle], velocity=[velocity], effort=[0.1])
         messages.append(('/rotor_state', stamp, data))
-    return answered(messages, config)
-
-
-def answered(rotor_states, config) -> list[Message]:
-    """Add the ideal outputs."""
-    states, rotor, messages = state_messages(config), RotorInput(config), []
-    for message in rotor_states:
-        sample = rotor.accept(message[2], lambda: 0)
-        messages += [message]
-        messages += ((f'/{name}', message[1], data) for name, data in states.encode(sample, IDEAL))
     return messages
 
 
 def test_lost_inputs_leave_the_history_unknown_and_not_wrong(config):
     """At a turning point, where the play depends on the position that is missing."""
-    bag = corrected(swings(config), config)
+    bag = corrected(swings(), config, topics=ALL)
     stamps = {10**18 + k * 10**6 for k in range(1740, 1761)}
     kept = [m for m in bag if not (m[0] == '/rotor_state' and m[1] in stamps)]
     assert len(kept) == len(bag) - 21
@@ -175,11 +156,17 @@ def test_lost_inputs_leave_the_history_unknown_and_not_wrong(config):
     assert validate(changed(kept, STATE, 2500, velocity=1e-8), config).verdict == Verdict.FAIL
 
 
+def test_turns_that_a_jump_of_the_encoder_made_unknown_are_unknown_here_too(config):
+    report = validate(corrected(swings(jump=100.0), config, topics=ALL), config)
+    assert report.verdict == Verdict.PASS, report.findings
+    assert topic_of(report, INTERVAL).compared > 3900
+
+
 @pytest.mark.parametrize('changes', [{'frame_prefix': 'left_'}, {'rotor_zero': 0.5}])
 def test_prefix_and_zero_are_those_of_the_other_outputs(config, changes):
     rotor = [m for m in read_bag(BAGS / 'servo_point_to_point') if m[0] == '/rotor_state']
     other = replace(config, **changes)
-    messages = corrected(answered(rotor, other), other)
+    messages = corrected(rotor, other, topics=ALL)
     report = validate(messages, config)
     assert report.verdict == Verdict.PASS, report.findings
     if 'rotor_zero' in changes:
@@ -192,7 +179,7 @@ def test_single_turn_encoder_is_judged_where_its_turns_do_not_matter():
     report = validate(corrected(bag, config, WITHIN_TURN), config, WITHIN_TURN)
     assert report.verdict == Verdict.PASS, report.findings
     assert topic_of(report, STATE).compared == 2500
-    report = validate(corrected(bag, config, MADE, referenced=False), config, MADE)
+    report = validate(corrected(bag, config, MADE), config, MADE)
     assert report.verdict == Verdict.PASS
     assert len(report.topics) == 2
     assert any(

@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import pytest
 import validating
+from node_loop import answered
 from shipped_bags import BAGS, read_bag
 from validating import topic_of
 
 from gear_kinematics.kinematics.loads import Bodies
 from gear_kinematics.report.document import Verdict
-from gear_kinematics.state.loads import Loads
 
 NAMES = {'branch_loads': '/branch_loads', 'joint_loads': '/joint_loads'}
 HEAVY = Bodies(0.05, 2e-5, 0.02, 3e-6, 4e-5, 0.4)
@@ -18,13 +18,7 @@ HEAVY = Bodies(0.05, 2e-5, 0.02, 3e-6, 4e-5, 0.4)
 
 def loaded(messages, config):
     """Add the loads that the node publishes."""
-    loads = Loads(config)
-
-    def answer(sample, rotor):
-        found = loads.encode(sample.stamp, loads.follow(sample, rotor.segment))
-        return [(NAMES[name], message) for name, message in found]
-
-    return validating.with_answers(messages, config, answer)
+    return answered(config, messages, topics=NAMES)
 
 
 @pytest.fixture(params=[Bodies(), HEAVY], ids=['at rest', 'with masses'])
