@@ -23,7 +23,8 @@ from gear_kinematics.measurement.columns import (
     find_columns,
     nanoseconds_beside,
 )
-from gear_kinematics.measurement.commissioning.joint import count_wraps, other_unit
+from gear_kinematics.measurement.commissioning.encoder_range import count_wraps
+from gear_kinematics.measurement.commissioning.joint import other_unit
 from gear_kinematics.measurement.dialects import Table, open_text
 from gear_kinematics.measurement.encoder_step import Step, step_of
 from gear_kinematics.measurement.formats import FORMATS

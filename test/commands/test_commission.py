@@ -167,3 +167,17 @@ def test_joints_are_found_and_a_check_takes_those_of_the_file(topics, positions,
     assert main(['commission', bag, '-o', str(file), '--joint', 'm', '--encoder-joint', 'o']) == 0
     assert NodeParameters.load(file).output_encoder_joint == 'o'
     assert main(['commission', bag, '--check', str(file)]) == 0
+
+
+def test_range_of_the_rotor_is_found_and_written(shared_path, positions, tmp_path, capsys):
+    """In a table of the protocol of ±12.5 rad, and in a bag."""
+    times, rotor, output = positions
+    rotor = np.remainder(rotor + 12.5, 25.0) - 12.5
+    both = (Samples(stamps(times), each) for each in (rotor, output))
+    table = shared_path('data/faults/position_wraps_at_12.5_rad.csv')
+    for k, recording in enumerate((table, write_recording(tmp_path / 'bag', *both))):
+        path = tmp_path / f'{k}.yaml'
+        assert main(['commission', str(recording), '-o', str(path)]) == 0
+        assert "The rotor's position repeats after 25 rad." in capsys.readouterr().out
+        file = NodeParameters.load(path)
+        assert (file.gear_ratio, file.rotor_encoder_range) == ('-19', 25.0)

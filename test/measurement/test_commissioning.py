@@ -17,6 +17,8 @@ from simulated_encoders import TURN, Drive, ramped_strokes, stamps
 from gear_kinematics.kinematics.gear_ratio import GearRatio
 from gear_kinematics.measurement.commissioning.analysis import Channel, Request, commission
 from gear_kinematics.measurement.commissioning.document import actuator_file, document
+from gear_kinematics.measurement.commissioning.encoder_range import find_range
+from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.measurement.recording import Recording, RecordingError
 from gear_kinematics.parameters import NodeParameters
 
@@ -94,6 +96,44 @@ def test_file_gives_the_output_angle_of_the_encoder(ratio, senses, wraps, tmp_pa
         whole = TURN / abs(ratio.numerator)
         error = wrapped(error, whole, -0.5 * whole)
     assert np.max(np.abs(error)) < 2.5e-3
+
+
+COUNT = TURN / 4096  # of a counter
+
+
+@pytest.mark.parametrize(
+    ('size', 'low', 'step', 'found'),
+    [
+        (25.0, -12.5, 0.0, 25.0),
+        (8 * math.pi, -4 * math.pi, 0.0, 8 * math.pi),
+        (25.14, -12.57, 25.14 / 65535, 25.14),
+        (65536 * COUNT, -32768 * COUNT, COUNT, 16 * TURN),
+        (65535 * COUNT, -32767 * COUNT, COUNT, 65535 * COUNT),
+        (65536 / 10_000 * TURN, 0.0, TURN / 10_000, 6.5536 * TURN),
+    ],
+)
+@pytest.mark.parametrize('every', [1, 4])
+def test_position_that_repeats_after_another_range(size, low, step, found, every, tmp_path):
+    """Of protocols that send ±12.5 rad or ±4π, and of counters of 16 bits."""
+    times, rotor, output = (values[::every] for values in readings(zeros=(7.0, 0.0)))
+    position = wrapped(rotor, size, low)
+    position = np.round(position / step) * step if step else position
+    result = commissioned(recorded(position, output, times))
+    assert result.between == -19
+    assert f'position repeats after {found:.6g}'[:30] in result.answer
+    file = parameters(result, tmp_path)
+    assert file.rotor_encoder_range == pytest.approx(found, rel=4e-6, abs=1e-8)
+    error = (rotor - file.rotor_zero) / -19.0 - output
+    assert np.max(np.abs(wrapped(error, size / 19, -size / 38))) < 4e-3
+
+
+def test_steps_of_a_servo_and_a_restart_are_no_range():
+    times, rotor, _ = readings()
+    servo = np.where(np.arange(len(rotor)) // 50 % 2, 1.5, -1.5)
+    restarted = rotor - 40.0 * (times > 12.0)
+    for values in (servo, restarted):
+        noisy = values + 1e-4 * np.sin(np.arange(len(values)))
+        assert find_range(noisy, times, Step(0.0, seen=False)) == (0.0, 0)
 
 
 @given(

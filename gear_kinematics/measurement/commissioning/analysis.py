@@ -117,9 +117,11 @@ def commission(
     notes = [f'{reached}. Rates: {rotor} of the rotor, {output} of the output.']
     named = ('rotor_joint', request.rotor), ('output_encoder_joint', request.output)
     names = (Value(name, joint, f'a joint of {topic}') for name, (topic, joint) in named if topic)
-    values = [*(() if request.file else names), _kind(joints)]
+    values = [*(() if request.file else names), *_kind(joints)]
     if between:
         answer = f'The gear has the ratio {request.ratio or between} ({evidence}).'
+        if longest.rotor_range not in {0.0, TURN}:
+            answer += f" The rotor's position repeats after {number(longest.rotor_range, 6)} rad."
         values += _ratio(between, evidence, request)
         values += _zeros(joints, between, request)
         travel = known.transmission_error_travel
@@ -163,15 +165,27 @@ def _decided(
     return ratio, None, f'The given ratio {exact} does not agree with the measured {seen}.'
 
 
-def _kind(joints: Sequence[Joint]) -> Value:
-    """The kind of the rotor's encoder."""
-    if wraps := sum(joint.rotor_wraps for joint in joints):
-        return Value('rotor_encoder', 'single_turn', f'{counted(wraps, "wrap")} of a turn')
+def _kind(joints: Sequence[Joint]) -> Iterator[Value]:
+    """The kind of the rotor's encoder, and its range."""
+    ranges = {joint.rotor_range for joint in joints if joint.rotor_range}
+    wraps = counted(sum(joint.rotor_wraps for joint in joints), 'wrap')
     turns = max(float(np.ptp(joint.turned)) for joint in joints) / TURN
     seen = f'the rotor turned {number(turns)} turns'
-    if turns <= _ONE_TURN:
-        return Value('rotor_encoder', None, f'{seen}; turn it by more than one')
-    return Value('rotor_encoder', 'multi_turn', f'{seen} without a wrap')
+    if len(ranges) > 1:
+        found = ' and '.join(number(each) for each in sorted(ranges))
+        yield Value('rotor_encoder_range', None, f'it differs: {found} rad; record again')
+    elif ranges == {TURN}:
+        yield Value('rotor_encoder', 'single_turn', f'{wraps} of a turn')
+    elif ranges:
+        yield Value('rotor_encoder', 'multi_turn', f'{seen} with {wraps}')
+        size = ranges.pop()
+        whole = f' ({round(size / TURN)} turns)' if size == TURN * round(size / TURN) else ''
+        evidence = f'{wraps} by equal steps of {number(size, 6)} rad{whole}'
+        yield Value('rotor_encoder_range', size, evidence)
+    elif turns <= _ONE_TURN:
+        yield Value('rotor_encoder', None, f'{seen}; turn it by more than one')
+    else:
+        yield Value('rotor_encoder', 'multi_turn', f'{seen} without a wrap')
 
 
 def _ratio(between: GearRatio, evidence: str, request: Request) -> Iterator[Value]:
@@ -205,8 +219,11 @@ def _zeros(joints: Sequence[Joint], between: GearRatio, request: Request) -> Ite
     zeros = last.turned - ratio * (last.encoders.measured - zero)
     mean, spread = float(np.mean(zeros)), float(np.ptp(zeros / ratio))
     period, error = abs(ratio) * turn, max(spread, ENCODER_ERROR)
-    if any(joint.rotor_wraps for joint in joints) or (file and file.single_turn):
+    repeats = max(joint.rotor_range for joint in joints) or (file.rotor_period if file else 0.0)
+    if repeats == TURN:
         mean, period = mean % TURN, TURN / between.denominator
+    elif repeats:
+        mean, period = math.remainder(mean, repeats), repeats
     if file:
         if abs(math.remainder(file.output_encoder_zero - shown, turn)) <= error:
             shown = file.output_encoder_zero

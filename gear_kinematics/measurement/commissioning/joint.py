@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import TURN, split_turns
+from gear_kinematics.measurement.commissioning.encoder_range import count_wraps, find_range
 from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RecordingError
 from gear_kinematics.report.document import counted
@@ -17,12 +18,6 @@ _NEAR = 0.1
 """s between a moment that is named and the sample that is taken for it."""
 _TURNS = {'degrees': 360.0, 'turns': 1.0}
 """A turn in the units that positions may have in place of rad."""
-_UNCLEAR = 0.3, 0.7
-"""Turns between samples that may be a motion or a wrap."""
-_MOST_UNCLEAR = 0.05
-"""Of such steps, as a share of the wraps, as in gaps: with more, there is no wrap at all."""
-_MOST_SPAN = 1.001
-"""Turns within which positions are that wrap, with room for noise and rounding."""
 _SAME_COUNTS = 0.02
 """Share by which counts that wraps show in a turn may differ from a power of two, as the speed
 changes; 4000 differ from 4096 by 0.023."""
@@ -45,6 +40,8 @@ class Joint:
     """(n,), rad, of the rotor, at the output's angles `encoders.measured`."""
     rotor_wraps: int
     output_wraps: int
+    rotor_range: float
+    """rad, after which the rotor's position repeats; 0 if it does not."""
 
     @classmethod
     def of(cls, recording: Recording, encoders: Encoders) -> 'Joint':
@@ -66,13 +63,14 @@ class Joint:
             if unit := other_unit(values, step):
                 hint = 'of a CSV, --angle-unit, --rotor-counts and --output-counts tell the unit'
                 raise RecordingError(f'{path}: the positions of the {body} are {unit}; {hint}')
-        wraps = count_wraps(rotor, TURN), count_wraps(measured, TURN)
-        rotor = np.unwrap(rotor) if wraps[0] else rotor
-        measured = np.unwrap(measured) if wraps[1] else measured
+        period, wraps = find_range(rotor, motion.seconds, encoders.rotor_step)
+        output_wraps = count_wraps(measured, TURN)
+        rotor = np.unwrap(rotor, period=period) if wraps else rotor
+        measured = np.unwrap(measured) if output_wraps else measured
         turns, angle = split_turns(rotor)
         motion = motion._replace(turns=turns, angle=angle)
         unwrapped = replace(encoders, rotor=motion, measured=measured)
-        return cls(recording, unwrapped, unwrapped.at_measured(rotor), *wraps)
+        return cls(recording, unwrapped, unwrapped.at_measured(rotor), wraps, output_wraps, period)
 
     @property
     def travel(self) -> float:
@@ -95,19 +93,6 @@ class Joint:
         return row
 
 
-def count_wraps(values: Array, turn: float, error: float = 1.0) -> int:
-    """Count the wraps of positions (n,), in the order of time, in a unit; error: of its turn."""
-    size = np.abs(np.diff(values)) / turn
-    low, high = _UNCLEAR
-    wraps = np.flatnonzero(size >= high)
-    unclear = np.count_nonzero((size > low) & (size < high))
-    if not len(wraps) or unclear > _MOST_UNCLEAR * len(wraps):
-        return 0
-    motion = np.abs(size - np.round(size))[np.maximum(wraps - 1, 0)]  # goes on in the wrap
-    same = abs(float(np.median(size[wraps] + motion)) - 1.0) < error
-    return len(wraps) if same and np.ptp(values) <= _MOST_SPAN * turn else 0
-
-
 def other_unit(values: Array, step: Step) -> str:
     """The unit of positions with a step, what shows it and what to do, if it is not rad."""
     rounded, units = np.round(values), dict(_TURNS)
@@ -117,7 +102,9 @@ def other_unit(values: Array, step: Step) -> str:
     for unit, turn in units.items():
         bits = math.log2(turn / step.size) if step.seen and not whole else 0.0
         if wraps := count_wraps(values, turn, _SAME_COUNTS if unit == 'counts' else 1.0):
-            return f'{unit} ({counted(wraps, "wrap")} at {turn:g}): multiply by {TURN / turn:.9g}'
+            many = ' if these are a turn' if unit == 'counts' else ''
+            shown = f'{unit} ({counted(wraps, "wrap")} at {turn:g})'
+            return f'{shown}: multiply by {TURN / turn:.9g}{many}'
         if round(bits) >= _MIN_BITS and abs(bits - round(bits)) < _POWER:
             return f'{unit} (steps of 1/2^{round(bits)} turn): multiply by {TURN / turn:.9g}'
     return 'counts (whole numbers), of which a turn has an unknown number' if whole else ''

@@ -1,0 +1,88 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The range of an encoder whose positions repeat, found by equal steps back by it."""
+
+import math
+
+import numpy as np
+
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.measurement.encoder_step import Step
+from gear_kinematics.measurement.recording import Array
+
+_UNCLEAR = 0.3, 0.7
+"""Ranges between samples that may be a motion or a wrap."""
+_MOST_UNCLEAR = 0.05
+"""Of such steps, as a share of the wraps, as in gaps: with more, there is no wrap at all."""
+_MOST_SPAN = 1.001
+"""Ranges within which positions are that wrap, with room for noise and rounding."""
+_EQUAL = 0.02
+"""Share by which the range that steps show may differ from it, as the speed changes."""
+_AROUND = 8  # samples before and after a wrap in which the motion goes on
+_LEAST_MOTION = 1e-3  # ranges in these samples: less is a shaft that rests
+_SPREADS, _ACCURACY = 6.0, 1e-6
+"""Standard uncertainties, or the share, within which a range is a round one."""
+_DECIMALS, _BY_CHANCE = 3, 0.05
+"""Most decimals of a round range, and the probability below which one is no coincidence."""
+
+
+def count_wraps(values: Array, turn: float, error: float = 1.0) -> int:
+    """Count the wraps of positions (n,), in the order of time, in a unit; error: of its turn."""
+    size = np.abs(np.diff(values)) / turn
+    low, high = _UNCLEAR
+    wraps = np.flatnonzero(size >= high)
+    unclear = np.count_nonzero((size > low) & (size < high))
+    if not len(wraps) or unclear > _MOST_UNCLEAR * len(wraps):
+        return 0
+    motion = np.abs(size - np.round(size))[np.maximum(wraps - 1, 0)]  # goes on in the wrap
+    same = abs(float(np.median(size[wraps] + motion)) - 1.0) < error
+    return len(wraps) if same and np.ptp(values) <= _MOST_SPAN * turn else 0
+
+
+def find_range(values: Array, seconds: Array, step: Step) -> tuple[float, int]:
+    """Find after which angle positions repeat, in the order of time.
+
+    Args:
+        values: (n,), rad.
+        seconds: (n,), s.
+        step: rad, of the encoder.
+
+    Returns:
+        The range, rad, and the number of wraps that show it; 0 and 0 if they do not repeat.
+    """
+    if wraps := count_wraps(values, TURN):
+        return TURN, wraps
+    steps = np.diff(values)
+    edges = np.flatnonzero(np.abs(steps) > 0.5 * np.ptp(values)).tolist()
+    sizes, goes_on = [], 0
+    for before, edge, after in zip([-1, *edges], edges, [*edges[1:], len(steps)], strict=False):
+        near = slice(max(before + 1, edge - _AROUND), min(after, edge + _AROUND) + 1)
+        size, moves = _step_back(values[near], seconds[near], edge - near.start)
+        sizes.append(size)
+        goes_on += moves
+    size = float(np.median(sizes)) if sizes else 0.0
+    counted = count_wraps(values, size, _EQUAL) if size else 0
+    if counted <= 1 or 2 * goes_on <= len(edges):
+        return 0.0, 0
+    spread = 1.5 * float(np.median(np.abs(np.subtract(sizes, size)))) / math.sqrt(len(sizes))
+    tolerance = max(0.5 * step.size, _ACCURACY * size, 0.0 if step.seen else _SPREADS * spread)
+    for scale in (TURN, *(10.0**-k for k in range(_DECIMALS + 1))):
+        whole = scale * round(size / scale)
+        if abs(size - whole) <= tolerance <= 0.5 * _BY_CHANCE * scale:
+            return whole if scale == TURN else round(whole, _DECIMALS), counted
+    return step.size * round(size / step.size) if step.seen else size, counted
+
+
+def _step_back(values: Array, seconds: Array, edge: int) -> tuple[float, bool]:
+    """Find by how much the positions step at an edge, beyond the motion there.
+
+    Returns:
+        The size, rad, and whether the motion goes on the other way before and behind it. That of
+        a servo which is sampled slowly steps as well, but rests before and after.
+    """
+    behind = np.arange(len(values)) > edge
+    time = seconds - seconds[edge]
+    degree = min(3, len(values) - edge - 2, edge)
+    powers = (time / (np.ptp(time) or 1.0)) ** np.arange(degree + 1)[:, np.newaxis]
+    (size, *_), *_ = np.linalg.lstsq(np.vstack([behind, powers]).T, values, rcond=None)
+    travel = values[edge] - values[0], values[-1] - values[edge + 1]
+    return abs(float(size)), max(np.array(travel) * np.sign(size)) < -_LEAST_MOTION * abs(size)
