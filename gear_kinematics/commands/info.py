@@ -12,6 +12,7 @@ from gear_kinematics.bag.roles import described
 from gear_kinematics.bag.summary import Summary, summarise
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Console, complain, message_progress
+from gear_kinematics.measurement.rotor_fields import recorded_questions
 from gear_kinematics.report.document import counted, number, printable
 
 _DIGITS = 4
@@ -34,21 +35,30 @@ def run(options: argparse.Namespace) -> ExitCode:
         try:
             with Bag(path) as bag, message_progress(path.name, quiet=options.quiet) as progress:
                 summary = summarise(bag, options.rotor_topic, options.joint or '', progress)
+                asked = [*_questions(bag, summary, options.joint or '')]
         except (ValueError, OSError) as error:
             faults.append(str(error))
             continue
         if summary.damage:
             faults.append(summary.damage)
         if not options.quiet:
-            _print_summary(str(path), summary, verbose=options.verbose)
+            _print_summary(str(path), summary, asked, verbose=options.verbose)
     for fault in faults:
         complain(fault)
     return ExitCode.UNUSABLE if faults else ExitCode.DONE
 
 
-def _print_summary(name: str, summary: Summary, *, verbose: bool) -> None:
+def _questions(bag: Bag, summary: Summary, joint: str) -> Iterator[str]:
+    """Yield what seems to be wrong with the messages of the rotor, if it is known which it is."""
+    for topic in summary.topics:
+        if topic.part == 'rotor' and (joint or len(topic.joints) == 1):
+            for question in recorded_questions(bag, topic.name, joint or topic.joints[0]):
+                yield f'{topic.name}: {question}'
+
+
+def _print_summary(name: str, summary: Summary, asked: list[str], *, verbose: bool) -> None:
     console = Console()
-    parts = [printable(part) for part in _parts(summary, verbose=verbose)]
+    parts = [printable(part) for part in (*_parts(summary, verbose=verbose), *asked)]
     text = ('\n  ' if verbose else '; ').join(parts)
     console.print(Text(f'{printable(name)}: {text}'), soft_wrap=not console.is_terminal)
 

@@ -7,9 +7,10 @@ from pathlib import Path
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.encoders import add_known_ratio, known_ratio
 from gear_kinematics.commands.joints import ask, can_ask, choose_joint
-from gear_kinematics.commands.output import Console, warn_of_shared_memory
+from gear_kinematics.commands.output import Console, complain, warn_of_shared_memory
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.commissioning.analysis import Channel
+from gear_kinematics.measurement.rotor_fields import questions
 from gear_kinematics.parameters import default_config
 from gear_kinematics.parameters.new_config import new_config, start_command, write_new
 from gear_kinematics.report.document import printable
@@ -63,4 +64,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         'Start the node:'
     )
     print(f'    {start_command(topic, str(path))}')
+    heard = next(driver.messages for driver in drivers if driver.topic == topic)
+    for question in questions([m[2] for m in heard], [m[1] for m in heard], joint):
+        complain(f'{topic}: {question}')
     return ExitCode.DONE

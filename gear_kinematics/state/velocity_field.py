@@ -33,6 +33,11 @@ class Finding(StrEnum):
     UNKNOWN = 'an unknown quantity'
 
 
+def contradiction(finding: Finding) -> str:
+    """Say that velocities contradict the positions, and what they seem to be."""
+    return f'the velocities contradict the positions: they seem to be {finding}'
+
+
 class VelocityField:
     """Follows positions and velocities of the rotor, and finds what the velocities are."""
 
@@ -64,7 +69,9 @@ class VelocityField:
         """What the velocities seem to be; '' unless they contradict the positions."""
         if not self.contradicts:
             return ''
-        return f'the velocities contradict the positions: they seem to be {self.finding}'
+        seem = contradiction(self.finding)
+        unknown = self.finding is Finding.UNKNOWN and math.isfinite(self.factor)
+        return f'{seem}, {self.factor:.3g} times the slope' if unknown else seem
 
     def believed(self, stamps: Array, values: Array, finest: float) -> Array:
         """Note readings in order of time.

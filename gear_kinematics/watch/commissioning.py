@@ -3,6 +3,7 @@
 
 import math
 import time
+from collections import deque
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
@@ -19,6 +20,7 @@ from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.commissioning.analysis import Commissioning, Request, commission
 from gear_kinematics.measurement.commissioning.document import actuator_file
 from gear_kinematics.measurement.reading import States
+from gear_kinematics.measurement.rotor_fields import questions
 from gear_kinematics.measurement.wording import shown
 from gear_kinematics.parameters import PARAMETERS, NodeParameters, default_config
 from gear_kinematics.parameters.new_config import start_command, write_new
@@ -42,6 +44,7 @@ class LiveCommissioning:
         self._topics = request.rotor.topic, request.output.topic
         rotor, output = request.rotor.joint, request.output.joint
         parameters = replace(NodeParameters.load(), rotor_joint=rotor, output_encoder_joint=output)
+        self._rotor = deque[Message](maxlen=_MOST_STATES)
         self._states = States(*self._topics, parameters, _MOST_STATES)
         self._taken: SimpleQueue[list[Message]] = SimpleQueue()
         self._count, self._due = 0, 0.0
@@ -50,6 +53,7 @@ class LiveCommissioning:
 
     def take(self, messages: Sequence[Message]) -> None:
         """Add messages of any topics, and show the result of the last analysis."""
+        self._rotor.extend(message for message in messages if message[0] == self._topics[0])
         self._taken.put([message for message in messages if message[0] in self._topics])
         if time.monotonic() >= self._due and self._analysis.done():
             before, self._analysis = self._analysis, self._pool.submit(self._guide)
@@ -58,7 +62,10 @@ class LiveCommissioning:
 
     def result(self) -> Commissioning:
         """Analyse the messages so far; raises ValueError if there is nothing to measure."""
-        return self._pool.submit(self._analyse).result()
+        result = self._pool.submit(self._analyse).result()
+        data, received = [m[2] for m in self._rotor], [m[1] for m in self._rotor]
+        asked = questions(data, received, self.request.rotor.joint, result.between)
+        return replace(result, questions=tuple(asked))
 
     def _analyse(self) -> Commissioning:
         while not self._taken.empty():

@@ -2,9 +2,9 @@
 """The drivers, with their joints and rates."""
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rclpy.node import Node
 
@@ -25,6 +25,7 @@ class DriverTopic:
     topic: str
     joints: tuple[str, ...]  # as `rotor_joint` selects them; empty before the first message
     rate: float  # messages per second
+    messages: Sequence[Message] = ()  # as heard by `listen`
 
 
 class Listener:
@@ -70,12 +71,16 @@ def listen(seconds: float = _WAIT) -> list[DriverTopic]:
     with replay_node('') as node:
         listener = Listener(node)
         found: list[DriverTopic] = []
+        messages: list[Message] = []
         end = time.monotonic() + seconds
         while (now := time.monotonic()) < end or (
             now < end + seconds and not all(driver.joints for driver in found)
         ):
             listener.look(Graph(node).drivers())
-            listener.poll()
+            messages += listener.poll()
             found = listener.drivers()
             time.sleep(_PERIOD)
-        return found
+        return [
+            replace(driver, messages=[each for each in messages if each[0] == driver.topic])
+            for driver in found
+        ]

@@ -18,6 +18,7 @@ from types import SimpleNamespace
 import pytest
 from blocked_bags import wait_until
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from live import rotor_bytes
 from rclpy.node import Node
 from rclpy.serialization import serialize_message
 from rich.console import Console
@@ -550,6 +551,18 @@ def test_init_writes_what_is_named(listening, capsys):
     assert (written.rotor_joint, written.gear_ratio) == ('m1', '101/2')
     command = "gear_state_publisher --ros-args --params-file 'a b.yaml' -r rotor_state:="
     assert f'{command}/motor/joint_states\n' in capsys.readouterr().out
+
+
+@pytest.mark.usefixtures('listening')
+def test_init_questions_velocities_that_contradict_the_positions(monkeypatch, capsys):
+    moving = [
+        ('/motor', k, rotor_bytes(k * 10_000_000, ['m1'], [0.5 * k], [477.5]))
+        for k in range(1, 200)
+    ]
+    monkeypatch.setattr(drivers, 'listen', lambda: [DriverTopic('/motor', ('m1',), 99.0, moving)])
+    assert main(['init', '--joint', 'm1']) == 0
+    expected = 'gearkin: /motor: the velocities contradict the positions: they seem to be rpm\n'
+    assert capsys.readouterr().err == expected
 
 
 def test_init_without_a_driver_says_so(listening, monkeypatch, capsys):

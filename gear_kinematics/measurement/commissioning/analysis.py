@@ -84,6 +84,8 @@ class Commissioning:
     values: tuple[Value, ...]
     notes: tuple[str, ...]
     """Sentences on what is no parameter."""
+    questions: tuple[str, ...] = ()
+    """Clauses on fields of the rotor's messages that seem to be wrong."""
 
     def changes(self, parameters: NodeParameters) -> dict[str, tuple[Any, Any]]:
         """What parameters have, and what it has to be, by names."""

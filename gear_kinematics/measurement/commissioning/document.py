@@ -47,7 +47,7 @@ def actuator_file(result: Commissioning, name: str = default_config().name) -> s
         else:
             lines += _comment(found.evidence, _INDENT)
             lines.append(f'{_INDENT}{found.name}: {_yaml(found.value)}')
-    for note in result.notes:
+    for note in (*result.notes, *(f'{question}.' for question in result.questions)):
         lines += _comment(note, _INDENT)
     return '\n'.join([*lines, ''])
 
@@ -85,7 +85,7 @@ def document(result: Commissioning, target: str) -> Document:
         printable(', '.join(names)),
         (table,),
         verdict,
-        (Finding('finding', printable(answer)),),
+        tuple(Finding('finding', printable(each)) for each in (answer, *result.questions)),
         tuple(map(printable, remarks)),
         _figure(result),
     )
@@ -99,7 +99,7 @@ def document(result: Commissioning, target: str) -> Document:
         'travel': result.longest.travel,
         'values': plain(result.values),
         'contradicted': [*wrong],
-        'remarks': remarks,
+        'remarks': [*remarks, *result.questions],
     }
     return Document('gearkin commission', (section,), data, verdict)
 

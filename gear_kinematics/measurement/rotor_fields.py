@@ -1,0 +1,75 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""What the velocities and efforts in a driver's messages seem to be, if no rad/s and N·m."""
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+
+import numpy as np
+
+from gear_kinematics.bag import Bag, DamagedBagError
+from gear_kinematics.measurement.commissioning.encoder_range import find_range
+from gear_kinematics.measurement.encoder_step import Step
+from gear_kinematics.state.effort_field import EffortField, questioned
+from gear_kinematics.state.velocity_field import Finding, VelocityField, contradiction
+from gear_kinematics.wire.batches import decode_joint_states
+from gear_kinematics.wire.cdr import SECOND
+
+_MOST = 500_000
+"""Messages that are looked at; they take about 200 bytes each."""
+_FEWEST = 10
+_MOVED = 1.0  # rad, by which a rotor has moved for certain
+_EQUAL = 1e-9  # rad, below which positions differ by rounding alone
+
+
+def questions(
+    data: Sequence[bytes], received: Sequence[int], joint: str, ratio: Fraction | None = None
+) -> Iterator[str]:
+    """Yield clauses on fields of n messages that seem to be wrong.
+
+    Args:
+        data: serialised sensor_msgs/JointState.
+        received: when they were, ns; these times replace missing stamps.
+        joint: the rotor's; '' takes the only one.
+        ratio: of the gear, if it is known, to recognise velocities of the output.
+    """
+    states = decode_joint_states(data, joint)
+    stamp = np.where(states.stamp == 0, np.asarray(received, np.int64), states.stamp)
+    newest = np.append(np.iinfo(np.int64).min, np.maximum.accumulate(stamp)[:-1])
+    rows = np.flatnonzero(np.isfinite(states.values[:, 0]) & (stamp > newest))
+    if len(rows) < _FEWEST:
+        return
+    stamp, values = stamp[rows], states.values[rows]
+    period, _ = find_range(values[:, 0], (stamp - stamp[0]) / SECOND, Step(0.0, seen=False))
+    if period:
+        values[:, 0] = np.unwrap(values[:, 0], period=period)
+    steps = np.abs(np.diff(values[:, 0]))
+    given = values[np.isfinite(values[:, 1]), 1]
+    velocities = VelocityField(float(1 / ratio) if ratio else np.nan)
+    velocities.believed(stamp, values, float(np.min(steps[steps > _EQUAL], initial=1.0)))
+    if len(given) and not given.any() and np.ptp(values[:, 0]) > _MOVED:
+        yield contradiction(Finding.ZERO)
+    elif velocities.meaning:
+        yield velocities.meaning
+    field = EffortField()
+    field.all_believed(values[:, 0], values[:, 2])
+    if field.absent:
+        yield 'the effort is 0 throughout the motion, and taken as none'
+    efforts = values[np.isfinite(values[:, 2]), 2]
+    if question := questioned(float(np.max(np.abs(efforts), initial=0.0))):
+        yield question
+
+
+def recorded_questions(
+    bag: Bag, topic: str, joint: str, ratio: Fraction | None = None
+) -> Iterator[str]:
+    """Yield the questions on a topic of a bag, up to any damage; see `questions`."""
+    data, received = list[bytes](), list[int]()
+    try:
+        for batch in bag.batches([topic]):
+            received += [message[1] for message in batch]
+            data += [message[2] for message in batch]
+            if len(data) > _MOST:
+                break
+    except DamagedBagError:
+        pass  # which the reader of the recording says
+    yield from questions(data, received, joint, ratio)

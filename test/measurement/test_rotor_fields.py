@@ -1,0 +1,60 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Velocities and efforts of drivers that are no rad/s and N·m of the rotor."""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from gear_recordings import Samples, write_recording
+from simulated_encoders import stamps
+
+from gear_kinematics.bag import Bag
+from gear_kinematics.commands.cli import main
+from gear_kinematics.measurement.rotor_fields import recorded_questions
+
+TIMES = np.arange(0.0, 8.0, 0.01)
+OUTPUT = np.clip(np.abs(TIMES - 4.0) * -2.0 + 8.0, 0.0, 7.5)  # rad: there, a rest, and back
+ROTOR = -19.0 * OUTPUT
+SPEED = np.gradient(ROTOR, TIMES)
+CONTRADICTS = 'the velocities contradict the positions: they seem to be '
+
+
+def recorded(folder, factor, efforts, wrap):
+    rotor = np.remainder(ROTOR + wrap / 2, wrap) - wrap / 2 if wrap else ROTOR
+    messages = Samples(stamps(TIMES), rotor, efforts, velocities=factor * SPEED)
+    return write_recording(folder / 'bag', messages, Samples(stamps(TIMES), OUTPUT))
+
+
+@pytest.mark.parametrize('wrap', [0.0, math.tau, 25.0])
+@pytest.mark.parametrize(
+    ('factor', 'efforts', 'asked'),
+    [
+        (1.0, np.sin(TIMES), []),
+        (0.0, None, [CONTRADICTS + '0']),
+        (30.0 / math.pi, None, [CONTRADICTS + 'rpm']),
+        (0.5 / math.pi, None, [CONTRADICTS + 'turns/s']),
+        (180.0 / math.pi, None, [CONTRADICTS + 'deg/s']),
+        (-1.0 / 19.0, None, [CONTRADICTS + 'the velocity of the output']),
+        (-0.3, None, [CONTRADICTS + 'an unknown quantity, -0.3 times the slope']),
+        (1.0, 0.0 * TIMES, ['the effort is 0 throughout the motion, and taken as none']),
+        (1.0, 700.0 * np.sin(TIMES), ['efforts of up to 700 N·m at the rotor are more']),
+    ],
+)
+def test_wrong_fields_are_named(factor, efforts, asked, wrap, tmp_path, capsys, monkeypatch):
+    """By the function, by info, which does not know the ratio, and by commission."""
+    path = recorded(tmp_path, factor, efforts, wrap)
+    with Bag(path) as bag:
+        found = [*recorded_questions(bag, '/rotor_state', 'rotor', Fraction(-19))]
+    assert [each[: len(want)] for each, want in zip(found, asked, strict=True)] == asked
+    assert main(['info', str(path)]) == 0
+    told = capsys.readouterr().out
+    assert ('/rotor_state: ' in told) is bool(asked)
+    if 'output' not in ''.join(asked):
+        assert all(f'/rotor_state: {each}' in told for each in asked)
+    monkeypatch.chdir(tmp_path)
+    assert main(['commission', str(path)]) == 0
+    told = capsys.readouterr().out
+    assert [
+        line[5 : 5 + len(want)] for line, want in zip(told.splitlines()[1:], asked, strict=True)
+    ] == asked
