@@ -19,9 +19,9 @@ from gear_kinematics.commands.output import Console, message_progress, warn_of_s
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.measurement.commissioning import analysis
 from gear_kinematics.measurement.commissioning.document import actuator_file, document
+from gear_kinematics.measurement.formats import is_table, open_bag
 from gear_kinematics.measurement.reading import read_encoders
 from gear_kinematics.measurement.rotor_fields import recorded_questions
-from gear_kinematics.measurement.tables import is_table, open_bag
 from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.parameters.new_config import write_new
 from gear_kinematics.report.document import Verdict

@@ -10,8 +10,8 @@ from gear_kinematics.commands import arguments
 from gear_kinematics.commands.bags import add_rotor
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.columns import ANGLE_UNITS, Sources
+from gear_kinematics.measurement.formats import is_table
 from gear_kinematics.measurement.recording import Recording
-from gear_kinematics.measurement.tables import is_table
 from gear_kinematics.report.document import printable
 
 _COLUMNS = {

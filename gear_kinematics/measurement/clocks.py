@@ -2,8 +2,10 @@
 """The times in a table: their unit, and the rows that are in order."""
 
 import shlex
+from bisect import bisect_right
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gear_kinematics.measurement.columns import TIME_UNITS, Column
 from gear_kinematics.measurement.recording import Array
@@ -29,7 +31,8 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
     times, angle = times[known].astype(float), angle[known]
     later = np.diff(times) > 0.0
     if not later.any():
-        raise ValueError(f'the times in {clock.name}: they stand still, or are no numbers')
+        cause = 'they stand still' if known.any() else 'no numbers nor ISO 8601'
+        raise ValueError(f'the times in {clock.name}: {cause}')
     steps = np.diff(times)[later]
     step = float(np.median(steps))
     speed = float(np.quantile(np.abs(np.diff(angle)[later]) / steps, _MOST))
@@ -97,22 +100,34 @@ def stamps(
 def _order(stamp: Array) -> tuple[Array, int]:
     """Find the rows that are in order, and the row where the clock was set back.
 
-    Of rows that contradict each other, the fewer are left out, be they late or early.
+    Of rows that contradict each other, the fewest are left out, be they late or early.
     """
-    kept, end = np.arange(len(stamp)), len(stamp)
-    while True:
-        time = stamp[kept]
-        late = time < np.maximum.accumulate(time)
-        early = time > np.minimum.accumulate(time[::-1])[::-1]
-        edges = np.flatnonzero(np.diff(late | early, prepend=False, append=False))
-        if not len(edges):
-            return kept, end
-        out = np.zeros(len(kept), bool)
-        for begin, stop in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
-            one = min((late[begin:stop], early[begin:stop]), key=np.count_nonzero)
-            if np.count_nonzero(one) > _LATE_ROWS:
-                first = begin + int(np.argmax(late[begin:stop]))
-                end, out = int(kept[first]), out | (np.arange(len(out)) >= first)
-                break
-            out[begin:stop] = one
-        kept = kept[~out]
+    late = stamp < np.maximum.accumulate(stamp)
+    early = stamp > np.minimum.accumulate(stamp[::-1])[::-1]
+    edges = np.flatnonzero(np.diff(late | early, prepend=False, append=False)).tolist()
+    kept = np.ones(len(stamp), bool)
+    for begin, end in zip(edges[::2], edges[1::2], strict=True):
+        kept[begin:end] = _longest(stamp[begin:end].tolist())
+        gone = np.flatnonzero(np.diff(~kept[begin:end], prepend=False, append=False))
+        if np.max(gone[1::2] - gone[::2]) > _LATE_ROWS:
+            first = begin + int(np.argmax(late[begin:end]))
+            kept[begin:first] = True
+            return np.flatnonzero(kept[:first]), first
+    return np.flatnonzero(kept), len(stamp)
+
+
+def _longest(values: list[int]) -> NDArray[np.bool_]:
+    """Find the longest selection of values that never falls."""
+    ends: list[int] = []
+    places: list[int] = []
+    before = []
+    for k, value in enumerate(values):
+        length = bisect_right(ends, value)
+        ends[length : length + 1], places[length : length + 1] = [value], [k]
+        before.append(places[length - 1] if length else -1)
+    chosen = np.zeros(len(values), bool)
+    k = places[-1]
+    while k >= 0:
+        chosen[k] = True
+        k = before[k]
+    return chosen

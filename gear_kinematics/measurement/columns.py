@@ -142,7 +142,7 @@ def find_columns(
     elif 'torque' in found and (angles := [found[role] for role in _ANGULAR if role in found]):
         found = {'angle': angles[0]} | {r: found[r] for r in found if r in {'torque', 'time'}}
     else:
-        known = f'known units: {", ".join(_OF_ANGLE)}, {", ".join(_UNITS["torque"])}'
+        known = f'known units: {", ".join(ANGLE_UNITS)}, {", ".join(_UNITS["torque"])}'
         raise ColumnsError(f'neither an angle and a torque nor a rotor and an output ({known})')
     if own := [clocks[name] for name in found.values() if name in clocks]:
         found['time'] = own[0]
@@ -204,8 +204,7 @@ def _roles(name: str) -> list[tuple[str, tuple[int, ...]]]:
     rank = (len(words), *(_KNOWN_WORDS.index(word) for word in told))
     if set(told) & set(_TORQUE):
         return [] if set(told) & set(_ANGLE) else [('torque', rank)]
-    alone = told in (['joint'], ['mot']) and not unit
-    if alone or 'current' in told or (len(sides) > 1 and 'joint' not in told):
+    if 'current' in told or (len(sides) > 1 and 'joint' not in told):
         return []
     return [(sides[0] if sides else 'angle', rank)]
 
@@ -248,7 +247,7 @@ def _split(name: str) -> tuple[tuple[str, ...], str]:
     if 'joint' in words and {'state', 'states'} & {*words}:
         words.remove('joint')  # of the name of a topic
     if 'm' in words:  # as drivers name motors, as m1
-        words = [word for word in words if word != 'm'] + ['motor'] * (not {*words} & {*_ROTOR})
+        words = ['motor' if word == 'm' else word for word in words]
     return tuple(words), unit
 
 

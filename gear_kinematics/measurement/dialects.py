@@ -129,8 +129,9 @@ def numbers(column: Any, point: str = '.') -> Any:
     text = text.str.replace(',', '.')
     moments = pd.to_datetime(text, format='ISO8601', utc=True, errors='coerce')
     moments = moments.dt.tz_localize(None)
-    if not moments.notna().any():  # of a day
-        moments = pd.Timestamp(0) + pd.to_timedelta(text, errors='coerce')
+    if not moments.notna().any():
+        of_day = text.where(text.str.fullmatch(_MOMENT.pattern))
+        moments = pd.Timestamp(0) + pd.to_timedelta(of_day, errors='coerce')
     return moments.to_numpy('datetime64[ns]') if moments.notna().any() else values
 
 

@@ -1,13 +1,16 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Tables that are no text, through the libraries of their formats."""
+"""The formats of tables, and the libraries that read those that are no text."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from gear_kinematics.measurement.dialects import Table, numbers
+from gear_kinematics.bag import Bag, BagError
+from gear_kinematics.bag.finding import BAG_NAME
+from gear_kinematics.measurement.dialects import Table, numbers, open_text
 
 
 def _table(
@@ -61,6 +64,8 @@ def _mat(path: Path) -> Table:
     except NotImplementedError as error:
         raise ValueError('MATLAB 7.3 is not read: save it with -v7') from error
     add('', {key: value for key, value in found.items() if not key.startswith('__')})
+    if len({name.partition('.')[0] for name in columns}) == 1:  # all are in one structure
+        columns = {name.partition('.')[2] or name: values for name, values in columns.items()}
     return _table(columns)
 
 
@@ -72,11 +77,12 @@ def _tdms(path: Path) -> Table:
     units, clocks = {}, {}
     for group in TdmsFile.read(path).groups():
         for channel in group.channels():
-            columns[channel.name] = channel[:]
-            units[channel.name] = str(channel.properties.get('unit_string', ''))
-            if 'wf_increment' in channel.properties:
+            columns[channel.name], known = channel[:], channel.properties
+            units[channel.name] = str(known.get('unit_string', ''))
+            if step := known.get('wf_increment'):
                 clocks[channel.name] = clock = f'time of {channel.name} [s]'
-                columns[clock] = channel.time_track()
+                start = known.get('wf_start_offset', 0.0)
+                columns[clock] = start + step * np.arange(len(channel))
     return _table(columns, units, clocks)
 
 
@@ -95,11 +101,42 @@ def _mf4(path: Path) -> Table:
     return _table(columns, units, clocks)
 
 
-FORMATS: Mapping[str, Callable[[Path], Table]] = {
+READERS: Mapping[str, Callable[[Path], Table]] = {
+    **dict.fromkeys(('.csv', '.tsv', '.txt', '.dat', '.asc', '.lvm'), open_text),
     '.parquet': _parquet,
     '.mat': _mat,
     '.tdms': _tdms,
-    '.mf4': _mf4,
-    '.mdf': _mf4,
+    **dict.fromkeys(('.mf4', '.mdf'), _mf4),
 }
 """What opens a table, by the end of its name."""
+
+
+def is_table(path: Path) -> bool:
+    """Return whether a recording is a table, by its name; otherwise it is a bag."""
+    return path.suffix.lower() in READERS
+
+
+@contextmanager
+def open_bag(path: Path) -> Iterator[Bag]:
+    """Open what is no table; a BagError names what can be read, unless the name is a bag's."""
+    try:
+        with Bag(path) as bag:
+            yield bag
+    except BagError as error:
+        if path.is_file() and not BAG_NAME.search(path.name):
+            kinds = f'{error}; bags are .mcap, .db3, .bag and folders, tables {", ".join(READERS)}'
+            raise BagError(kinds) from error
+        raise
+
+
+def open_table(path: Path) -> Table:
+    """Open a table; OSError or ValueError if it cannot be read."""
+    if path.exists() and not path.is_file():
+        raise ValueError('not a regular file')
+    suffix = path.suffix.lower()
+    try:
+        return READERS[suffix](path)
+    except (ImportError, OSError, ValueError):
+        raise
+    except Exception as error:  # of the libraries, each of which has its own
+        raise ValueError(f'cannot be read as {suffix}: {error}') from error

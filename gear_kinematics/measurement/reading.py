@@ -17,6 +17,7 @@ from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, miss
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
 from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.encoder_step import step_of
+from gear_kinematics.measurement.formats import is_table, open_bag
 from gear_kinematics.measurement.gate import gated
 from gear_kinematics.measurement.recording import (
     Array,
@@ -29,7 +30,7 @@ from gear_kinematics.measurement.recording import (
     locked_shaft,
     match,
 )
-from gear_kinematics.measurement.tables import is_table, open_bag, read_table
+from gear_kinematics.measurement.tables import read_table
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.output_encoder import measured_angle

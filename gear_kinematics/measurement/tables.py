@@ -1,19 +1,18 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Tables as recordings: which rows are used, in what units, and at what times."""
 
+import re
 import shlex
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from fractions import Fraction
-from itertools import permutations
+from itertools import filterfalse, permutations
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from gear_kinematics.bag import Bag, BagError
-from gear_kinematics.bag.finding import BAG_NAME
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_turns
 from gear_kinematics.measurement.clocks import stamps, with_unit
 from gear_kinematics.measurement.columns import (
@@ -25,9 +24,9 @@ from gear_kinematics.measurement.columns import (
 )
 from gear_kinematics.measurement.commissioning.encoder_range import count_wraps
 from gear_kinematics.measurement.commissioning.joint import other_unit
-from gear_kinematics.measurement.dialects import Table, open_text
+from gear_kinematics.measurement.dialects import Table
 from gear_kinematics.measurement.encoder_step import Step, step_of
-from gear_kinematics.measurement.formats import FORMATS
+from gear_kinematics.measurement.formats import open_table
 from gear_kinematics.measurement.gate import output_by_rotor
 from gear_kinematics.measurement.recording import (
     Array,
@@ -41,11 +40,6 @@ from gear_kinematics.measurement.recording import (
 )
 from gear_kinematics.wire.cdr import SECOND
 
-READERS: Mapping[str, Callable[[Path], Table]] = {
-    **dict.fromkeys(('.csv', '.tsv', '.txt', '.dat', '.asc', '.lvm'), open_text),
-    **FORMATS,
-}
-"""What opens a table, by the end of its name."""
 _LEAST = 1e-30
 """Numbers that are smaller are 0: of none of those that follow, squares and inverses underflow."""
 _GAP = 5
@@ -56,32 +50,16 @@ _FASTEST, _MOST = 1000.0, 0.9
 """rad/s, above which a unit is asked for; share of the samples in motion that are slower."""
 _MOST_TWIST = 0.35
 """rad of the output under torque: a shaft that turns further is not locked."""
-_BLOCKS, _LIKE = 40, (0.025, 1.0)
+_BLOCKS, _LIKE = 10, (0.08, 1.0)
 """Parts of a recording; rad by which the output leaves the rotor in most of them, in degrees."""
 _WHOLE = 50
 """Levels that show whole numbers to be no coincidence."""
 _TRIED, _FEWEST, _ROWS = 12, 10, 10_000
 """Columns among which two are sought for an example, least and most rows that tell them."""
+_NO_ANGLE = re.compile(r'(?i)torque|effort|current|vel|speed|temp|time|stamp|erpm')
+"""In names of columns that are not proposed as angles."""
 _SHOWN = 800
 """Characters of an error, as those of a file can be many."""
-
-
-def is_table(path: Path) -> bool:
-    """Return whether a recording is a table, by its name; otherwise it is a bag."""
-    return path.suffix.lower() in READERS
-
-
-@contextmanager
-def open_bag(path: Path) -> Iterator[Bag]:
-    """Open what is no table; a BagError names what can be read, unless the name is a bag's."""
-    try:
-        with Bag(path) as bag:
-            yield bag
-    except BagError as error:
-        if path.is_file() and not BAG_NAME.search(path.name):
-            kinds = f'{error}; bags are .mcap, .db3, .bag and folders, tables {", ".join(READERS)}'
-            raise BagError(kinds) from error
-        raise
 
 
 def read_table(path: Path, sources: Sources, ratio: Fraction) -> Recording:
@@ -91,7 +69,7 @@ def read_table(path: Path, sources: Sources, ratio: Fraction) -> Recording:
         RecordingError: if it cannot be read, or has no such columns.
     """
     with _naming(path):
-        return _recording(path, _opened(path), sources, ratio)
+        return _recording(path, open_table(path), sources, ratio)
 
 
 def read_rotor(path: Path, sources: Sources, ratio: Fraction) -> tuple[Array, Array, Array, str]:
@@ -104,7 +82,7 @@ def read_rotor(path: Path, sources: Sources, ratio: Fraction) -> tuple[Array, Ar
         RecordingError: if it cannot be read, or has no such columns.
     """
     with _naming(path):
-        found, series, said, _ = _read(path, _opened(path), sources, ratio)
+        found, series, said, _ = _read(path, open_table(path), sources, ratio)
         if 'torque' not in found or not said[0].startswith('time'):
             raise ValueError(
                 'no times or no torque: name them with --time-column, --torque-column'
@@ -126,18 +104,6 @@ def _naming(path: Path) -> Iterator[None]:
         if len(text) > _SHOWN:
             text = f'{text[: _SHOWN // 2]} ... {text[-_SHOWN // 2 :]}'
         raise RecordingError(f'{path}: {text}') from error
-
-
-def _opened(path: Path) -> Table:
-    if path.exists() and not path.is_file():
-        raise ValueError('not a regular file')
-    suffix = path.suffix.lower()
-    try:
-        return READERS[suffix](path)
-    except (ImportError, OSError, ValueError):
-        raise
-    except Exception as error:  # of the libraries, each of which has its own
-        raise ValueError(f'cannot be read as {suffix}: {error}') from error
 
 
 class _Series(NamedTuple):
@@ -329,7 +295,7 @@ def _advice(path: Path, table: Table, sources: Sources, ratio: Fraction) -> str:
     listed = ', '.join(f'{name} ({table.first.get(name, "")})' for name in names)
     raw, _ = table.load([name for name in names if names.count(name) == 1][:_TRIED])
     pairs = {}
-    for rotor, output in permutations(raw, 2):
+    for rotor, output in permutations(filterfalse(_NO_ANGLE.search, raw), 2):
         if raw[rotor].dtype.kind + raw[output].dtype.kind != 'ff':
             continue
         pair = np.array([raw[rotor], raw[output]])[:, :_ROWS]
@@ -339,12 +305,14 @@ def _advice(path: Path, table: Table, sources: Sources, ratio: Fraction) -> str:
     text = f'among the columns {listed}; name them'
     for likeness in sorted(pairs, reverse=True)[:_FEWEST]:
         rotor, output = pairs[likeness]
-        for unit in (None, 'deg'):
-            named = replace(sources, rotor=rotor, output=output, unit=sources.unit or unit)
-            with suppress(ValueError):
-                _recording(path, table, named, ratio)
-                words = ['--rotor-column', rotor, '--output-column', output]
-                words += ['--angle-unit', unit] if unit else []
-                command = shlex.join([*sources.command.split(), str(path), *words])
-                return f'{text}, for example: {command}'
+        named = replace(sources, rotor=rotor, output=output)
+        words = ['--rotor-column', rotor, '--output-column', output]
+        try:
+            _recording(path, table, named, ratio)
+        except ValueError as error:
+            if 'degrees' not in str(error):
+                continue
+            words += ['--angle-unit', 'deg']
+        command = shlex.join([*sources.command.split(), str(path), *words])
+        return f'{text}, for example: {command}'
     return f'{text} with --angle-column, --torque-column, --rotor-column, --output-column'

@@ -2,11 +2,14 @@
 """Tables as benches write them: each is read as without its fault, or refused."""
 
 import math
+import shlex
 from dataclasses import replace
+from datetime import UTC, datetime, timedelta
 
 import numpy as np
 import pytest
 
+from gear_kinematics.bag import BagError
 from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.reading import read, read_encoders
@@ -83,6 +86,275 @@ def test_what_cannot_be_known_is_refused_in_one_line(table, gear, name, given, c
     with pytest.raises(RecordingError, match=cause) as caught:
         read(table(name), gear, Sources(**given))
     assert '\n' not in str(caught.value)
+
+
+# The reference files written otherwise
+
+
+def in_german(text):
+    return text.translate(str.maketrans('.,', ',.'))
+
+
+DEG, REV = 180.0 / math.pi, 0.5 / math.pi
+NAMES = 'time,rotor,output'
+WITH_DEG = 'time_s;rotor_deg;output_deg'
+DECIMALS = '{:.2f}', '{:.5f}', '{:.5f}'
+SEC_NANOSEC = ('{:.0f}', '{:.0f}', '{:.5f}', '{:.5f}')
+
+
+def written(columns, head, form=DECIMALS, mark=','):
+    """Rows of columns below a head, each number in a form, separated by a mark."""
+    forms = [one.format if isinstance(one, str) else one for one in form]
+    rows = zip(*columns, strict=True)
+    lines = (mark.join(one(v) for one, v in zip(forms, row, strict=True)) for row in rows)
+    return head + '\n' * bool(head) + '\n'.join(lines) + '\n'
+
+
+def moment(mark='T', zone='', decimals='.'):
+    start = datetime(2026, 11, 26, 9, tzinfo=UTC).replace(tzinfo=None)
+    return lambda seconds: (
+        (start + timedelta(seconds=seconds)).isoformat(mark, 'microseconds') + zone
+    ).replace('.', decimals)
+
+
+def grouped(mark, decimals='.'):
+    marks = str.maketrans(',.', mark + decimals)
+    return lambda value: f'{value:,.3f}'.translate(marks)
+
+
+def split_time(t):
+    return np.floor(t) + 1764230000, np.round(t % 1.0 * 1e9)
+
+
+def moved(t, *rows_and_times):
+    t = t.copy()
+    for row, time in rows_and_times:
+        t[row] = time
+    return t
+
+
+ENCODERS = {
+    'semicolons': lambda t, r, o: written([t, r, o], 'time;rotor;output', mark=';'),
+    'spaces': lambda t, r, o: written([t, r, o], 'time  rotor output', mark='   '),
+    'names in a comment': lambda t, r, o: written([t, r, o], '# time, rotor, output', mark=' '),
+    'UTF-8 with BOM': lambda t, r, o: written([t, r, o], NAMES).encode('utf-8-sig'),
+    'UTF-16': lambda t, r, o: written([t, r, o], NAMES, mark=',').encode('utf-16'),
+    'UTF-16 without BOM': lambda t, r, o: written([t, r, o], NAMES).encode('utf-16-le'),
+    'cp1252': lambda t, r, o: written(
+        [t, r * DEG, o * DEG], 'Prüfling 3\ntime,rotor [°],output [°]').encode('cp1252'),
+    'CR LF': lambda t, r, o: written([t, r, o], NAMES).replace('\n', '\r\n'),
+    'decimal comma and spaces': lambda t, r, o: in_german(
+        written([t, r, o], 'time rotor output', mark=' ')),
+    'decimal comma in quotes': lambda t, r, o: written(
+        [t, r, o], NAMES, 3 * [lambda v: f'"{v:.5f}"'.replace('.', ',')]),
+    'thousands by comma, in quotes': lambda t, r, o: written(
+        [t, r * DEG, o * DEG], WITH_DEG.replace(';', ','), 3 * [lambda v: f'"{v:,.3f}"']),
+    'thousands by point': lambda t, r, o: written(
+        [t, r * DEG, o * DEG], WITH_DEG, 3 * [grouped('.', ',')], ';'),
+    'thousands by space': lambda t, r, o: written(
+        [t, r * DEG, o * DEG], WITH_DEG, 3 * [grouped('\u202f', ',')], ';'),
+    'thousands by apostrophe': lambda t, r, o: written(
+        [t, r * DEG, o * DEG], WITH_DEG, 3 * [grouped("'")], ';'),
+    'sep=': lambda t, r, o: in_german(
+        written([t, r, o], 'sep=;\ntime;rotor;output', mark=';')),
+    'meta lines': lambda t, r, o: written(
+        [t, r, o], f'Bench 3\nRate,100,Hz\n\ndevice,SN,fw\nA,17,2.1\n{NAMES}'),
+    'comments and names again in the body': lambda t, r, o: (
+        written([t[:600], r[:600], o[:600]], f'// bench\n{NAMES}') + f'# paused\n\n{NAMES}\n'
+        + written([t[600:], r[600:], o[600:]], '')),
+    'units in a row': lambda t, r, o: written(
+        [t * 1e3, r * DEG, o * DEG], 'Time,MotorPosition,LoadPosition\n[ms],°,(deg)'),
+    'empty and repeated names': lambda t, r, o: written(
+        [t, r, t, o, t, t], ',rotor,time,output,note,note', 6 * ['{:.5f}']),
+    'trailing separators in rows alone': lambda t, r, o: written(
+        [t, r, o], NAMES, ('{:.2f}', '{:.5f}', '{:.5f},')),
+    'CamelCase': lambda t, r, o: written(
+        [t * 1e3, r * DEG, o * DEG], 'TimeMs,MotorAngleDeg,OutputAngleDeg'),
+    'time in µs': lambda t, r, o: written([t * 1e6, r, o], NAMES),
+    'ms of the day': lambda t, r, o: written(
+        [t * 1e3 + 3e7, r * DEG, o * DEG], 'ms_today;motor_pos_deg;output_pos_deg', mark=';'),
+    'ms with jitter': lambda t, r, o: written([t * 1e3 + 0.1 * np.sin(9.0 * t), r, o], NAMES),
+    'ms since 1970': lambda t, r, o: written([t * 1e3 + 1764230000e3, r, o], NAMES),
+    'rostopic echo -p': lambda t, r, o: written(
+        [np.round(t * 1e9).astype(int) + 1764230000 * 10**9, r, o],
+        '%time,field.rotor_position,field.output_position', ('{}', *DECIMALS[1:])),
+    'ISO 8601 with a zone': lambda t, r, o: written(
+        [t, r, o], 'timestamps,rotor,output', (moment(zone='+01:00'), *DECIMALS[1:])),
+    'dates with a decimal comma': lambda t, r, o: in_german(written(
+        [t, r, o], 'time;rotor;output', (moment(' '), *DECIMALS[1:]), ';')),
+    'time of the day': lambda t, r, o: written(
+        [t, r, o], NAMES, (lambda v: moment(' ')(v)[11:], *DECIMALS[1:])),
+    'seconds and nanoseconds': lambda t, r, o: written(
+        [*split_time(t), r, o], 'header.stamp.sec,header.stamp.nanosec,rotor,output', SEC_NANOSEC),
+    'ros2 topic echo with velocity and effort': lambda t, r, o: written(
+        [*split_time(t), r, o], '',
+        ('{:.0f}', '{:.0f},base,motor,joint', '{:.5f}', '{:.5f},0.1,0.2,0.0,0.0')),
+    'a row for each value': lambda t, r, o: 'elapsed time,receive time,topic,value\n' + ''.join(
+        f'{at:.2f},{at + 1764230000:.2f},/{topic}.position[0],{value:.5f}\n'
+        for topic, values in (('rotor_state', r), ('output_encoder', o))
+        for at, value in zip(t, values, strict=True)),
+    'never in one row': lambda t, r, o: '__time,/output/position,/x,/rotor/position\n' + ''.join(
+        f'{at:.4f},,,{rotor:.5f}\n{at + 5e-4:.4f},{out:.5f},,\n{at + 6e-4:.4f},,1,\n'
+        for at, rotor, out in zip(t, r, o, strict=True)),
+    'TwinCAT with commas': lambda t, r, o: written(
+        [t * 1e3, r * DEG, t * 1e3, o * DEG],
+        'Name,Scope\nFile,a.csv\n\nName,Motor.Pos,Name,Output.Pos\nSymbolComment,,SymbolComment,'
+        '\nSampleTime[ms],40,SampleTime[ms],40\nUnit,° (Degree),Unit,° (Degree)\n',
+        4 * ['{:.4f}']) + 'EOF\n',
+    'wraps at 180°': lambda t, r, o: written(
+        [t, (r * DEG + 180.0) % 360.0 - 180.0, (o * DEG) % 360.0], WITH_DEG.replace(';', ',')),
+    'wraps at one turn': lambda t, r, o: written(
+        [t, r * REV % 1.0, o * REV], 'time,rotor_rev,output_rev', 3 * ['{:.7f}']),
+    'a row from the future': lambda t, r, o: written([moved(t, (200, 40.0)), r, o], NAMES),
+    'rows from past and future': lambda t, r, o: written(
+        [moved(t, (200, 40.0), (201, 40.0), (700, 1.0)), r, o], NAMES),
+}  # fmt: skip
+RAMPS = {
+    'N·cm': lambda t, a, q: written([t, a * DEG, q * 100], 't,Angle [°],Torque [Ncm]'),
+    'N.m': lambda t, a, q: written([t, a * DEG, q], 't,angle [deg.],torque [N.m]'),
+    'the motor in other units': lambda t, a, q: written(
+        [t, a * -30 * DEG, q / -30 * 1e3], 'time,MotorPosition (deg),MotorTorque (mNm)'),
+    'moteus': lambda t, a, q: written(
+        [t, a * REV, q, t], '# bench\n#time,position,torque,q_current', 4 * ['{:.9f}']),
+    'time in ms': lambda t, a, q: written([t * 1e3, a, q], 'time,angle,torque', 3 * ['{:.6f}']),
+    'torque at other times': lambda t, a, q: '__time,/angle,/torque\n' + ''.join(
+        f'{at:.4f},{angle:.6f},\n{at + 1e-3:.4f},,{torque:.4f}\n'
+        for at, angle, torque in zip(t, a, q, strict=True)),
+}  # fmt: skip
+
+
+@pytest.fixture(scope='module')
+def reference(shared_path):
+    def columns(name):
+        path = shared_path(f'data/faults/file_0_reference_{name}.csv')
+        return np.genfromtxt(path, delimiter=',', skip_header=1).T
+
+    return columns
+
+
+def saved(folder, content):
+    path = folder / 'r.csv'
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return path
+
+
+@pytest.mark.parametrize('dialect', ENCODERS)
+def test_encoders_are_read_in_every_dialect(tmp_path, gear, reference, dialect):
+    recording = read(saved(tmp_path, ENCODERS[dialect](*reference('encoders'))), gear)
+    measured = measure(recording, gear)
+    assert not measured.wrong_ratio
+    lost = measured.transmission.lost_motion
+    assert lost.value == pytest.approx(18.0 * ARCMIN, abs=0.6 * ARCMIN)
+    # All but the rows that are out of order or none, of which there are at most 3.
+    assert 1317 <= recording.rows <= 1320
+
+
+@pytest.mark.parametrize('dialect', RAMPS)
+def test_ramps_are_read_in_every_dialect(tmp_path, gear, reference, dialect):
+    path = saved(tmp_path, RAMPS[dialect](*reference('ramps')))
+    hysteresis = measure(read(path, gear), gear).figures.hysteresis
+    assert hysteresis.value == pytest.approx(13.8 * ARCMIN, abs=0.3 * ARCMIN)
+
+
+@pytest.mark.parametrize(
+    ('write', 'cause'),
+    [
+        (lambda t, r, o: written([10 * t, r * DEG, o * DEG], NAMES),
+         'output differs from rotor by more than gears do in rad, as in degrees'),
+        (lambda t, r, o: written([10 * t, r * DEG % 360.0, o * DEG], NAMES), 'turns of 360'),
+        (lambda t, r, o: written([t, r * REV % 1.0, o * REV], NAMES), r'turns \(209 wraps at 1'),
+        (lambda t, r, o: written([t, np.round(r * 1e4), o], NAMES), 'such as counts'),
+        (lambda t, r, o: written([t, r, o], 'time,rotor [gon],output'), 'unit gon is not known'),
+        (lambda t, r, o: written([t, r, o], NAMES, ('26.11.2026 {:.0f}', *DECIMALS[1:])),
+         'the times in time: no numbers nor ISO 8601'),
+        (lambda t, r, o: written([25 * t, r / 3, o / 3], NAMES),
+         'steps of 1 do not .* --time-column'),
+        (lambda t, r, o: written([t, r, o], ''), 'the first row has numbers'),
+        (lambda t, _, o: written([t, 0.4 * np.sin(t), o], 'time,angle,torque'),
+         'turns by 45.8° under torque'),
+        (lambda t, _, o: written([t, 1e-3 * o, np.round(1e3 * o)], 'time,angle,torque'),
+         'torque has whole numbers: give its unit as in --torque-column .torque .Nmm'),
+    ],
+)  # fmt: skip
+def test_what_speaks_against_a_unit_is_said(tmp_path, gear, reference, write, cause):
+    with pytest.raises(RecordingError, match=cause):
+        read(saved(tmp_path, write(*reference('encoders'))), gear)
+
+
+def test_the_command_line_of_the_advice_works(tmp_path, gear, reference):
+    time, rotor, output = reference('encoders')
+    content = written([time, rotor, 30.0 * time, output], 't,enc 1,temp,enc 2', 4 * ['{:.5f}'])
+    path = saved(tmp_path, content)
+    with pytest.raises(RecordingError, match=r'among the columns t \(0.00000\), enc 1 ') as caught:
+        read(path, gear)
+    *_, file, rotor_option, rotor, output_option, output = shlex.split(str(caught.value))
+    assert (file, rotor_option, output_option) == (str(path), '--rotor-column', '--output-column')
+    assert measure(read(path, gear, Sources(rotor=rotor, output=output)), gear).transmission
+
+
+def test_names_can_be_given_with_units(tmp_path, gear, reference):
+    time, rotor, output = reference('encoders')
+    path = saved(tmp_path, written([1e3 * time, DEG * rotor, output], 'a,b,c'))
+    given = Sources(time='a [ms]', rotor='b [deg]', output='c [rad]')
+    recording = read(path, gear, given)
+    assert recording.columns == (
+        'time [ms] from a', 'rotor [deg] from b', 'output [rad] from c', '1320 of 1320 rows',
+    )  # fmt: skip
+    assert not measure(recording, gear).wrong_ratio
+
+
+# Other formats
+
+
+def parquet(path, time, rotor, output):
+    pa = pytest.importorskip('pyarrow')
+    import pyarrow.parquet as pq  # noqa: PLC0415
+
+    state = [[*pair] for pair in zip(rotor, output, strict=True)]
+    pq.write_table(pa.table({'timestamp': time.astype('f4'), 'observation.state': state}), path)
+    return Sources(rotor='observation.state[0]', output='observation.state[1]')
+
+
+def mat(path, time, rotor, output):
+    io = pytest.importorskip('scipy.io')
+    io.savemat(path, {'run': {'time': time, 'rotor_deg': DEG * rotor, 'output': {'rad': output}}})
+    return Sources(output='output.rad')
+
+
+def tdms(path, time, rotor, output):
+    nptdms = pytest.importorskip('nptdms')
+    with nptdms.TdmsWriter(path) as writer:
+        for name, values in (('Rotor', DEG * rotor), ('Output', DEG * output)):
+            known = {'unit_string': 'deg', 'wf_increment': float(time[1])}
+            writer.write_segment([nptdms.ChannelObject('run', name, values, properties=known)])
+    return Sources()
+
+
+def mf4(path, time, rotor, output):
+    asammdf = pytest.importorskip('asammdf')
+    file = asammdf.MDF()
+    for name, values, late in (('RotorAngle', rotor, 0.0), ('OutputAngle', output, 4e-4)):
+        file.append([asammdf.Signal(DEG * values, time + late, name=name, unit='deg')])
+    file.save(path)
+    return Sources()
+
+
+@pytest.mark.parametrize('write', [parquet, mat, tdms, mf4])
+def test_other_formats(tmp_path, gear, reference, write):
+    path = tmp_path / f'r.{write.__name__}'
+    given = write(path, *reference('encoders'))
+    recording = read(path, gear, given)
+    lost = measure(recording, gear).transmission.lost_motion
+    assert lost.value == pytest.approx(18.0 * ARCMIN, abs=0.6 * ARCMIN)
+    path.write_bytes(b'nothing at all')
+    with pytest.raises(RecordingError, match=rf'r\.{write.__name__}: '):
+        read(path, gear, given)
+
+
+def test_what_is_neither_table_nor_bag_is_refused_with_what_can_be_read(tmp_path, gear):
+    (tmp_path / 'r.xlsx').write_bytes(b'PK\x03\x04')
+    with pytest.raises(BagError, match=r'bags are .mcap.* tables .csv.*\.parquet'):
+        read(tmp_path / 'r.xlsx', gear)
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,8 @@ from gear_kinematics.bag import BagError, ReportProgress, TopicMessages, by_topi
 from gear_kinematics.bag.roles import find_rotor_topic, only_joint
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.columns import Sources
-from gear_kinematics.measurement.tables import is_table, open_bag, read_rotor
+from gear_kinematics.measurement.formats import is_table, open_bag
+from gear_kinematics.measurement.tables import read_rotor
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.effort_field import questioned
 from gear_kinematics.state.gear_state import GearState
