@@ -19,7 +19,7 @@ from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.rotor_samples import RotorSamples
 from gear_kinematics.state.state_messages import OutputMessages, state_messages
 from gear_kinematics.state.turn_reference import TurnReference
-from gear_kinematics.wire.joint_reader import RejectedInputError
+from gear_kinematics.wire.joint_reader import JointValues, RejectedInputError
 from gear_kinematics.wire.topics import (
     CORRECTED_TOPICS,
     LOAD_TOPICS,
@@ -119,16 +119,8 @@ class GearState:
         if self._load_topics and not self._loads:
             self._loads = Loads(self.parameters)
 
-    def rotor(self, data: bytes, now: Callable[[], int]) -> Answer:
-        """Process the next message of the rotor.
-
-        Args:
-            data: a serialised sensor_msgs/JointState.
-            now: the clock, ns, for messages without a stamp.
-
-        Raises:
-            RejectedInputError: if the message gives no output. It is counted.
-        """
+    def rotor(self, data: bytes | JointValues, now: Callable[[], int]) -> Answer:
+        """Process the next message of the rotor; see `RotorInput.accept`."""
         rotor = self.input
         sample = rotor.accept(data, now)
         segment, referenced = rotor.segment, rotor.referenced
@@ -169,12 +161,7 @@ class GearState:
         return [(TRANSMISSION_ERROR, encode(error)) for error in errors if self._errors]
 
     def samples(self, messages: Sequence[bytes], received: Sequence[int]) -> RotorSamples:
-        """Process many messages of the rotor for their samples alone.
-
-        Args:
-            messages: serialised sensor_msgs/JointState.
-            received: times of reception, ns; they replace missing stamps.
-        """
+        """Process many messages of the rotor for their samples; see `RotorInput.accept_batch`."""
         return self.input.accept_batch(messages, received)
 
     def batch(

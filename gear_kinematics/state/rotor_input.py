@@ -37,6 +37,7 @@ from gear_kinematics.wire.joint_reader import (
     POSITION_TOO_LARGE,
     STAMP_OUT_OF_RANGE,
     JointReader,
+    JointValues,
     RejectedInputError,
 )
 
@@ -128,11 +129,11 @@ class RotorInput:
         """Number that rises where the turn count restarts, is uncertain or is referenced."""
         return self.turns.unknown_gaps + self.resets + self._restarts + self.plausibility.jumps
 
-    def accept(self, data: bytes, now: Callable[[], int]) -> RotorSample:
+    def accept(self, data: bytes | JointValues, now: Callable[[], int]) -> RotorSample:
         """Process the next message.
 
         Args:
-            data: a serialised sensor_msgs/JointState.
+            data: a serialised sensor_msgs/JointState, or what `JointReader` reads from it.
             now: the clock, ns, for messages without a stamp.
 
         Raises:
@@ -140,7 +141,8 @@ class RotorInput:
         """
         self.received += 1
         try:
-            stamp, unnormalised, position, velocity, effort = self._reader.read(data)
+            values = data if isinstance(data, tuple) else self._reader.read(data)
+            stamp, unnormalised, position, velocity, effort = values
             self.unnormalised_stamps += unnormalised
             return self._take(stamp or self._clock(now), position, velocity, effort)
         except RejectedInputError as rejection:

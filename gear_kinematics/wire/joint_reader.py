@@ -40,6 +40,11 @@ gear ratio multiplies it by up to 2^53, and the slope of a calibration by up to 
 _MAX_KEPT = 65_536  # bytes of a message whose layout is kept; drivers send far less
 
 
+JointValues = tuple[int, bool, float, float | None, float | None]
+"""Stamp (ns, 0 if absent), whether it has a second or more of nanoseconds, position, velocity and
+effort; None for a value that is absent or not finite."""
+
+
 class RejectedInputError(ValueError):
     """A message without an output; the text is one of the causes above, which are counted."""
 
@@ -87,12 +92,8 @@ class JointReader:
         self._joint = joint.encode()
         self._size = -1  # of the messages whose layout is known
 
-    def read(self, data: bytes) -> tuple[int, bool, float, float | None, float | None]:
+    def read(self, data: bytes) -> JointValues:
         """Read a message.
-
-        Returns:
-            Stamp (ns, 0 if absent), whether it has a second or more of nanoseconds, position,
-            velocity and effort; None for a value that is absent or not finite.
 
         Raises:
             RejectedInputError: if it has no usable position of the joint.
