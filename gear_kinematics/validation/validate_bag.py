@@ -3,7 +3,6 @@
 
 import time
 from collections.abc import Callable, Iterable
-from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
 from pathlib import Path
@@ -12,7 +11,6 @@ from typing import Any
 from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, in_batches
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.bag.roles import (
-    Topics,
     beside,
     find_beside,
     find_encoder_topic,
@@ -26,7 +24,7 @@ from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.validation.report import BagReport, Finding, unusable
 from gear_kinematics.validation.task import Task
-from gear_kinematics.validation.validator import Validator
+from gear_kinematics.validation.validator import Validator, agrees
 from gear_kinematics.wire.topics import CORRECTED_TOPICS, LOAD_TOPICS, OUTPUT_ENCODER
 
 _BATCH = 8192  # messages of a live node that are validated together
@@ -131,21 +129,12 @@ def _judged(
         return replace(report, findings=(taken, *report.findings))
     if not play and any(topic.wrong for topic in report.topics):
         for other in joints_on(bag, [topics.rotor])[topics.rotor]:
-            if other != found and _fits(task, bag, topics, other):
+            of_other = replace(task, parameters=replace(task.parameters, rotor_joint=other))
+            if other != found and agrees(of_other, topics, islice(bag.batches(topics), 1)):
                 text = f'the outputs are not those of {found}: they are those of {other}'
                 whose = Finding(f'{text}; repeat with --joint {other}', cause=True)
                 return replace(report, findings=(whose, *report.findings))
     return report
-
-
-def _fits(task: Task, bag: Bag, topics: Topics, joint: str) -> bool:
-    """Whether the first outputs are those of another joint of the rotor's messages."""
-    parameters = replace(task.parameters, rotor_joint=joint)
-    validator = Validator(replace(task, parameters=parameters), topics)
-    with suppress(BagError):
-        validator.feed(islice(bag.batches(topics), 1))
-    judged = validator.report().topics
-    return bool(judged) and judged[0].compared > 0 and not judged[0].wrong
 
 
 def _lost(task: Task, cause: str) -> BagReport:

@@ -4,12 +4,13 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import cached_property
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
-from gear_kinematics.bag import Message, TopicMessages, by_topic
+from gear_kinematics.bag import BagError, Message, TopicMessages, by_topic
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.correction.corrector import Correction
 from gear_kinematics.kinematics import Mechanism, solve
@@ -83,9 +84,6 @@ class Validator:
         self._begun: dict[str, int] = {}  # when the first message of each topic was received, ns
         angle, homing = task.tolerances.angle, not task.strict
         self._changes = CountChanges(parameters, angle, homing=homing)
-        self._references = None
-        if parameters.absolute:
-            self._references = TurnReferences(self._state)
         self._expectation = Expectation(gear, task.tolerances, solver, self._changes)
         self._samples = 0
         unseen = bool(parameters.rotor_period) or parameters.absolute
@@ -181,6 +179,11 @@ class Validator:
             mechanism=self._gear if isinstance(self._gear, Mechanism) else None,
             module=self._parameters.module,
         )
+
+    @cached_property
+    def _references(self) -> TurnReferences | None:
+        """What the encoder at the output says of the turns, if it can tell them."""
+        return TurnReferences(self._state) if self._parameters.absolute else None
 
     @property
     def _outputs(self) -> list[OutputTopic]:
@@ -313,3 +316,12 @@ class Validator:
             yield from group.causes()
         if not self._corrector and self._begun.keys() & set(self._corrected):
             yield Finding(f'the corrected output is not judged: {self._why_unjudged}')
+
+
+def agrees(task: Task, topics: Topics, batches: Iterable[Sequence[Message]]) -> bool:
+    """Whether the outputs in batches, up to any damage, are those of a task."""
+    validator = Validator(task, topics)
+    with suppress(BagError):
+        validator.feed(batches)
+    judged = validator.report().topics
+    return bool(judged) and judged[0].compared > 0 and not judged[0].wrong
