@@ -174,8 +174,11 @@ class GearStatePublisher(PublishingNode):
 
     def _publish_referenced(self, referenced: bool) -> None:  # noqa: FBT001, what is published
         """Publish at once that the turns have become known or unknown."""
+        changed = self._referenced is not None
         self._referenced = referenced
         self._outputs.send([(topics.REFERENCED, serialize_message(Bool(data=referenced)))])
+        if changed:
+            self._publish_diagnostics()
 
     def _on_output_encoder(self, data: bytes) -> None:
         self._encoder_monitor.last_input = time.monotonic()
@@ -212,7 +215,11 @@ class GearStatePublisher(PublishingNode):
         self._look_at_graph()
         now, last = time.monotonic(), self._monitor.last_input
         self._driver_log.update(self._monitor.drivers, now - (last or now))
-        rotor, encoder = self._actuator.input, self._actuator.output_encoder
+        self._publish_diagnostics()
+
+    def _publish_diagnostics(self) -> None:
+        now, rotor = time.monotonic(), self._actuator.input
+        encoder = self._actuator.output_encoder
         errors = self._encoder_monitor.report(encoder, self._actuator.parameters, now)
         received = self._monitor.report(rotor, now, encoder.reference)
         preload = self._preload.report() if self._preload else None

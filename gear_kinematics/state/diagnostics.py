@@ -38,6 +38,10 @@ _FAR = 0.1  # rad, which no gear errs by
 _TOO_LARGE = 'Check the gear and its encoders, or raise transmission_error_limit.'
 
 
+_SOON = 0.1
+"""s after a report in which another one says nothing new of rates and comparisons."""
+
+
 class Fault(str):
     """The message of a fault, with what to do about it."""
 
@@ -126,6 +130,7 @@ class InputMonitor(DriverMonitor):
     graph: GraphFaults = field(default_factory=GraphFaults)
     """Faults at the last check of the ROS graph."""
     _reported: float = 0.0
+    _rate: float = 0.0
     _received: int = 0
     _unsent: int = 0
     _unreferenced: int = 0
@@ -143,9 +148,10 @@ class InputMonitor(DriverMonitor):
         newly_unreferenced = self.unreferenced - self._unreferenced
         self._unreferenced = self.unreferenced
         shared, self._of_others = rotor_input.of_others > self._of_others, rotor_input.of_others
-        self._reported, self._received = now, count
+        if elapsed > _SOON:
+            self._rate = received / elapsed
+            self._reported, self._received = now, count
         self._unsent = self.unsent
-        rate = received / elapsed if elapsed > 0.0 else 0.0
 
         age = now - (self.started if self.last_input is None else self.last_input)
         overdue = age > rotor_input.parameters.input_timeout
@@ -180,7 +186,7 @@ class InputMonitor(DriverMonitor):
             warnings.append(Fault(f'{self.drivers} drivers', 'Stop all drivers but one.'))
         warnings += self.graph.warnings
         values = {
-            'rate (Hz)': f'{rate:.1f}',
+            'rate (Hz)': f'{self._rate:.1f}',
             'received': str(rotor_input.received),
             'published': str(self.published),
             'of others': str(rotor_input.of_others),
@@ -212,6 +218,7 @@ class InputMonitor(DriverMonitor):
 class EncoderMonitor(DriverMonitor):
     """Monitors the encoder at the output, and the transmission error."""
 
+    _reported: float = -math.inf
     _compared: int = 0
 
     def report(
@@ -225,8 +232,10 @@ class EncoderMonitor(DriverMonitor):
             return None
         age = now - self.last_input
         matched = encoder.comparison.matched
-        compared = matched != self._compared
-        silent, self._compared = age > parameters.input_timeout, matched
+        soon = now - self._reported < _SOON
+        compared, silent = soon or matched != self._compared, age > parameters.input_timeout
+        if not soon:
+            self._reported, self._compared = now, matched
 
         warnings = []
         if silent:
@@ -250,6 +259,7 @@ class EncoderMonitor(DriverMonitor):
         values = {
             'received': str(encoder.received),
             'compared': str(matched),
+            'direction checked': 'yes' if encoder.direction_checked else 'no',
             **_by_cause('rejected', encoder.rejected),
             **_by_cause('not compared', encoder.comparison.unmatched),
             'lost messages': str(self.lost),
@@ -264,7 +274,8 @@ class EncoderMonitor(DriverMonitor):
                 warnings.append(Fault('calibration no longer fits', 'Calibrate the gear again.'))
             values['explained by the calibration (%)'] = _percent(fit.explained)
             values['outside the interval (%)'] = _percent(fit.outside)
-        return self._report([], warnings, values)
+        unchecked = compared and not (warnings or encoder.direction_checked)
+        return self._report([], warnings, values, ['direction not checked'] * unchecked)
 
 
 def _outside(rotor_input: RotorInput) -> str:

@@ -10,6 +10,7 @@ from gear_kinematics.correction.corrector import Correction
 from gear_kinematics.correction.error_window import ErrorWindow
 from gear_kinematics.correction.transmission_error import ErrorSample, TransmissionError
 from gear_kinematics.kinematics import RotorSample
+from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.slip import SlipWatch
 from gear_kinematics.state.turn_reference import TurnReference
@@ -34,11 +35,17 @@ class OutputEncoder:
         self.comparison = TransmissionError()
         """Counts the measured angles that were compared, and those that were not by cause."""
         self._turn_reference = reference
+        self.direction_checked = False
+        """Whether both encoders have moved in the same sense; at rest, any direction fits."""
+        self._parameters = parameters
         self.configure(parameters)
 
     def configure(self, parameters: NodeParameters) -> None:
         """Compare anew, after a change of parameters or homing; all counts go on."""
         self.window = ErrorWindow(round(parameters.transmission_error_window * SECOND))
+        if _directions(parameters) != _directions(self._parameters):
+            self.direction_checked = False
+        self._first: ErrorSample | None = None
         self._parameters = parameters
         self._reader = JointReader(parameters.output_encoder_joint)
         self._ratio = parameters.gear.gear_ratio
@@ -83,6 +90,8 @@ class OutputEncoder:
         return self._note(self.comparison.add_ideal(sample.stamp, *ideal, *corrected))
 
     def _note(self, samples: Sequence[ErrorSample]) -> Sequence[ErrorSample]:
+        if samples and not self.direction_checked:
+            self._check_direction(samples[-1])
         if self.reference and samples:
             samples = self.reference.follow(samples)
         for sample in samples:
@@ -90,11 +99,25 @@ class OutputEncoder:
             self.slip_watch.add(sample)
         return samples
 
+    def _check_direction(self, sample: ErrorSample) -> None:
+        """See whether the error grows by twice the travel, as it does the wrong way round."""
+        first, parameters = self._first or sample, self._parameters
+        self._first = first
+        travel = abs(TURN * (sample.turns - first.turns) + sample.ideal - first.ideal)
+        least = parameters.transmission_error_travel, 4.0 * parameters.transmission_error_limit
+        change = abs(math.remainder(sample.error - first.error, TURN))
+        self.direction_checked = travel > max(least) and change < 0.5 * travel
+
     def _compare_one_segment(self) -> None:
         """Compare anew where the rotor's count has become another one."""
         if self.reference and self.reference.rotor.segment != self._segment:
             self._segment = self.reference.rotor.segment
+            self._first = None
             self.comparison.reset()
             self.window.clear()
             self.slip_watch.restart()
             self.reference.restart()
+
+
+def _directions(parameters: NodeParameters) -> tuple[int, int]:
+    return parameters.rotor_direction, parameters.output_encoder_direction

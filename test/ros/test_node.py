@@ -35,6 +35,7 @@ from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.ros.node import GearStatePublisher
 from gear_kinematics.ros.workarounds.executor import make_executor
 from gear_kinematics.state.output_encoder import OutputEncoder
+from gear_kinematics.wire.topics import DIAGNOSTICS
 
 pytestmark = pytest.mark.live
 
@@ -468,8 +469,12 @@ def test_outputs_of_unknown_turns_are_marked_or_withheld(make, monkeypatch, outp
     assert topics_after(1) == [False, *given]
     assert topics_after(2) == given
     assert node._homing.answer(None, SimpleNamespace()).success
-    assert topics_after(3) == [True, 'output_state']
-    assert topics_after(SECOND) == [False, *given]  # in a second it may have turned unseen
+    assert topics_after(3) == [True, DIAGNOSTICS, 'output_state']  # diagnostics come at once
+    assert topics_after(SECOND) == [
+        False,
+        DIAGNOSTICS,
+        *given,
+    ]  # in a second it may have turned unseen
     assert node._monitor.unreferenced == 3
 
 

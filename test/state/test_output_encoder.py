@@ -12,7 +12,7 @@ from gear_kinematics.correction.calibration_fit import CalibrationFit
 from gear_kinematics.correction.error_window import ErrorStatistics
 from gear_kinematics.kinematics import RotorPosition, RotorSample
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.diagnostics import OK, WARN, EncoderMonitor
+from gear_kinematics.state.diagnostics import OK, WARN, EncoderMonitor, InputMonitor
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.joint_reader import RejectedInputError
@@ -214,7 +214,7 @@ def rest(bench, start, count, error, *, speed=0.0):
 def test_slip_stays_a_warning_after_the_window_has_passed(degrees, speed):
     bench = Bench(replace(SETTINGS, transmission_error_window=0.1))
     rest(bench, 0, 500, 0.0, speed=speed)
-    assert bench.report().message == 'ok'
+    assert bench.report().message == ('ok' if speed else 'direction not checked')
     rest(bench, 500, 5000, math.radians(degrees), speed=speed)
     for more in range(5500, 7500, 500):
         report = bench.report()
@@ -226,6 +226,21 @@ def test_slip_stays_a_warning_after_the_window_has_passed(degrees, speed):
         rest(bench, more, 500, math.radians(degrees), speed=speed)
 
 
+@pytest.mark.parametrize('sense', [1, -1])
+def test_direction_is_checked_by_a_motion_alone(sense):
+    """The wrong way round, the error grows by twice the travel."""
+    bench = Bench(SETTINGS)
+    for k in range(3000):
+        angle = 0.05 * max(0.0, k - 1000) / 1000
+        bench.measure(START + k * MS, sense * angle)
+        bench.turn(START + k * MS, -19.0 * angle)
+        if k in {999, 2999}:
+            values = bench.report().values
+            assert values['direction checked'] == ('yes' if sense > 0 and k > 1000 else 'no')
+    bench.encoder.configure(replace(SETTINGS, output_encoder_direction=-1))
+    assert not bench.encoder.direction_checked
+
+
 def test_single_wrong_readings_and_errors_within_the_limit_are_no_slip(bench):
     for k in range(5000):
         error = 0.0015 * math.sin(0.01 * k) if k % 50 else 1.0
@@ -234,3 +249,15 @@ def test_single_wrong_readings_and_errors_within_the_limit_are_no_slip(bench):
         bench.measure(START + k * MS, late + error)
         bench.turn(START + k * MS, -19.0 * angle)
     assert bench.encoder.slip_watch.slip is None
+
+
+def test_report_soon_after_another_keeps_its_rate_and_comparison(bench):
+    """As at a change of the reference, between two reports of the timer."""
+    rest(bench, 0, 100, 0.0)
+    monitor = InputMonitor(started=NOW - 1.0, last_input=NOW)
+    reports = [
+        (monitor.report(bench.rotor, NOW + late), bench.report(NOW + late)) for late in (0.0, 0.01)
+    ]
+    before, soon = ([each.message for each in both] for both in reports)
+    assert before == soon == ['ok', 'direction not checked']
+    assert [rotor.values['rate (Hz)'] for rotor, _ in reports] == ['100.0', '100.0']
