@@ -85,9 +85,8 @@ def open_text(path: Path) -> Table:
         return _long(path, layout, *(names[lower.index(name)] for name in (topics[0], _VALUE)))
 
     def load(wanted: Sequence[str]) -> tuple[dict[str, Any], int]:
-        with path.open('rb') as file:
-            rows = sum(block.count(b'\n') for block in iter(lambda: file.read(_BLOCK), b''))
-        every = 2 ** max(0, math.ceil(math.log2(max(rows, 1) / _MOST_ROWS)))
+        rows = path.stat().st_size / len(head) * len(lines)
+        every = 2 ** max(0, math.ceil(math.log2(rows / _MOST_ROWS)))
         places = [names.index(name) for name in wanted]
         parts: list[list[Any]] = [[] for _ in wanted]
         for frame in _frames(path, layout, places, every):
@@ -160,8 +159,9 @@ def _blocks(path: Path, layout: _Layout, every: int) -> Iterator[bytes]:
             following = file.read(_BLOCK)
             if not layout.encoding.startswith('utf-8'):
                 block = decoder.decode(block).encode()
-            whole, newline, rest = (rest + block).rpartition(b'\n')
-            lines = (whole + newline).split(b'\n', skip)[-1]
+            end = block.rfind(b'\n') + 1
+            lines, rest = (rest + block[:end], block[end:]) if end else (b'', rest + block)
+            lines = lines.split(b'\n', skip)[-1] if skip else lines
             if rest and not following:
                 before = lines[-_LONG:].split(b'\n')[1:-1]
                 cut = before and len(rest) < min(map(len, before))

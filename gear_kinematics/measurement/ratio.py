@@ -50,6 +50,8 @@ _STEP = 0.01
 """s around a sample, for its speed; of a row without times."""
 _ONE_TURN = 390
 """deg of the output: more than a turn, as hardly anything repeats in just one."""
+_MOST_TURNED = 3600
+"""deg of the output that can be asked for."""
 _BY_CHANCE = 0.05
 """Probability below which a simple fraction in the interval is no coincidence."""
 _MAX_DISTANCE = 2
@@ -265,7 +267,10 @@ def _judged(measured: Estimate, turned: float) -> RatioEstimate:
         return RatioEstimate(measured, (simplest,), GearRatio(simplest))
     # Over a turn, the uncertainty falls as it grows.
     more = 90 * math.ceil(spread / enough * turned / 90.0)
-    advice = f'turn the output by {more if turned >= _ONE_TURN else _ONE_TURN}° or more'
+    more = more if turned >= _ONE_TURN else _ONE_TURN
+    advice = f'turn the output by {more}° or more'
+    if not turned < more <= _MOST_TURNED:
+        advice = 'turning further hardly helps: sample both encoders at once, and more often'
     candidates = islice(_fractions(low, high, q, value), _CANDIDATES)
     return RatioEstimate(measured, tuple(candidates), advice=advice)
 

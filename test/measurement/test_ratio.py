@@ -83,6 +83,13 @@ def test_over_more_than_a_turn_errors_of_a_degree_repeat(turns, most):
     assert abs(found.measured.value + 19.0) <= found.measured.uncertainty <= most
 
 
+def test_nobody_is_told_to_turn_further_where_that_does_not_help():
+    """As of encoders that are polled one after the other: a little off -6, after 87 turns."""
+    found = estimate_ratio(*angles(Fraction(-599_991, 100_000), 87.0))
+    assert not found.taken
+    assert found.advice.startswith('turning further hardly helps')
+
+
 def test_less_than_a_turn_is_left_open_and_the_advice_is_enough():
     for seed, ratio in enumerate((Fraction(-19), Fraction(101))):
         joint = simulated_joint.recorded(
