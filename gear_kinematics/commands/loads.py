@@ -3,6 +3,7 @@
 
 import argparse
 import math
+import sys
 from importlib import import_module
 
 from gear_kinematics.bag.finding import find_bags
@@ -13,7 +14,7 @@ from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.measurement.loads.document import WORK, document
 from gear_kinematics.measurement.loads.recorded import Task
 from gear_kinematics.parameters import default_config
-from gear_kinematics.report.document import Verdict
+from gear_kinematics.report.document import Verdict, printable
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -67,6 +68,8 @@ def run(options: argparse.Namespace) -> ExitCode:
     faults = [*found.faults.values(), *(report.error for report in reports if report.error)]
     for fault in faults:
         complain(fault)
+    for table in filter(None, (report.taken for report in reports)):
+        print(printable(table), file=sys.stderr)
     joined = document(reports)
     if joined.sections:
         reporter.write(joined, (arguments.config_path(options, task.bag) for task in tasks))

@@ -105,7 +105,7 @@ def _measured(path: Path, name: str, options: argparse.Namespace) -> LostMotion:
             recording = read(path, config, sources(options), report_progress)
             found = measure(replace(recording, name=name), config, options.rated_torque)
             say_columns(recording, options)
-        except (ValueError, OSError):
+        except (ValueError, OSError, ImportError):
             raise
         except Exception as error:  # the other recordings are worth reporting
             raise ValueError(unexpected(error, debug=options.debug)) from error

@@ -90,7 +90,9 @@ def read_rotor(path: Path, sources: Sources, ratio: Fraction) -> tuple[Array, Ar
         role = 'rotor' if 'rotor' in found else 'angle'
         one, torque = series[role], _torque(found, series, series[role], ratio) / float(ratio)
         on_rotor = role == 'rotor' or found[role].on_rotor
-        angle = one.values[role] * (1.0 if on_rotor else float(ratio))
+        angle = one.values[role]
+        angle = np.unwrap(angle) if count_wraps(angle, TURN) else angle
+        angle = angle if on_rotor else angle * float(ratio)
         return one.stamp, angle, torque, ', '.join(said)
 
 

@@ -56,8 +56,21 @@ def report(capsys, *arguments) -> tuple[int, dict]:
     return code, json.loads(capsys.readouterr().out)['recordings'][0]
 
 
-def test_overloads_are_found_to_the_sample(tmp_path, config, capsys):
-    code, found = report(capsys, record(tmp_path), '--config', config)
+def table(folder: Path) -> Path:
+    """Write what `record` does, in other units."""
+    bag, torque = record(folder), 100.0 * np.sin(TIME * math.tau / 2.0)  # mN·m
+    for first, samples, value in OVERLOADS:
+        torque[first : first + samples] = 1e3 * value
+    rows = np.column_stack([START / 1e9 * 1e3 + 1e3 * TIME, np.degrees(SPEED * TIME), torque])
+    head = 'ms;MotorPosition [deg];MotorTorque [mNm]'
+    path = bag.with_name('r.csv')
+    np.savetxt(path, rows, '%.6f', ';', header=head, comments='')
+    return path
+
+
+@pytest.mark.parametrize('write', [record, table])
+def test_overloads_are_found_to_the_sample(tmp_path, config, capsys, write):
+    code, found = report(capsys, write(tmp_path), '--config', config)
     assert code == 1
     moments = [
         (moment['stamp'] - START, round(1000 * moment['duration']), moment['branch'])

@@ -50,6 +50,8 @@ class Report(NamedTuple):
     data: dict[str, Any]
     error: str
     """In one line that names the recording: of damage, up to which it was read, too."""
+    taken: str = ''
+    """What was taken of a table."""
 
 
 def document(reports: Sequence[Report]) -> Document:
@@ -68,6 +70,8 @@ def report(task: Task, progress: ReportProgress | None = None) -> Report:
         return _report(task, read_loads(task, progress))
     except (ValueError, OSError) as error:
         return _lost(task, str(error))
+    except ImportError:
+        raise
     except Exception as error:  # noqa: BLE001, the other recordings are worth reporting
         return _lost(task, unexpected(error, debug=task.debug))
 
@@ -112,7 +116,7 @@ def _report(task: Task, loads: RecordedLoads) -> Report:
         'forces': {force.name: force._asdict() for force in forces},
         'slot_loss': loss,
     }
-    return Report(section, data, loads.damage)
+    return Report(section, data, loads.damage, loads.taken)
 
 
 def _answer(loads: RecordedLoads, moments: Sequence[Moment], source: str) -> str:

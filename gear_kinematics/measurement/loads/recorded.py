@@ -2,7 +2,7 @@
 """The loads at the samples of a recording, and what they come to."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -108,6 +108,8 @@ class RecordedLoads:
     """Messages without known loads, by cause."""
     damage: str
     """At which reading ended, if any."""
+    taken: str = ''
+    """What was taken of a table."""
 
     @cached_property
     def time(self) -> Array:
@@ -198,12 +200,14 @@ def read_loads(task: Task, progress: ReportProgress | None = None) -> RecordedLo
         BagError, RecordingError: if it cannot be read, or has nowhere what the loads need.
         MechanismError: if the parameters describe no mechanism or no preload.
     """
-    parameters, damage = task.parameters, ''
+    parameters, damage, taken = task.parameters, '', ''
+    batches: Iterable[TopicMessages]
     stamps: list[Array] = []
     tables: list[Array] = []
     with ExitStack() as opened:
         if is_table(task.bag):
-            topic, batches = task.bag.name, _of_table(task)
+            topic, (table, taken) = task.bag.name, _of_table(task)
+            batches = [table]
         else:
             bag = opened.enter_context(open_bag(task.bag))
             topic = find_rotor_topic(bag, task.rotor_topic, parameters.rotor_joint)
@@ -243,16 +247,18 @@ def read_loads(task: Task, progress: ReportProgress | None = None) -> RecordedLo
         joints,
         dict(gear.input.rejected),
         damage,
+        taken,
     )
 
 
-def _of_table(task: Task) -> Iterator[TopicMessages]:
-    """Yield the rows of a table as messages, as of a driver."""
+def _of_table(task: Task) -> tuple[TopicMessages, str]:
+    """Return the rows of a table as messages of a driver, and what was taken of it."""
     parameters, sources = task.parameters, task.sources or Sources()
-    stamp, angle, torque, _ = read_rotor(task.bag, sources, parameters.gear.gear_ratio)
+    stamp, angle, torque, taken = read_rotor(task.bag, sources, parameters.gear.gear_ratio)
     stamp = stamp + max(0, SECOND - int(stamp[0]))  # no stamp is 0, which would be none
     template = JointStateTemplate([parameters.rotor_joint], velocity=False, effort=True)
-    yield TopicMessages(encode(template, stamp, [angle, torque]), stamp.tolist())
+    messages = TopicMessages(encode(template, stamp, [angle, torque]), stamp.tolist())
+    return messages, f'{task.bag.name}: {taken}'
 
 
 def _levels(values: Array) -> tuple[float, float, float]:
