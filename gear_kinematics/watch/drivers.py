@@ -81,6 +81,10 @@ def listen(seconds: float = _WAIT) -> list[DriverTopic]:
             found = listener.drivers()
             time.sleep(_PERIOD)
         return [
-            replace(driver, messages=[each for each in messages if each[0] == driver.topic])
+            replace(
+                driver,
+                rate=listener.heard[driver.topic].mean_rate,
+                messages=[each for each in messages if each[0] == driver.topic],
+            )
             for driver in found
         ]
