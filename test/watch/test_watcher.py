@@ -554,13 +554,14 @@ def test_init_writes_what_is_named(listening, capsys):
 
 
 @pytest.mark.usefixtures('listening')
+@pytest.mark.usefixtures('listening')
 def test_init_questions_velocities_that_contradict_the_positions(monkeypatch, capsys):
     moving = [
         ('/motor', k, rotor_bytes(k * 10_000_000, ['m1'], [0.5 * k], [477.5]))
         for k in range(1, 200)
     ]
     monkeypatch.setattr(drivers, 'listen', lambda: [DriverTopic('/motor', ('m1',), 99.0, moving)])
-    assert main(['init', '--joint', 'm1']) == 0
+    assert main(['init', '--joint', 'm1', '--ratio', '-19']) == 0
     expected = 'gearkin: /motor: the velocities contradict the positions: they seem to be rpm\n'
     assert capsys.readouterr().err == expected
 
