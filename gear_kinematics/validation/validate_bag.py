@@ -2,7 +2,9 @@
 """Validates a bag, in this process or another one."""
 
 import time
-from collections.abc import Callable, Iterable
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
 from pathlib import Path
@@ -22,11 +24,14 @@ from gear_kinematics.bag.schedule import count_due
 from gear_kinematics.fleet.processes import Work
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.report.document import counted
 from gear_kinematics.validation.report import BagReport, Finding, unusable
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validator import Validator, agrees
+from gear_kinematics.wire.cdr import MalformedMessageError, messages_lost
 from gear_kinematics.wire.topics import CORRECTED_TOPICS, LOAD_TOPICS, OUTPUT_ENCODER
 
+_LOSSES = 'rosbag2_interfaces/msg/MessagesLostEvent'  # of recorders since Lyrical
 _BATCH = 8192  # messages of a live node that are validated together
 
 
@@ -124,6 +129,8 @@ def _judged(
     except BagError as error:
         damage = str(error)
     report = validator.report(damage)
+    if not play:
+        report = replace(report, findings=(*report.findings, *_recorded_losses(bag, names)))
     if found != joint:
         taken = Finding(f'{found}, the only joint on {topics.rotor}, is taken')
         return replace(report, findings=(taken, *report.findings))
@@ -135,6 +142,19 @@ def _judged(
                 whose = Finding(f'{text}; repeat with --joint {other}', cause=True)
                 return replace(report, findings=(whose, *report.findings))
     return report
+
+
+def _recorded_losses(bag: Bag, topics: Iterable[str]) -> Iterator[Finding]:
+    """Yield what the recorder says that it lost of topics, where this is recorded."""
+    events = [name for name, kind in bag.topics.items() if kind == _LOSSES]
+    lost: Counter[str] = Counter()
+    with suppress(BagError, MalformedMessageError):
+        for _, _, data in bag.messages(events) if events else ():
+            lost += messages_lost(data)
+    for topic in topics:
+        if lost[topic]:
+            words = f'the recorder says that it lost {counted(lost[topic], "message")}'
+            yield Finding(words, topic=topic)
 
 
 def _lost(task: Task, cause: str) -> BagReport:

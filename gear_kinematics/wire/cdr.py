@@ -13,6 +13,7 @@ ends at its first zero; bytes after the message are ignored.
 """
 
 import struct
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
@@ -122,12 +123,32 @@ def _layout(data: bytes, arrays: Sequence[int], *, named: bool = True) -> Layout
     return reader.layout()
 
 
+def messages_lost(data: bytes) -> Counter[str]:
+    """Return what a recorder lost, by topic, of a rosbag2_interfaces/MessagesLostEvent.
+
+    Raises:
+        MalformedMessageError: if it is none.
+    """
+    reader = _Reader(data, STAMP_OFFSET)
+    reader.string()  # the recorder
+    for _ in range(reader.count(8)):
+        reader.string()
+        reader.doubles(2)  # of the size of the two uint64, lost in transport and by the recorder
+    layout = reader.layout()
+    lost: Counter[str] = Counter()
+    for topic, (offset, _) in zip(layout.texts[1:], layout.arrays, strict=True):
+        lost[topic.decode(errors='replace')] += sum(
+            struct.unpack_from(f'{layout.order}2Q', data, offset)
+        )
+    return lost
+
+
 class _Reader:
     """Reads the primitives after a header's stamp and records their positions."""
 
-    def __init__(self, data: bytes) -> None:
+    def __init__(self, data: bytes, start: int = STAMP_OFFSET + STAMP.size) -> None:
         self._data = data
-        self._offset = STAMP_OFFSET + STAMP.size
+        self._offset = start
         self._texts: list[bytes] = []
         self._arrays: list[tuple[int, int]] = []
         self._fixed = [(0, 2)]

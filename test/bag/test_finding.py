@@ -125,6 +125,9 @@ def test_split_files_with_dates_are_in_the_order_of_their_counters(recorded, tmp
         (path / f'bag_{number}.mcap').rename(path / f'{number}_{prefix}_{date}.mcap')
     assert find_bags([str(tmp_path)]).bags == [path]
     assert read(path) == recorded
+    for number in range(2):  # as --max-bag-files does
+        next(path.glob(f'{number}_*')).unlink()
+    assert read(path) == recorded[2 * 82 :]
 
 
 def test_files_of_two_storages_are_two_recordings(recorded, tmp_path):

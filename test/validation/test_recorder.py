@@ -10,9 +10,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import replaying
-from made_bags import read
+from made_bags import folder, read
 from replaying import SECOND
 from rosbag2_recorder import Message, record
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, read_bag
 from validating import validate
 
@@ -423,3 +424,29 @@ def test_losses_at_the_restart_of_a_real_loop_fail_with_a_third_behind_it(shared
         report = validate(recorded, config, Topics(poses=''))
         assert report.verdict == Verdict.FAIL
         assert [t.missing for t in report.topics] == [2]
+
+
+@pytest.mark.parametrize('little_endian', [True, False])
+def test_what_the_recorder_says_that_it_lost_is_said(tmp_path, monkeypatch, little_endian):
+    """As Lyrical's publishes it once in a while, for all topics on which it lost something."""
+    topic, kind = '/events/rosbag2_messages_lost', 'rosbag2_interfaces/msg/MessagesLostEvent'
+    store = get_typestore(Stores.ROS2_JAZZY)
+    count = 'string topic\nuint64 in_transport\nuint64 in_recorder\n'
+    store.register(get_types_from_msg(count, f'{kind}TopicStat'))
+    store.register(get_types_from_msg(f'string node\n{kind}TopicStat[] lost\n', kind))
+    event, loss = store.types[kind], store.types[f'{kind}TopicStat']
+    told = [[(OUTPUT, 2, 3), ('/camera', 7, 0)], [(OUTPUT, 1, 0)]]
+    messages = [Message(*message) for message in read_bag(BAGS / 'servo_point_to_point')[:900]]
+    for losses in told:
+        data = store.serialize_cdr(
+            event('/rosbag2_recorder', [loss(*each) for each in losses]),
+            kind,
+            little_endian=little_endian,
+        )
+        messages.append(Message(topic, messages[-1].received, bytes(data)))
+    monkeypatch.setitem(TYPES, topic, kind)
+    monkeypatch.setattr('made_bags.JAZZY', store)
+    report = validate_bag(Task(folder(tmp_path / 'bag', messages), NodeParameters.load()))
+    assert report.passed
+    said = [(finding.topic, finding.text) for finding in report.findings if 'lost' in finding.text]
+    assert said == [(OUTPUT, 'the recorder says that it lost 6 messages')]
