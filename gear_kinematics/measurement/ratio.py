@@ -101,21 +101,33 @@ def wrong_ratio(encoders: Encoders, assumed: Fraction) -> str:
     It is found if, between samples, the output turns at most half a turn more or less than by the
     assumed one.
     """
-    ideal = encoders.at_measured(encoders.ideal(assumed))
-    time = encoders.seconds if encoders.timed else None
-    try:
-        found = estimate_ratio(
-            ideal * float(assumed), ideal + encoders.error(assumed), time, encoders.interpolated
-        )
-    except RecordingError:
+    found = _estimated(encoders, assumed)
+    if found and found.fits(assumed):
         return ''
-    if found.fits(assumed):
+    upside_down = _estimated(encoders, 1 / assumed)
+    for ratio in (1 / assumed, -1 / assumed):
+        if upside_down and upside_down.fits(ratio):
+            measured = f'the recorded ratio is {upside_down.plus_minus}, not {assumed}'
+            meant = 'the speed of the rotor by that of the output'
+            return f'{measured}, which is upside down: give --ratio={ratio}, {meant}'
+    if not found:
         return ''
     measured = f'the recorded ratio is {found.plus_minus}, not {assumed}'
     if found.fits(-assumed):
         return f'{measured}: an encoder counts backwards, or --ratio={-assumed} is right'
     such = '' if found.taken else ' it, such as'
     return f'{measured}; gearkin commission finds it, or give{such} --ratio={found.candidates[0]}'
+
+
+def _estimated(encoders: Encoders, assumed: Fraction) -> RatioEstimate | None:
+    """Estimate the ratio from one by which the output turns about as far, if that is possible."""
+    ideal = encoders.at_measured(encoders.ideal(assumed))
+    time = encoders.seconds if encoders.timed else None
+    output = ideal + encoders.error(assumed)
+    try:
+        return estimate_ratio(ideal * float(assumed), output, time, encoders.interpolated)
+    except RecordingError:
+        return None
 
 
 def estimate_ratio(

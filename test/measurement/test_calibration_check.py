@@ -76,7 +76,14 @@ def test_constant_speed_tells_no_delay():
 
 
 @pytest.mark.parametrize(
-    ('assumed', 'true'), [(-19, 7.29), (Fraction(31, 16), -31 / 16), (101, 100.0)]
+    ('assumed', 'true'),
+    [
+        (-19, 7.29),
+        (Fraction(31, 16), -31 / 16),
+        (101, 100.0),
+        (Fraction(1, 19), 19.0),
+        (Fraction(-1, 19), 19.0),
+    ],
 )
 def test_a_wrong_ratio_or_sign_is_named_before_anything_is_fitted(assumed, true):
     recording, _ = two_halves(GearSet(1, ratio=true), 1, strokes, 20.0)
@@ -84,12 +91,13 @@ def test_a_wrong_ratio_or_sign_is_named_before_anything_is_fitted(assumed, true)
         fit([recording], Fraction(assumed))
     message = str(refused.value)
     named = re.fullmatch(
-        rf'gear 0: the recorded ratio is (\S+) ± (\S+), not {assumed}[;:] .*--ratio=.*', message
+        rf'gear 0: the recorded ratio is (\S+) ± (\S+), not {assumed}[;:,] .*--ratio=.*', message
     )
     measured, uncertainty = map(float, named.groups())
     assert abs(measured - true) <= 2.0 * uncertainty < 0.01 * abs(true)
     if assumed == Fraction(31, 16):
         assert 'an encoder counts backwards, or --ratio=-31/16 is right' in message
+    assert ('upside down: give --ratio=19,' in message) is (abs(assumed) < 1)
 
 
 def checks(half_width, time, runs=100):
