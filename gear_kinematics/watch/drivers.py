@@ -48,7 +48,7 @@ class Listener:
         return [
             (topic, received, data)
             for topic, heard in self.heard.items()
-            for data, received in heard.take()
+            for data, received, *_ in heard.take()
         ]
 
     def drivers(self) -> list[DriverTopic]:

@@ -105,7 +105,7 @@ class GearNode:
     def poll(self) -> None:
         """Take the messages that have arrived."""
         self._outputs.poll()
-        for data, _ in self._diagnostics.take():
+        for data, *_ in self._diagnostics.take():
             for status in deserialize_message(data, DiagnosticArray).status:
                 if status.hardware_id == self.name:
                     subject = status.name.rpartition(': ')[2][:_LONGEST]

@@ -29,6 +29,7 @@ class Taken(NamedTuple):
 
     data: bytes  # CDR
     received: int  # ns
+    sent: int  # ns, by the clock of the publisher
 
 
 class Polled:
@@ -72,7 +73,8 @@ class Polled:
                     break
                 data, about = taken
                 if self._wanted(data):
-                    new.append(Taken(data, about['received_timestamp'] or time.time_ns()))
+                    received = about['received_timestamp'] or time.time_ns()
+                    new.append(Taken(data, received, about['source_timestamp'] or received))
         now, (before, count) = time.monotonic(), self._before
         if new and not self.last:  # a second that began before would have too few
             self._begun, before, count = new[0].received, now, len(new)

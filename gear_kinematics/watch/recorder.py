@@ -33,6 +33,7 @@ class Recorder:
         self._node, self._bag = node, bag
         self._wanted = '' if wanted == NODE else f'/{wanted.removeprefix("/")}'
         self._open: dict[str, tuple[str, Polled]] = {}  # with the types
+        self._least: dict[str, int] = {}  # ns from the dispatch to the reception of a message
 
     def poll(self) -> None:
         """Look for topics, and write the messages that have arrived; to be called often."""
@@ -41,7 +42,11 @@ class Recorder:
                 self._look(*gear.rpartition('/')[::2])
         messages: list[Message] = []
         for topic, (kind, polled) in self._open.items():
-            messages += [(topic, received, data) for data, received in polled.take()]
+            for data, received, sent in polled.take():
+                # The middleware repeats what was lost after seconds, and delays all that follows.
+                least = min(self._least.get(topic, received - sent), received - sent)
+                self._least[topic] = least
+                messages.append((topic, sent + least, data))
             if polled.last and topic not in self.heard:
                 self.heard[topic] = polled
                 self._bag.add_topic(topic, kind)
