@@ -32,7 +32,8 @@ def run(options: argparse.Namespace) -> ExitCode:
         for name, content in files.items():
             bag.add_file(name, content)
         with replay_node('') as node:
-            recorder = Recorder(node, bag, options.node)
+            loads = bool(options.config and config.preload)
+            recorder = Recorder(node, bag, options.node, loads=loads)
             show_recording(recorder, Console(), stopped)
         heard = recorder.heard
         missing = listed(sorted(recorder.inputs - heard.keys()))

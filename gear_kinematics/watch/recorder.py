@@ -24,8 +24,14 @@ _TYPES = {topic.type for topic in topics.TOPICS.values() if topic.part != 'displ
 class Recorder:
     """Records the topics of gear nodes, each from the moment that it has a publisher."""
 
-    def __init__(self, node: Node, bag: 'BagWriter', wanted: str = NODE) -> None:
-        """Record all gear nodes, or the one with a full name, into an open bag."""
+    def __init__(
+        self, node: Node, bag: 'BagWriter', wanted: str = NODE, *, loads: bool = False
+    ) -> None:
+        """Record all gear nodes, or the one with a full name, into an open bag.
+
+        The topics of the loads, which a node computes for listeners alone, need `loads`.
+        """
+        self._left_out = {topics.JOINT_STATES, *(() if loads else topics.LOAD_TOPICS)}
         self.heard: dict[str, Polled] = {}
         """The topics on which messages have come."""
         self.inputs: set[str] = set()
@@ -59,7 +65,7 @@ class Recorder:
             outputs = self._node.get_publisher_names_and_types_by_node(*place)
             self.inputs |= {topic for topic, types in inputs if topics.JOINT_STATE in types}
             for topic, [kind, *_] in inputs + outputs:
-                wanted = kind in _TYPES and topics.base_name(topic) != topics.JOINT_STATES
+                wanted = kind in _TYPES and topics.base_name(topic) not in self._left_out
                 if wanted and topic not in self._open and self._node.count_publishers(topic):
                     package, _, message = kind.split('/')
                     message_type = getattr(import_module(f'{package}.msg'), message)

@@ -35,8 +35,8 @@ sys.exit({0}())
 """
 TOLD = {
     'gearkin replay bags/servo_point_to_point --as rotor_command': '3000 messages',
-    'gearkin validate monday': 'verdict: passed',
-    'gearkin loads monday': 'preload that would have held',
+    'gearkin validate monday --config config/simulated_actuator.yaml': 'verdict: passed',
+    'gearkin loads monday --config config/simulated_actuator.yaml': 'preload that would have held',
     'python examples/bench.py new.csv': 'the rotor is free',
     'gearkin lost-motion new.csv': r'the output rests anywhere within 0\.',
     'gearkin lost-motion new.csv worn.csv': 'worn against new: .*significant',
