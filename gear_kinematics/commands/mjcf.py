@@ -37,6 +37,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='of gearkin preload: stiffness and preload; of gearkin lost-motion: springs and '
         'friction (repeat the option for both)',
     )
+    gear.add_argument(
+        '--single-precision',
+        action='store_true',
+        help='with softer loops, for MuJoCo Warp: 0.04 %% of the compliance instead of 0.0001 %%',
+    )
     arguments.group(parser, 'output').add_argument(
         '-o', '--output', default='-', metavar='FILE', help='the model (default: stdout)'
     )
@@ -50,7 +55,11 @@ def run(options: argparse.Namespace) -> ExitCode:
     gear, notes = measured(gear, options.measured)
     if notes:
         complain(f'not in the reports: {"; ".join(notes)}')
-    text = mjcf(_shown(gear), [f'It was {MARK}.', *(f'Not measured: {note}.' for note in notes)])
+    text = mjcf(
+        _shown(gear),
+        [f'It was {MARK}.', *(f'Not measured: {note}.' for note in notes)],
+        single_precision=options.single_precision,
+    )
     if find_spec('mujoco'):
         from gear_kinematics.twin.mujoco_model import check  # noqa: PLC0415, an extra
 

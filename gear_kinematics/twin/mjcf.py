@@ -30,13 +30,20 @@ _UNREACHED_WIND_UP = 1e6  # rad, greater than all wind-ups
 _ARM_DAMPING = 0.05  # of critical: the arm comes to rest in ms, slower motions hardly notice
 
 
-def mjcf(gear: TwinGear, remarks: Sequence[str] = (), *, shown: bool = True) -> str:
+def mjcf(
+    gear: TwinGear,
+    remarks: Sequence[str] = (),
+    *,
+    shown: bool = True,
+    single_precision: bool = False,
+) -> str:
     """Write the model, at rest without load at a rotor angle of 0.
 
     Args:
         gear: a gear with a known mechanism, whose satellites and couplings have masses.
         remarks: lines of the comment in the file.
         shown: whether to draw the bodies: with their teeth, unless the parameter `meshes` is none.
+        single_precision: whether to soften the closed loops, so that MuJoCo Warp bears them.
 
     Raises:
         MechanismError: if only the ratio of the gear is known, or such a mass is missing.
@@ -51,7 +58,7 @@ def mjcf(gear: TwinGear, remarks: Sequence[str] = (), *, shown: bool = True) -> 
     if shown:
         _add_shapes(gear.parameters, parts)
     for number in range(len(mechanism.branches)):
-        _add_branch(gear, number, parts)
+        _add_branch(gear, number, parts, 1 if single_precision else 200)
     orders = ''.join(
         f'<numeric name={quoteattr(order.name)}'
         f' data="{float(order.cycles)!r} {order.cos!r} {order.sin!r}"/>'
@@ -68,18 +75,18 @@ def mjcf(gear: TwinGear, remarks: Sequence[str] = (), *, shown: bool = True) -> 
 
   and its springlength the play of the flanks. Positive torques push the output forwards. In the
   sensors of the branches, the third value is the torque on the output, from MuJoCo 3.14 on: older
-  ones read a hundredth of it. MuJoCo needs double precision for this model. There is no gravity,
-  and the arms weigh nothing: their inertia is that of the output. A spring that bends is
-  several tendons. Of friction that depends on the load, the mean is given. MuJoCo has no kinematic
-  errors: a program has to subtract them from springlength of all branches at each step. Numbers of
-  its orders, if any, are cycles per turn of the rotor, and their cos and sin, rad.
+  ones read a hundredth of it. MuJoCo Warp makes NaN of welds with a torquescale of 200. There is
+  no gravity, and the arms weigh nothing: their inertia is that of the output. A spring that bends
+  is several tendons. Of friction that depends on the load, the mean is given. MuJoCo has no
+  kinematic errors: a program has to subtract them from springlength of all branches at each step.
+  Numbers of its orders, if any, are cycles per turn of the rotor, and their cos and sin, rad.
   {comment}
 -->
 <compiler angle="radian"/>
 <!--
   In a step, the fastest oscillation on the springs goes on by less than {_PHASE} rad.
-  MuJoCo's constraints are soft. Their stiffest settings and torquescale make those that close the
-  loops add less than 0.01 % to the compliance of the gear.
+  MuJoCo's constraints are soft. Their stiffest settings, and a torquescale of 200, make those
+  that close the loops add less than 0.01 % to the compliance of the gear; one of 1, 0.04 %.
 -->
 <option timestep="{step!r}" integrator="implicitfast" gravity="0 0 0" iterations="10"
  tolerance="1e-12"><flag contact="disable"/></option>
@@ -138,7 +145,7 @@ def _time_step(gear: TwinGear) -> float:
     return _MILLISECOND / math.ceil(_MILLISECOND / longest - 1e-9)
 
 
-def _add_branch(gear: TwinGear, number: int, parts: dict[str, str]) -> None:
+def _add_branch(gear: TwinGear, number: int, parts: dict[str, str], torquescale: int) -> None:
     """Add the bodies of a branch with their joints, springs and sensors.
 
     Coupling and slot are one body: each has half of its mass. They turn with the satellite: either
@@ -197,7 +204,8 @@ def _add_branch(gear: TwinGear, number: int, parts: dict[str, str]) -> None:
             (max(low, -_UNREACHED_WIND_UP), min(high, _UNREACHED_WIND_UP)),
         )
     parts['equality'] += f"""
-<weld name="oldham_{name}" body1="oldham_{name}" body2="slot_arm_{name}" torquescale="200"/>"""
+<weld name="oldham_{name}" body1="oldham_{name}" body2="slot_arm_{name}"
+ torquescale="{torquescale}"/>"""
     parts['sensor'] += f"""
 <torque name="{topics.BRANCH_LOADS}_{name}" site="slot_arm_{name}"/>"""
 

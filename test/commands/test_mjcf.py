@@ -82,7 +82,9 @@ def test_optional_packages_may_be_missing(package, says, monkeypatch):
 
 def test_a_model_that_mujoco_refuses_is_not_written(tmp_path, monkeypatch):
     pytest.importorskip('mujoco')
-    monkeypatch.setattr('gear_kinematics.commands.mjcf.mjcf', lambda *_: '<mujoco><nonsense/>')
+    monkeypatch.setattr(
+        'gear_kinematics.commands.mjcf.mjcf', lambda *_, **__: '<mujoco><nonsense/>'
+    )
     path = tmp_path / 'gear.xml'
     assert 'XML' in refusal('mjcf', '-o', path)
     assert not path.exists()

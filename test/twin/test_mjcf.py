@@ -191,3 +191,17 @@ def test_the_step_is_a_part_of_a_millisecond_and_short_for_the_springs(gear):
     model, _ = loaded(gear)
     assert 1e-3 / model.opt.timestep == pytest.approx(round(1e-3 / model.opt.timestep), rel=1e-12)
     assert 0.5 < model.opt.timestep * math.sqrt(4069.0 / 2.073e-5) < 0.7
+
+
+def test_softer_loops_hardly_add_to_the_compliance(gear):
+    """MuJoCo Warp, in single precision, makes NaN of the stiffer ones."""
+    turned = []
+    for single_precision in (False, True):
+        text = mjcf(gear, shown=False, single_precision=single_precision)
+        model = mujoco.MjModel.from_xml_string(text)
+        data = mujoco.MjData(model)
+        data.eq_active[model.equality('rotor_lock').id] = 1
+        data.ctrl[model.actuator('load_torque').id] = 2.0
+        mujoco.mj_step(model, data, 8000)
+        turned.append(data.sensor('output_encoder').data[0])
+    assert turned[1] / turned[0] - 1.0 == pytest.approx(4e-4, rel=0.2)
