@@ -46,6 +46,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='judge all messages, even where the recorder may have lost some, and fail a node '
         'that was homed',
     )
+    limits.add_argument(
+        '--independent',
+        action='store_true',
+        help='compare by the matrix method as well, with code that the node does not run',
+    )
     sources = arguments.group(parser, 'several recordings').add_mutually_exclusive_group()
     sources.add_argument(
         '--live', action='store_true', help='validate the outputs of a live node instead'
@@ -96,6 +101,7 @@ def _task(bag: Path, tolerances: Tolerances, options: argparse.Namespace) -> Tas
         config=str(file),
         tolerances=tolerances,
         strict=options.strict,
+        independent=options.independent,
         only_joint=options.joint is None,
         rotor_topic=options.rotor_topic,
         output_topic=options.output_topic,

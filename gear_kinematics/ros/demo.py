@@ -15,6 +15,7 @@ from gear_kinematics.ros.live import live_messages
 from gear_kinematics.share import share_directory
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.task import Task, Tolerances
+from gear_kinematics.validation.validate_bag import independent_of, with_proof
 from gear_kinematics.validation.validator import Validator
 from gear_kinematics.wire.joint_reader import JointReader
 
@@ -46,9 +47,10 @@ def run(console: Console) -> tuple[BagReport, float]:
         strict=True,
     )
     # Not the node's own formulas.
-    validator = Validator(task, solver=matrix_method.solve)
+    proof, validator = independent_of(task, _TOPICS), Validator(task, solver=matrix_method.solve)
     validator.feed([published])
-    return validator.report(), greatest
+    proof.take(published)
+    return with_proof(validator.report(), proof), greatest
 
 
 def _play(

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.report.document import Verdict
+from gear_kinematics.validation.independent import IndependentReport
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,6 +192,8 @@ class BagReport:
     topics: tuple[TopicReport, ...] = ()
     findings: tuple[Finding, ...] = ()
     """Of the recording as a whole; `explain` adds the faults of topics and fields."""
+    independent: IndependentReport | None = None
+    """The comparison by code that the node does not run, if it was asked for."""
     series: tuple[Series, ...] = ()
     """Of the output topics with anything to compare."""
     mechanism: Mechanism | None = None

@@ -44,6 +44,8 @@ class Task:
     strict: bool = False
     """Whether to judge all missing and extra messages, even if the recorder may have caused them
     (see `recorder`), and to fail a recording with another rotor_zero, as after homing."""
+    independent: bool = False
+    """Whether to compare by the matrix method as well, with code that the node does not run."""
     only_joint: bool = True
     """Whether the only joint on the rotor's topic is the rotor, if the configured one is not."""
     rotor_topic: str | None = None

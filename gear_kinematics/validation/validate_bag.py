@@ -3,7 +3,7 @@
 
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
@@ -13,6 +13,7 @@ from typing import Any
 from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, in_batches
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.bag.roles import (
+    Topics,
     beside,
     find_beside,
     find_encoder_topic,
@@ -24,7 +25,8 @@ from gear_kinematics.bag.schedule import count_due
 from gear_kinematics.fleet.processes import Work
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.report.document import counted
+from gear_kinematics.report.document import Verdict, counted
+from gear_kinematics.validation.independent import Independent
 from gear_kinematics.validation.report import BagReport, Finding, unusable
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validator import Validator, agrees
@@ -123,12 +125,13 @@ def _judged(
         names = (*topics, *further.values(), *filter(None, [encoder]))
         batches = bag.batches(names, progress)
         validator = Validator(task, topics, further, encoder=encoder)
+    proof = independent_of(task, Topics() if play else topics) if task.independent else None
     damage = None
     try:
-        validator.feed(batches)
+        validator.feed(_seen(proof, batches) if proof else batches)
     except BagError as error:
         damage = str(error)
-    report = validator.report(damage)
+    report = with_proof(validator.report(damage), proof)
     if not play:
         report = replace(report, findings=(*report.findings, *_recorded_losses(bag, names)))
     if found != joint:
@@ -155,6 +158,32 @@ def _recorded_losses(bag: Bag, topics: Iterable[str]) -> Iterator[Finding]:
         if lost[topic]:
             words = f'the recorder says that it lost {counted(lost[topic], "message")}'
             yield Finding(words, topic=topic)
+
+
+def independent_of(task: Task, topics: Topics) -> Independent:
+    """Return the comparison of a task by code that the node does not run."""
+    return Independent(task.parameters, topics, task.tolerances, strict=task.strict)
+
+
+def _seen(proof: Independent, batches: Iterable[Sequence[Message]]) -> Iterator[Sequence[Message]]:
+    """Pass messages on after an independent comparison has taken them."""
+    for batch in batches:
+        proof.take(batch)
+        yield batch
+
+
+def with_proof(report: BagReport, proof: Independent | None) -> BagReport:
+    """Add what an independent comparison has found."""
+    if not proof or report.verdict == Verdict.UNUSABLE:
+        return report
+    found = proof.report()
+    finding = Finding(found.text, fails=not found.passed, stamp=found.first_wrong)
+    return replace(
+        report,
+        verdict=report.verdict if found.passed else Verdict.FAIL,
+        independent=found,
+        findings=(*report.findings, finding),
+    )
 
 
 def _lost(task: Task, cause: str) -> BagReport:

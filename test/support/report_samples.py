@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.report.document import Verdict
+from gear_kinematics.validation.independent import IndependentReport
 from gear_kinematics.validation.report import (
     BagReport,
     FieldReport,
@@ -80,6 +81,7 @@ PASSING = BagReport(
     messages=12000,
     rotor=ROTOR,
     topics=(OUTPUT, POSES),
+    independent=IndependentReport(12000, 3, 1, {'position': 2e-15}, None, passed=True),
     series=series(),
     mechanism=Mechanism(80, 76, 0.0011, (Branch('a'), Branch('b', cam_phase=math.pi))),
     module=0.0005,

@@ -1,0 +1,200 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Judges recorded outputs by code that the node does not run.
+
+The node and the usual validation decode messages, count turns and solve the motion by the same
+code, whose errors would be on both sides of the comparison. Here `struct` decodes, a single-turn
+encoder turns to the nearest angle, and the matrix method solves the motion, in float64: 1e-9 rad
+are kept up to 10⁷ rad of the rotor. Inputs without an output are not judged.
+"""
+
+import math
+import struct
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gear_kinematics.bag import Message
+from gear_kinematics.bag.roles import Topics
+from gear_kinematics.kinematics import Mechanism, matrix_method
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.validation.task import QUANTITIES, Tolerances
+
+_KEPT = 20_000  # inputs, outputs and poses that wait for each other
+_UNITS = {'position': 'rad', 'velocity': 'rad/s', 'effort': 'N·m'}
+_UNITS |= {'position of bodies': 'm', 'orientation of bodies': 'rad'}
+_State = tuple[int, float, float, float]
+"""Stamp, ns, position, velocity and effort of a joint; NaN for what is absent or not finite."""
+
+
+@dataclass(frozen=True, slots=True)
+class IndependentReport:
+    """The result of the independent comparison."""
+
+    compared: int
+    """Messages of the output and of the poses whose input is there; the rest is not compared."""
+    not_compared: int
+    turns_taken: int
+    """How often turns that no reading tells, or another zero, came from the outputs."""
+    errors: dict[str, float]
+    """Greatest errors by field, in rad, rad/s, N·m and m."""
+    first_wrong: int | None
+    passed: bool
+
+    @property
+    def text(self) -> str:
+        """One sentence."""
+        if not self.compared:
+            return 'independently, nothing could be compared'
+        worst = ', '.join(f'{name} {e:.2g} {_UNITS[name]}' for name, e in self.errors.items())
+        verdict = 'agree with' if self.passed else 'differ from'
+        return f'{self.compared} outputs {verdict} the matrix method; largest errors: {worst}'
+
+
+class _Cdr:
+    """Reads a serialised message from its start."""
+
+    def __init__(self, data: bytes) -> None:
+        self._data, self._order, self._at = data, '<' if data[1] & 1 else '>', 4
+        (seconds,), (nanoseconds,) = self._take('i'), self._take('I')
+        self.stamp = int(1_000_000_000 * seconds + nanoseconds)
+        self._text()
+
+    def _take(self, code: str, count: int = 1) -> tuple[Any, ...]:
+        size = struct.calcsize(code)
+        self._at += -(self._at - 4) % size
+        values = struct.unpack_from(f'{self._order}{count}{code}', self._data, self._at)
+        self._at += size * count
+        return values
+
+    def _text(self) -> str:
+        (size,) = self._take('I')
+        self._at += size
+        return self._data[self._at - size : self._at].rstrip(b'\0').decode()
+
+    def array(self, size: int = 1) -> tuple[Any, ...]:
+        """Read an array, of items of so many float64."""
+        (count,) = self._take('I')
+        return self._take('d', size * count) if count else ()
+
+    def joint(self, name: str) -> _State:
+        """Read a JointState, and select a joint by name, by index, or '' as the only one."""
+        names = [self._text() for _ in range(self._take('I')[0])]
+        index = names.index(name) if name in names else int(name or len(names) - 1)
+        arrays = [self.array() for _ in range(3)]
+        position, *others = (a[index] if index < len(a) else math.nan for a in arrays)
+        velocity, effort = (value if math.isfinite(value) else math.nan for value in others)
+        return self.stamp, position, velocity, effort
+
+
+class Independent:
+    """Compares outputs with what their inputs mean, in one pass over a recording."""
+
+    def __init__(
+        self, parameters: NodeParameters, topics: Topics, limits: Tolerances, *, strict: bool
+    ) -> None:
+        """Prepare for a recording; where `strict`, outputs of another zero are wrong."""
+        self._parameters, self._topics, self._strict = parameters, topics, strict
+        self._ratio, self._direction = parameters.gear.gear_ratio, parameters.rotor_direction
+        self._limits = {name: getattr(limits, QUANTITIES[unit]) for name, unit in _UNITS.items()}
+        self._errors: dict[str, float] = {}
+        self._wrong: list[int] = []
+        self._inputs: dict[int, list[_State]] = defaultdict(list)
+        self._angles: dict[int, float] = {}  # of the rotor, rad, by the stamps of outputs
+        self._outputs: list[_State] = []
+        self._poses: list[tuple[int, Any]] = []
+        self._last: tuple[int, float] | None = None  # stamp and position of the last output
+        self._offset: float | None = None  # rad, from positions to rotor angles
+        self._given = self._compared = self._taken = 0
+
+    def take(self, messages: Iterable[Message]) -> None:
+        """Take the next messages, in the order of their reception."""
+        for topic, _, data in messages:
+            self._given += topic in (self._topics.output, self._topics.poses)
+            with suppress(ValueError, IndexError, struct.error):  # it cannot be decoded
+                cdr = _Cdr(data)
+                if topic == self._topics.rotor:
+                    self._inputs[cdr.stamp].append(cdr.joint(self._parameters.rotor_joint))
+                elif topic == self._topics.output:
+                    self._outputs.append(cdr.joint(''))
+                elif topic == self._topics.poses:
+                    self._poses.append((cdr.stamp, cdr.array(7)))
+        self._compare()
+        self._outputs, self._poses = self._outputs[-_KEPT:], self._poses[-_KEPT:]
+        for kept in (self._inputs, self._angles):
+            for stamp in list(kept)[:-_KEPT]:
+                del kept[stamp]
+
+    def report(self) -> IndependentReport:
+        """Return the result on all messages."""
+        first, count = min(self._wrong, default=None), self._compared
+        counts = count, self._given - count, self._taken
+        return IndependentReport(*counts, self._errors, first, count > 0 and first is None)
+
+    def _compare(self) -> None:
+        """Compare those outputs and poses whose inputs are there."""
+        known = [each for each in self._outputs if each[0] in self._inputs]
+        self._outputs = [each for each in self._outputs if each[0] not in self._inputs]
+        inputs = (self._inputs[stamp] for stamp, *_ in known)
+        rows = [each.pop(0) if len(each) > 1 else each[0] for each in inputs]
+        angles = [self._angle(*pair) for pair in zip(rows, known, strict=True)]
+        stamps = [stamp for stamp, *_ in known]
+        self._angles.update(zip(stamps, angles, strict=True))
+        recorded, given = (np.reshape([each[1:] for each in x], (-1, 3)) for x in (known, rows))
+        rate = self._direction * given[:, 1]
+        expected = [np.array(angles) / float(self._ratio), rate / float(self._ratio)]
+        gear = self._parameters.gear
+        if isinstance(gear, Mechanism):
+            state = matrix_method.solve(gear, angles, rate)
+            expected = [state.output_angle, state.output_velocity]
+        torque = self._direction * self._parameters.rotor_effort_factor * given[:, 2]
+        expected.append(float(self._ratio) * torque)
+        for k, name in enumerate(('position', 'velocity', 'effort')):
+            withheld = np.isnan(recorded[:, k]) & (k > 0)
+            self._note(name, stamps, np.where(withheld, 0.0, np.abs(recorded[:, k] - expected[k])))
+        poses = [each for each in self._poses if each[0] in self._angles]
+        self._poses = [each for each in self._poses if each[0] not in self._angles]
+        if isinstance(gear, Mechanism) and poses:
+            self._compare_poses(gear, *zip(*poses, strict=True))
+
+    def _angle(self, given: _State, output: _State) -> float:
+        """The rotor angle of an input, of which the output may tell the turns or the zero."""
+        parameters, stamp, position = self._parameters, given[0], given[1]
+        if (period := parameters.rotor_period) and self._last:
+            elapsed, turned = stamp - self._last[0], position - self._last[1]
+            position = self._last[1] + math.remainder(turned, period)
+            if abs(elapsed) * 1e-9 * parameters.max_rotor_speed >= 0.5 * period:
+                self._offset = None
+        self._last = stamp, position
+        angle = self._direction * (position - parameters.rotor_zero)
+        if self._offset is None:
+            missing = output[1] * float(self._ratio) - angle
+            whole = period * round(missing / period) if period else 0.0
+            known = self._limits['position'] * abs(float(self._ratio))
+            self._offset = whole if self._strict or abs(missing - whole) <= known else missing
+            self._taken += self._offset != 0.0
+        return angle + self._offset
+
+    def _compare_poses(self, gear: Mechanism, stamps: Sequence[int], rows: Iterable[Any]) -> None:
+        state = matrix_method.solve(gear, [self._angles[stamp] for stamp in stamps])
+        centres = np.concatenate([state.satellite_centre, state.oldham_centre], axis=1)
+        bodies, axial = centres.shape[1], [each.axial_position for each in gear.branches] * 2
+        fit = [row if len(row) == 7 * bodies else (math.nan,) * 7 * bodies for row in rows]
+        recorded = np.reshape(fit, (-1, bodies, 7))
+        apart = np.hypot(*np.moveaxis(recorded[..., :2] - centres, -1, 0))
+        apart = np.hypot(apart, recorded[..., 2] - axial)
+        x, y, z, w = np.moveaxis(recorded[..., 3:], -1, 0)
+        turned = 2.0 * np.arctan2(z, w) - state.output_angle[:, np.newaxis]
+        turned -= math.tau * np.round(turned / math.tau)
+        turned = np.hypot(turned, 2.0 * np.hypot(x, y)) + np.abs(np.hypot(z, w) - 1.0)
+        self._note('position of bodies', stamps, apart.max(axis=1))
+        self._note('orientation of bodies', stamps, turned.max(axis=1))
+
+    def _note(self, name: str, stamps: Sequence[int], errors: Any) -> None:
+        errors = np.where(np.isnan(errors), math.inf, errors)
+        self._errors[name] = float(errors.max(initial=self._errors.get(name, 0.0)))
+        self._wrong += np.array(stamps)[errors > self._limits[name]].tolist()[:1]
+        self._compared += len(stamps) * (name.startswith('position'))

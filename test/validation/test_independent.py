@@ -1,0 +1,103 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The comparison by code that the node does not run finds what the usual one cannot."""
+
+import json
+from dataclasses import replace
+
+import made_bags
+import pytest
+from node_loop import answered
+from shipped_bags import BAGS, OUTPUT, POSES, ROTOR, read_bag
+
+from gear_kinematics.commands.cli import main
+from gear_kinematics.kinematics import GearRatio, RotorPosition, RotorTurns
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.report.document import Verdict
+from gear_kinematics.validation import validate
+
+DEFAULT = NodeParameters.load()
+SINGLE = NodeParameters.load(BAGS / 'single_turn_encoder' / 'actuator.yaml')
+
+
+def answers_to(name, parameters) -> list:
+    """The rotor states of a shipped bag, with the outputs of the node as it is now."""
+    rotor = [message for message in read_bag(BAGS / name) if message[0] == ROTOR]
+    return answered(parameters, rotor)
+
+
+def scaled(monkeypatch) -> None:
+    """Let the output turn a millionth too far."""
+    right = GearRatio.output_angle
+
+    def wrong(self, turns, angle, xp):
+        output_turns, rest = right(self, turns, angle, xp)
+        return output_turns, rest * (1.0 + 1e-6)
+
+    monkeypatch.setattr(GearRatio, 'output_angle', wrong)
+
+
+def miscounted(monkeypatch) -> None:
+    """Lose a turn at the 500th sample."""
+    right = RotorTurns.update
+
+    def wrong(self, *arguments):
+        right(self, *arguments)
+        self.updates = getattr(self, 'updates', 0) + 1
+        if self.updates == 500:
+            self.position = RotorPosition(self.position.turns + 1, self.position.angle)
+
+    monkeypatch.setattr(RotorTurns, 'update', wrong)
+
+
+@pytest.mark.parametrize(
+    ('plant', 'name', 'parameters'),
+    [
+        (None, 'driver_faults', DEFAULT),
+        (None, 'single_turn_encoder', SINGLE),
+        (scaled, 'servo_point_to_point', DEFAULT),
+        (miscounted, 'single_turn_encoder', SINGLE),
+    ],
+)
+def test_a_fault_of_the_node_itself_is_found(plant, name, parameters, monkeypatch, tmp_path):
+    bag = BAGS / name
+    if plant:
+        plant(monkeypatch)
+        bag = made_bags.folder(tmp_path / 'bag', answers_to(name, parameters))
+    assert validate(bag, parameters).passed
+    report = validate(bag, parameters, independent=True)
+    assert report.passed == report.independent.passed == (plant is None)
+    assert report.independent.compared == sum(topic.compared for topic in report.topics)
+    assert (report.independent.first_wrong is None) == (plant is None)
+    if plant is None:
+        assert max(report.independent.errors.values()) < 1e-13
+    else:
+        assert report.verdict == Verdict.FAIL
+        assert any('differ from the matrix method' in each.text for each in report.causes)
+
+
+def test_another_zero_agrees_unless_judged_strictly(tmp_path):
+    homed = replace(DEFAULT, rotor_zero=0.7)
+    bag = made_bags.folder(tmp_path / 'bag', answers_to('servo_point_to_point', homed))
+    report = validate(bag, DEFAULT, independent=True).independent
+    assert (report.passed, report.turns_taken) == (True, 1)
+    assert not validate(bag, DEFAULT, independent=True, strict=True).independent.passed
+
+
+@pytest.mark.parametrize(('topic', 'compared'), [(OUTPUT, 196), (POSES, 197)])
+def test_damaged_and_foreign_outputs_are_not_compared(topic, compared, tmp_path):
+    messages = answers_to('servo_point_to_point', DEFAULT)[:300]
+    last = max(k for k, message in enumerate(messages) if message[0] == topic)
+    messages[last] = *messages[last][:2], b'\0\1\0\0'
+    messages = [m for k, m in enumerate(messages) if k > 0]  # the first input is lost
+    bag = made_bags.folder(tmp_path / 'bag', messages)
+    report = validate(bag, DEFAULT, independent=True).independent
+    assert (report.compared, report.not_compared) == (compared, 200 - compared)
+    assert report.passed
+
+
+def test_the_option_adds_to_the_json(capsys):
+    bag = str(BAGS / 'servo_point_to_point')
+    assert main(['validate', bag, '--independent', '--json', '-']) == 0
+    [found] = json.loads(capsys.readouterr().out)['bags']
+    assert found['independent']['compared'] == 6000
+    assert found['independent']['passed'] is True
