@@ -200,6 +200,10 @@ class RotorTurns:
         self._lost = True
         self.forget_turns()
 
+    def set_back(self, time: int) -> None:
+        """Note that the clock of the stamps was set back by so much, ns, since the last sample."""
+        self._stamp -= time
+
     def update(self, position: float, stamp: int, velocity: float | None = None) -> None:
         """Process the encoder's next sample.
 

@@ -1,8 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Judges by limits of speed and acceleration whether the rotor can have turned so far.
 
-A reading may be up to an interval, at most `STALEST`, older than its stamp says: stamps are late
-or early, and drivers repeat a reading until the next. Each reading is judged at once, by the last
+Each reading is judged at once, by the last
 ones that were believed. One that the rotor cannot have reached is doubted. Three doubted ones in
 a row that agree with each other are believed, as a jump or as a motion beyond the limits.
 """
@@ -16,16 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.state.reach import FLOOR, REGULAR, STALEST, Limits, Reading
 
-STALEST = 0.01
-"""s; a reading is at most so much, or an interval if that is less, older than its stamp says."""
-FLOOR = 0.05
-"""rad: noise of any encoder, and what two successive steps may always differ by."""
 _COARSEST = TURN / 6.0  # rad; what a Hall sensor of one pole pair resolves
 _EQUAL = 1e-9  # rad, below which steps differ by rounding alone
 _AGREEING = 3  # doubted readings in a row that are believed
 _MOST_OF = 0.8  # a period: where so much is in reach, nothing is doubted
 _MARGIN = 1.5  # of raised limits above what was seen
+_STALEST_NS = round(STALEST * 1e9)
+_LONGEST_NS = 12_000_000  # between readings for which a look at the step alone may be enough
 
 
 class Verdict(Enum):
@@ -48,6 +46,9 @@ class Jump(NamedTuple):
     """rad, as far as it was not expected; of a single-turn encoder, within its range."""
 
 
+_UNKNOWN = math.nan, 0, 0.0, 0
+
+
 class Plausibility:
     """Follows the readings of an encoder."""
 
@@ -67,7 +68,7 @@ class Plausibility:
 
     def restrict(self, max_speed: float, max_acceleration: float, period: float = 0.0) -> None:
         """Change the limits from now on."""
-        self.max_speed, self.max_acceleration = max_speed, max_acceleration
+        self.limits = Limits(max_speed, max_acceleration)
         self.period = period
         self.seen_speed = self.seen_acceleration = 0.0
         """rad/s and rad/s², of motions beyond the limits, which are raised above them."""
@@ -75,13 +76,14 @@ class Plausibility:
     def reset(self) -> None:
         """Forget the readings; the next one is believed."""
         self._doubted: list[tuple[int, float]] = []
-        self._position = math.nan  # of the last believed reading, rad
-        self._stamp = 0  # of it, ns
-        self._changed = 0  # ns, when a believed reading was the first with that position
-        self._step, self._span = 0.0, 0  # rad and ns, between the last two of those
-        self._former = 0  # ns, the span before
+        self._last: Reading = _UNKNOWN
+        self._former: Reading = _UNKNOWN
+        self._stamp = 0
+        """ns, of the last believed reading with the last position."""
         self.finest = _COARSEST
-        """rad, the smallest step of all."""
+        """rad, the resolution of the encoder: the smallest step of all, or difference between two
+        in a row; not less than matters, which is half of `FLOOR`."""
+        self._look_always()
 
     @property
     def jumped(self) -> str:
@@ -101,30 +103,36 @@ class Plausibility:
             found.append(f'{self.seen_acceleration:.4g} rad/s² exceed max_rotor_acceleration')
         return ', '.join(found)
 
+    def set_back(self, time: int) -> None:
+        """Note that the clock was set back by so much, ns, since the last reading."""
+        position, changed, step, span = self._last
+        self._last = position, changed - time, step, span
+        self._stamp -= time
+
     def judge(self, position: float, stamp: int) -> Verdict:
         """Take the next reading, rad, with a stamp, ns, not before the last believed one."""
-        step = position - self._position
-        verdict = BELIEVED
-        if step:
-            change = step - self._step
-            if self.period:
-                change = math.remainder(change, self.period)
-                step = self._step + change
-            if not -FLOOR <= change <= FLOOR:
-                verdict, step = self._look_closer(position, step, stamp)
-                if verdict is not BELIEVED or not step:
-                    return verdict
-            self._note(step, stamp)
-        self._position, self._stamp = position, stamp
-        if self._doubted:
-            self._doubted.clear()
-        return verdict
+        last = self._last
+        before, changed, former, _ = last
+        step = position - before
+        change = step - former
+        even = self._even
+        if -even <= change <= even and step:
+            span = stamp - changed
+            if self._shortest <= span <= self._longest:
+                self._former = last
+                self._last = position, stamp, step, span
+                self._stamp = stamp
+                return BELIEVED
+        elif not (step or former or self._doubted):  # it stands
+            self._stamp = stamp
+            return BELIEVED
+        return self._look_closer(position, step, stamp)
 
     def believes(self, stamps: NDArray[np.int64], positions: NDArray[np.float64]) -> bool:
         """Take readings in order of time if `judge` would believe each; else change nothing."""
         if self.period or not len(stamps):
             return not len(stamps)
-        fresh = math.isnan(self._position)
+        fresh = math.isnan(self._last[0])
         if fresh:
             self._restart(float(positions[0]), int(stamps[0]))
         if self._doubted or not self._believes(stamps, positions):
@@ -134,55 +142,118 @@ class Plausibility:
         return True
 
     def _believes(self, stamps: NDArray[np.int64], positions: NDArray[np.float64]) -> bool:
-        steps = np.diff(positions, prepend=self._position)
-        changed = np.flatnonzero(steps)
-        steps, when = steps[changed], stamps[changed]
-        before = np.concatenate([[self._changed], when[:-1]])
-        # Steps of the same stamp are added up, which is left to `judge`.
-        if np.any(when == before):
+        position, since, *last = self._last
+        *_, former_step, former_span = self._former
+        steps = np.diff(positions, prepend=position)
+        rows = np.flatnonzero(steps)
+        when, steps = stamps[rows], steps[rows]
+        changed = np.concatenate([[since], when])
+        until = np.append(np.concatenate([[self._stamp], stamps[:-1]])[rows], stamps[-1])
+        stood = np.append(False, until - changed > _STALEST_NS)
+        # The step and the span up to each position; none after a standstill.
+        moved = np.concatenate([[former_step, last[0]], steps])
+        spans = np.diff(changed)
+        started = stood[1:-1] & (when > until[:-1])
+        spans[started] = (when - until[:-1])[started]
+        took = np.concatenate([[former_span, last[1]], spans])
+        step, span = np.where(stood, 0.0, moved), np.where(stood, 0, took)
+        # Steps of the same stamp, which are added up, and abrupt stops are left to `judge`.
+        if np.any(when == changed[:-1]):
             return False
-        former = np.concatenate([[self._step], steps[:-1]])
-        spans = np.concatenate([[self._former, self._span], when - before])
-        sizes = np.where(np.abs(steps) > _EQUAL, np.abs(steps), _COARSEST)
-        finest = np.minimum.accumulate(np.concatenate([[self.finest], sizes]))
-        last = np.concatenate([[self._stamp], stamps[:-1]])[changed]
-        far = np.abs(steps - former) > FLOOR
-        columns = (steps, when, before, last, former, spans[1:-1], spans[:-2], finest[:-1])
-        for step, *row in zip(*(column[far].tolist() for column in columns), strict=True):
-            low, high = self._reach(*row)
-            if not low <= step <= high:
+        sizes = np.abs([steps, steps - step[1:-1]])
+        sizes = np.where(sizes > _EQUAL, sizes, _COARSEST).min(axis=0)
+        finest = np.minimum.accumulate(np.append(self.finest, np.maximum(sizes, 0.5 * FLOOR)))
+        for k in np.flatnonzero(stood & (moved != 0.0)).tolist():
+            ends = (0.0, 0, moved[k], took[k]), (0.0, 0, step[k - 1], span[k - 1])
+            if self.limits.least_speed(*ends, finest[k - 1]):
                 return False
-        if len(when):
-            self._changed, self._step = int(when[-1]), float(steps[-1])
-            self._former, self._span = spans[-2:].tolist()
-            self.finest = float(finest[-1])
-        self._position, self._stamp = float(positions[-1]), int(stamps[-1])
+        usual = 0.5 * (span[1:-1] + span[:-2])
+        regular = usual <= _LONGEST_NS
+        for each in (span[1:-1], np.diff(changed)):
+            regular &= np.abs(each - usual) <= REGULAR * usual
+        regular &= np.abs(steps - step[1:-1]) <= self.limits.even_step(usual)
+        for k in np.flatnonzero(~regular).tolist():
+            ends = (
+                (0.0, int(changed[k]), float(step[k + 1]), int(span[k + 1])),
+                (0.0, 0, float(step[k]), int(span[k])),
+            )
+            low, high = self.limits.reach(int(when[k]), int(until[k]), *ends, float(finest[k]))
+            if not low <= steps[k] <= high:
+                return False
+        position = float(positions[-1])
+        if len(rows):
+            self._former = (math.nan, 0, float(step[-2]), int(span[-2]))
+        self._last = (position, int(changed[-1]), float(step[-1]), int(span[-1]))
+        self._stamp, self.finest = int(stamps[-1]), float(finest[-1])
+        self._look_always()
         return True
 
-    def _note(self, step: float, stamp: int) -> None:
-        size = abs(step)
-        if _EQUAL < size < self.finest:
-            self.finest = size
-        if stamp == self._changed:
-            self._step += step
-        else:
-            self._former, self._span = self._span, stamp - self._changed
-            self._step, self._changed = step, stamp
+    def _look_always(self) -> None:
+        self._even, self._shortest, self._longest = -1.0, 0, 0
+        """rad and ns: a step that differs from the last by at most so much, in a time within these
+        limits, is in reach, and tells no more of the resolution."""
 
-    def _look_closer(self, position: float, step: float, stamp: int) -> tuple[Verdict, float]:
-        """Judge a step that differs from the last; 0 as the step to believe is none."""
-        if math.isnan(self._position):
+    def _look_closer(self, position: float, step: float, stamp: int) -> Verdict:
+        """Judge a reading by all that is known."""
+        last, former = self._last, self._former
+        before, changed, last_step, last_span = last
+        if math.isnan(before):
             self._restart(position, stamp)
-            return Verdict.BELIEVED, 0.0
-        state = self._changed, self._stamp, self._step, self._span, self._former
-        low, high = self._reach(stamp, *state, self.finest)
+            return BELIEVED
+        if not step:
+            return self._hold(position, stamp)
+        if self.period:
+            step = last_step + math.remainder(step - last_step, self.period)
+        low, high = self.limits.reach(stamp, self._stamp, last, former, self.finest)
         if self.period:
             middle = 0.5 * (low + high)
             step = middle + math.remainder(step - middle, self.period)
         reached = low <= step <= high or high - low > _MOST_OF * self.period > 0.0
-        if reached and not (self._doubted and self._stays(position, step, stamp)):
-            return Verdict.BELIEVED, step
-        return self._doubt(position, stamp), 0.0
+        if not reached or (self._doubted and self._stays(position, step, stamp)):
+            return self._doubt(position, stamp)
+        self._doubted.clear()
+        for size in (abs(step), abs(step - last_step)):
+            if _EQUAL < size < self.finest:
+                self.finest = max(size, 0.5 * FLOOR)
+        span = stamp - changed
+        if self._stamp - changed > _STALEST_NS:  # it stood until then
+            span = stamp - self._stamp or span
+        if not span:
+            self._last = position, changed, last_step + step, last_span
+        else:
+            self._former, self._last = last, (position, stamp, step, span)
+        self._stamp = stamp
+        self._look_always()
+        usual = (span + last_span) // 2
+        if usual <= _LONGEST_NS:
+            shortest, longest = (1.0 - REGULAR) * usual, (1.0 + REGULAR) * usual
+            if shortest <= span <= longest:
+                # A step that differs tells of the resolution, as long as that is coarse.
+                known = self.finest == 0.5 * FLOOR
+                self._even = self.limits.even_step(usual) if known else _EQUAL
+                if self.period:
+                    self._even = min(self._even, 0.25 * self.period)
+                self._shortest, self._longest = math.ceil(shortest), int(longest)
+        return BELIEVED
+
+    def _hold(self, position: float, stamp: int) -> Verdict:
+        """Judge a reading that repeats the last position.
+
+        A rotor that has turned fast cannot stand at once.
+        """
+        held = stamp - self._last[1]
+        if held > _STALEST_NS:
+            time = held * 1e-9 - STALEST
+            if speed := self.limits.least_speed(self._last, self._former, self.finest):
+                way = speed * time - 0.5 * self.limits.acceleration * time * time
+                if way > max(FLOOR, 2.0 * self.finest):
+                    return self._doubt(position, stamp)
+            if not speed or time > 2.0 * speed / self.limits.acceleration:
+                self._last = *self._last[:2], 0.0, 0
+                self._look_always()
+        self._stamp = stamp
+        self._doubted.clear()
+        return BELIEVED
 
     def _stays(self, position: float, step: float, stamp: int) -> bool:
         """Whether a reading is nearer to the last doubted one than to what was expected."""
@@ -192,50 +263,12 @@ class Plausibility:
 
     def _speed(self) -> float:
         """The speed at the last believed reading, rad/s."""
-        standing = not self._span or (self._stamp - self._changed) * 1e-9 > STALEST
-        return 0.0 if standing else self._step / (self._span * 1e-9)
-
-    def _reach(
-        self,
-        stamp: int,
-        changed: int,
-        last: int,
-        step: float,
-        span: int,
-        former: int,
-        finest: float,
-    ) -> tuple[float, float]:
-        """The least and the greatest step, rad, that the rotor can make until a stamp.
-
-        Args:
-            stamp: ns.
-            changed: stamp of the reading from which the step is.
-            last: stamp of the last reading with that position.
-            step: rad, the step before.
-            span: ns, in which that was made; 0: it is not known.
-            former: ns, the span before.
-            finest: rad, the smallest step until now.
-        """
-        noise = max(FLOOR, 2.0 * finest)
-        speed, doubt, stale = 0.0, self.max_speed, STALEST
-        elapsed, held = (stamp - changed) * 1e-9, (last - changed) * 1e-9
-        if held > STALEST:  # it stands, as far as its last readings tell
-            elapsed = (stamp - last) * 1e-9
-            doubt = self.max_acceleration * min(held, 2.0 * elapsed)
-        elif span:
-            stale, within = min(STALEST, 1.25e-9 * max(span, former)), span * 1e-9
-            speed = step / within
-            doubt = self.max_acceleration * (within + stale) + noise / within
-            doubt += 0.25 * abs(speed)  # stamps are late by less than they could be
-        time = elapsed + stale
-        way, gained = self.max_speed * time, 0.5 * self.max_acceleration * time * time
-        high = min(way, max(0.0, min(self.max_speed, speed + doubt) * time + gained))
-        low = max(-way, min(0.0, max(-self.max_speed, speed - doubt) * time - gained))
-        return low - noise, high + noise
+        *_, step, span = self._last
+        return step / (span * 1e-9) if span else 0.0
 
     def _restart(self, position: float, stamp: int) -> None:
         self.reset()
-        self._position, self._stamp, self._changed = position, stamp, stamp
+        self._last, self._stamp = (position, stamp, 0.0, 0), stamp
 
     def _doubt(self, position: float, stamp: int) -> Verdict:
         """Note a reading that is out of reach, and see whether it agrees with those before."""
@@ -251,27 +284,27 @@ class Plausibility:
         if total < 0.0:
             return Verdict.IMPLAUSIBLE
         speed = sum(steps) / total if total else 0.0
-        slack = noise + self.max_acceleration * total * total
+        slack = noise + self.limits.acceleration * total * total
         uneven = max(abs(s - speed * t) for s, t in zip(steps, spans, strict=True))
         within = all(
-            abs(s) <= self.max_speed * (t + stale) + noise
+            abs(s) <= self.limits.speed * (t + stale) + noise
             for s, t in zip(steps, spans, strict=True)
         )
         if uneven > slack + abs(speed) * stale or not (within or total):
             return Verdict.IMPLAUSIBLE
-        first = self._wrapped(positions[0] - self._position)
-        elapsed = (times[0] - self._stamp) * 1e-9
+        first = self._wrapped(positions[0] - self._last[0])
+        elapsed = (times[0] - (self._stamp if first else self._last[1])) * 1e-9
         before = self._speed()
         way = abs(speed) * (elapsed + stale) + noise
         continuous = first * speed >= 0.0 and abs(first) <= way and not self.period
-        if abs(speed) > self.max_speed:
+        if abs(speed) > self.limits.speed:
             self.seen_speed = abs(speed)
-            self.max_speed = _MARGIN * abs(speed)
+            self.limits = self.limits._replace(speed=_MARGIN * abs(speed))
         if continuous:
             seen = abs(speed - before) / max(elapsed + stale, 1e-9)
-            if within and seen > self.max_acceleration:
+            if within and seen > self.limits.acceleration:
                 self.seen_acceleration = seen
-                self.max_acceleration = _MARGIN * seen
+                self.limits = self.limits._replace(acceleration=_MARGIN * seen)
         else:
             self.jumps += 1
             self.jump = Jump(times[0], self._wrapped(first - before * elapsed))
@@ -279,7 +312,7 @@ class Plausibility:
         self._restart(position, stamp)
         self.finest = finest
         if spans[-1]:
-            self._step, self._span = steps[-1], times[-1] - times[-2]
+            self._last = position, stamp, steps[-1], times[-1] - times[-2]
         return Verdict.BELIEVED if continuous else Verdict.JUMP
 
     def _wrapped(self, step: float) -> float:

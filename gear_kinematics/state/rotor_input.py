@@ -12,6 +12,7 @@ import numpy as np
 from gear_kinematics.kinematics import RotorPosition, RotorSample, RotorTurns, split_turns
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.disorder import Disorder
 from gear_kinematics.state.effort_field import EffortField
 from gear_kinematics.state.plausibility import BELIEVED, Plausibility, Verdict
 from gear_kinematics.state.rotor_samples import RotorSamples
@@ -66,6 +67,7 @@ class RotorInput:
         """What told the turns last."""
         self._restarts = 0
         """Counts homing, references by the output, and changes of the encoders' parameters."""
+        self._disorder = Disorder()
         self.turns = RotorTurns(
             period=parameters.rotor_period,
             max_speed=parameters.max_rotor_speed,
@@ -286,20 +288,23 @@ class RotorInput:
     def _take(
         self, stamp: int, position: float, velocity: float | None, effort: float | None
     ) -> RotorSample:
-        given = velocity
-        if self.last is None:
+        last = self.last
+        if last is None:
             self._leave_others()
-        elif stamp <= self.last.stamp:
-            self._check_order(stamp, self.last.stamp)
+        elif stamp <= last.stamp:
+            self._check_order(stamp, last.stamp)
+        if self._disorder.stamps and last:
+            time = self._disorder.set_back(last.stamp, stamp)
+            self.turns.set_back(time)
+            self.plausibility.set_back(time)
         if (verdict := self.plausibility.judge(position, stamp)) is not BELIEVED:
             if verdict is Verdict.IMPLAUSIBLE:
                 raise RejectedInputError(IMPLAUSIBLE)
             self.turns.lose()
-        if self.velocity_field.contradicts:
-            velocity = None
-        self.turns.update(position, stamp, velocity)
-        if stamp >= self.velocity_field.due:
-            velocity = self._compare(stamp, position, given)
+        if stamp < self.velocity_field.quiet_until:
+            self.turns.update(position, stamp, velocity)
+        else:
+            velocity = self._compare(stamp, position, velocity)
         if effort is not None and not self.effort_field.real:
             effort = self.effort_field.believed(self._unwrapped(position), effort)
         direction = self._parameters.rotor_direction
@@ -312,11 +317,15 @@ class RotorInput:
         return self.last
 
     def _compare(self, stamp: int, position: float, velocity: float | None) -> float | None:
-        """Compare a velocity with the positions; returns it unless they contradict it."""
+        """Update the turns; returns the velocity, unless the positions contradict it."""
+        field = self.velocity_field
+        self.turns.update(position, stamp, None if field.contradicts else velocity)
+        if stamp < field.due:
+            return None
         position = self._unwrapped(position)
         given = math.nan if velocity is None else velocity
-        self.velocity_field.note(stamp, position, given, self.plausibility.finest)
-        return None if self.velocity_field.contradicts else velocity
+        field.note(stamp, position, given, self.plausibility.finest)
+        return None if field.contradicts else velocity
 
     def _unwrapped(self, position: float) -> float:
         """The latest position, rad, without the wraps of an encoder that repeats."""
@@ -328,6 +337,7 @@ class RotorInput:
         if stamp == last:
             self.duplicates += 1
         elif last - stamp <= CLOCK_RESET:
+            self._disorder.stamps.append(stamp)
             raise RejectedInputError(OUT_OF_ORDER)
         else:
             self.resets += 1

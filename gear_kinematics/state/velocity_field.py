@@ -11,6 +11,7 @@ from gear_kinematics.wire.batches import Array
 
 SPAN = 100_000_000
 """ns, between the readings that are compared; four of them decide."""
+_PAUSE = 10 * SPAN  # after velocities that were found right
 _READINGS = 4
 _STEADY = 0.1  # of the speed: what it may vary by in a comparison
 _AGREES = 0.25  # of the slope: delays of filters and the rest of the acceleration
@@ -62,6 +63,8 @@ class VelocityField:
         """Forget the readings, but not what was found."""
         self.due = 0
         """ns, the stamp from which on the next reading is wanted."""
+        self.quiet_until = 0
+        """ns: `due`, or 0 while the velocities are not to be used."""
         self._readings: list[tuple[int, float, float]] = []
 
     @property
@@ -97,25 +100,30 @@ class VelocityField:
     def note(self, stamp: int, position: float, velocity: float, finest: float) -> None:
         """Take a reading: ns, rad, rad/s or NaN, and the smallest step of the encoder, rad."""
         self.due = stamp + SPAN
-        if math.isnan(velocity) or (self._readings and stamp > self._readings[-1][0] + 2 * SPAN):
-            self._readings.clear()
+        readings = self._readings
+        if math.isnan(velocity) or (readings and stamp > readings[-1][0] + 2 * SPAN):
+            readings.clear()
         if not math.isnan(velocity):
-            self._readings.append((stamp, position, velocity))
-        if len(self._readings) < _READINGS:
+            readings.append((stamp, position, velocity))
+        if len(readings) == _READINGS:
+            self._compare(readings, max(_TRAVEL, _STEPS * finest))
+            del readings[:1]
+        self.quiet_until = 0 if self.contradicts else self.due
+
+    def _compare(self, readings: list[tuple[int, float, float]], travel: float) -> None:
+        """Decide on readings of a steady motion by so much, rad."""
+        (first, start, _), *_, (last, end, _) = readings
+        time = (last - first) * 1e-9
+        mean = sum(velocity for _, _, velocity in readings) / _READINGS
+        if max(abs(end - start), abs(mean) * time) < travel:
             return
-        (first, start, _), *_, (last, end, _) = self._readings
-        slope = (end - start) / (last - first) * 1e9
-        slopes = [(q - p) / (t - s) * 1e9 for (s, p, _), (t, q, _) in pairwise(self._readings)]
-        speeds = [reading[2] for reading in self._readings]
-        mean = sum(speeds) / len(speeds)
-        del self._readings[0]
-        if abs(end - start) < max(_TRAVEL, _STEPS * finest):
-            return
+        slope = (end - start) / time
+        slopes = [(q - p) / (t - s) * 1e9 for (s, p, _), (t, q, _) in pairwise(readings)]
         if any(abs(each - slope) > _STEADY * abs(slope) for each in slopes):
             return
-        if any(abs(each - mean) > _STEADY * abs(mean) for each in speeds):
+        if any(abs(velocity - mean) > _STEADY * abs(mean) for _, _, velocity in readings):
             return
-        self._decide(mean / slope)
+        self._decide(mean / slope if slope else math.inf)
 
     def _decide(self, factor: float) -> None:
         """Change the finding if two comparisons in a row find the same."""
@@ -131,4 +139,6 @@ class VelocityField:
         if found is self._candidate:
             self.finding, self.factor = found, factor
             self.contradicts = found is not Finding.RIGHT
+            if not self.contradicts:
+                self.due += _PAUSE
         self._candidate = found

@@ -31,6 +31,15 @@ def test_benchmark_prints_its_results_as_json(arguments):
     assert finite_numbers(json.loads(run(*arguments).stdout))
 
 
+@pytest.mark.slow
+def test_no_wrong_output_is_called_fine_and_no_real_recording_raises_an_alarm():
+    found = json.loads(run('injected_faults.py', '--faults', '280').stdout)
+    assert found['alarms'] == {}
+    assert len({kind for kind, *_ in found['outcomes']}) == 14
+    assert [row for row in found['outcomes'] if row[4]] == []
+    assert sum(delay is not None for _, _, _, delay, *_ in found['outcomes']) > 100
+
+
 @pytest.mark.live
 @pytest.mark.slow
 def test_benchmark_of_the_live_node_loses_none_of_a_hundred_messages():

@@ -196,6 +196,25 @@ def test_other_changes_keep_the_turns_and_hold_from_now_on():
     assert not rotor_input.referenced
 
 
+@pytest.mark.parametrize('settings', [SETTINGS, SINGLE_TURN], ids=['multi-turn', 'single-turn'])
+@pytest.mark.parametrize('back', [2, 12, 27, 400])
+def test_a_clock_that_is_set_back_is_no_jump_and_loses_no_turn_silently(settings, back):
+    rotor_input, end = RotorInput(settings), None
+    for k in range(1000):
+        ms = k if k < 500 else k - back
+        angle = 1.0 + 0.3 * k
+        reading = angle % math.tau if settings.single_turn else angle
+        with suppress(RejectedInputError):
+            end = accept(rotor_input, START + ms * 1_000_000 + 1, reading)
+        if not k:
+            rotor_input.home(1.0)
+    assert set(rotor_input.rejected) == {'out of order'}
+    assert rotor_input.plausibility.jumped == rotor_input.plausibility.beyond_limits == ''
+    if rotor_input.referenced:
+        assert math.tau * end.position.turns + end.position.angle == pytest.approx(angle)
+    assert rotor_input.referenced or (settings.single_turn and back > 2)
+
+
 numbers = st.lists(st.floats(width=64), max_size=2)
 
 

@@ -46,6 +46,14 @@ def test_wrong_velocities_are_named_and_not_passed_on(factor, meaning):
     assert samples[-1].velocity is None
 
 
+def test_velocities_of_an_encoder_that_is_stuck_contradict_it():
+    rotor = RotorInput(SETTINGS)
+    for k in range(1000):
+        position = min(0.02 * k, 5.0)
+        rotor.accept(rotor_bytes(k * SECOND // 500 + 1, position=[position], velocity=[10.0]), int)
+    assert rotor.velocity_field.meaning.endswith('an unknown quantity')
+
+
 @pytest.mark.parametrize(
     ('factor', 'speed', 'scatter'), [(1.0, 100.0, 3.0), (1.0, -100.0, 0.0), (0.0, 0.5, 0.0)]
 )

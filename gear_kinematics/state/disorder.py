@@ -1,0 +1,21 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Tells a clock that was set back from messages that are late, by stamps that are out of order."""
+
+from itertools import pairwise
+
+
+class Disorder:
+    """Collects the stamps, ns, that are older than that of the last sample."""
+
+    def __init__(self) -> None:
+        self.stamps: list[int] = []
+
+    def set_back(self, last: int, stamp: int) -> int:
+        """Return by how much the clock was set back between the last sample and the next, ns.
+
+        It was if several messages in a row, in order among themselves, were older than the last
+        sample. The stamps are forgotten.
+        """
+        stamps, self.stamps = self.stamps, []
+        rising = len(stamps) > 1 and all(a < b for a, b in pairwise([*stamps, stamp]))
+        return last - stamps[0] if rising else 0

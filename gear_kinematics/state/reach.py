@@ -1,0 +1,86 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""How far a rotor can turn between two readings of its encoder, by its limits.
+
+A reading may be up to an interval, at most `STALEST`, older than its stamp says: stamps are late
+or early, and drivers repeat a reading until the next.
+"""
+
+from typing import Any, NamedTuple
+
+STALEST = 0.01
+"""s; a reading is at most so much, or an interval if that is less, older than its stamp says."""
+FLOOR = 0.05
+"""rad: noise of any encoder, and what two successive steps may always differ by."""
+REGULAR = 1.0 / 3.0
+"""Of the usual time between readings: by what it may vary in `Limits.even_step`."""
+_UNEVEN = 0.25  # of a speed: what it may differ by, as readings are older than their stamps
+
+Reading = tuple[float, int, float, int]
+"""The first believed reading with a position: rad; ns; the step from the one before, rad, and the
+time since that, ns, which is 0 if it is not known, or after a standstill."""
+
+
+def _stale(last: Reading, former: Reading) -> float:
+    """By how much a reading may be older than its stamp, s."""
+    return min(STALEST, 1.25e-9 * max(last[3], former[3]))
+
+
+class Limits(NamedTuple):
+    """Limits of a rotor."""
+
+    speed: float
+    """rad/s."""
+    acceleration: float
+    """rad/s²."""
+
+    def even_step(self, span: Any) -> Any:
+        """What successive steps may differ by if each takes about a time, ns, rad.
+
+        It is less than what `reach` allows beyond the last step.
+        """
+        stale = (1.25 * (1.0 - REGULAR) * 1e-9) * span
+        return FLOOR + 1.5 * self.acceleration * stale * stale
+
+    def least_speed(self, last: Reading, former: Reading, finest: float) -> float:
+        """The speed, rad/s, that the rotor had at least; 0 if it can stand at once."""
+        if not (last[3] and former[3]):
+            return 0.0
+        noise = max(FLOOR, 2.0 * finest)
+        time = (last[3] + former[3]) * 1e-9 + _stale(last, former)
+        speed = (abs(last[2] + former[2]) - noise) / time - self.acceleration * time
+        return speed if speed * abs(speed) > 2.0 * self.acceleration * noise else 0.0
+
+    def reach(
+        self, stamp: int, until: int, last: Reading, former: Reading, finest: float
+    ) -> tuple[float, float]:
+        """The least and the greatest step, rad, that the rotor can make until a stamp.
+
+        Args:
+            stamp: ns.
+            until: stamp of the last reading with the last position.
+            last: the first reading with it.
+            former: the one before.
+            finest: rad, the smallest step until now.
+        """
+        noise = max(FLOOR, 2.0 * finest)
+        slow, fast, stale = -self.speed, self.speed, STALEST
+        _, changed, step, span = last
+        elapsed, held = (stamp - changed) * 1e-9, (until - changed) * 1e-9
+        if held > STALEST:  # it stands, as far as its last readings tell
+            elapsed = (stamp - until) * 1e-9
+            fast = self.acceleration * min(held, 2.0 * elapsed)
+            slow = -fast
+        elif span:
+            stale, within = _stale(last, former), span * 1e-9
+            slow = fast = step / within
+            if former[3]:  # readings that are older than their stamps make one of them wrong
+                other = former[2] / (former[3] * 1e-9)
+                slow, fast = min(slow, other), max(fast, other)
+            doubt = self.acceleration * (within + stale) + noise / within
+            slow -= doubt + _UNEVEN * abs(slow)
+            fast += doubt + _UNEVEN * abs(fast)
+        time = elapsed + stale
+        way, gained = self.speed * time, 0.5 * self.acceleration * time * time
+        high = min(way, max(0.0, min(self.speed, fast) * time + gained))
+        low = max(-way, min(0.0, max(-self.speed, slow) * time - gained))
+        return low - noise, high + noise
