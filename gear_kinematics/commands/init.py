@@ -65,6 +65,6 @@ def run(options: argparse.Namespace) -> ExitCode:
     )
     print(f'    {start_command(topic, str(path))}')
     heard = next(driver.messages for driver in drivers if driver.topic == topic)
-    for question in questions([m[2] for m in heard], [m[1] for m in heard], joint):
+    for question in questions([m[2] for m in heard], [m[1] for m in heard], joint, ratio):
         complain(f'{topic}: {question}')
     return ExitCode.DONE

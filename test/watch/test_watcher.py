@@ -557,13 +557,13 @@ def test_init_writes_what_is_named(listening, capsys):
 @pytest.mark.usefixtures('listening')
 def test_init_questions_velocities_that_contradict_the_positions(monkeypatch, capsys):
     moving = [
-        ('/motor', k, rotor_bytes(k * 10_000_000, ['m1'], [0.5 * k], [477.5]))
+        ('/motor', k, rotor_bytes(k * 10_000_000, ['m1'], [0.5 * k], [-50.0 / 19.0]))
         for k in range(1, 200)
     ]
     monkeypatch.setattr(drivers, 'listen', lambda: [DriverTopic('/motor', ('m1',), 99.0, moving)])
     assert main(['init', '--joint', 'm1', '--ratio', '-19']) == 0
-    expected = 'gearkin: /motor: the velocities contradict the positions: they seem to be rpm\n'
-    assert capsys.readouterr().err == expected
+    seem = 'the velocities contradict the positions: they seem to be the velocity of the output'
+    assert capsys.readouterr().err == f'gearkin: /motor: {seem}\n'
 
 
 def test_init_without_a_driver_says_so(listening, monkeypatch, capsys):
