@@ -156,14 +156,15 @@ class Plausibility:
         started = stood[1:-1] & (when > until[:-1])
         spans[started] = (when - until[:-1])[started]
         took = np.concatenate([[former_span, last[1]], spans])
-        step, span = np.where(stood, 0.0, moved), np.where(stood, 0, took)
+        ended = stood & (moved != 0.0)
+        step, span = np.where(ended, 0.0, moved), np.where(ended, 0, took)
         # Steps of the same stamp, which are added up, and abrupt stops are left to `judge`.
         if np.any(when == changed[:-1]):
             return False
         sizes = np.abs([steps, steps - step[1:-1]])
         sizes = np.where(sizes > _EQUAL, sizes, _COARSEST).min(axis=0)
         finest = np.minimum.accumulate(np.append(self.finest, np.maximum(sizes, 0.5 * FLOOR)))
-        for k in np.flatnonzero(stood & (moved != 0.0)).tolist():
+        for k in np.flatnonzero(ended).tolist():
             ends = (0.0, 0, moved[k], took[k]), (0.0, 0, step[k - 1], span[k - 1])
             if self.limits.least_speed(*ends, finest[k - 1]):
                 return False
@@ -182,7 +183,8 @@ class Plausibility:
                 return False
         position = float(positions[-1])
         if len(rows):
-            self._former = (math.nan, 0, float(step[-2]), int(span[-2]))
+            before = float(positions[rows[-2]]) if len(rows) > 1 else self._last[0]
+            self._former = (before, int(changed[-2]), float(step[-2]), int(span[-2]))
         self._last = (position, int(changed[-1]), float(step[-1]), int(span[-1]))
         self._stamp, self.finest = int(stamps[-1]), float(finest[-1])
         self._look_always()
