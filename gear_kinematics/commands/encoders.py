@@ -128,9 +128,10 @@ def sources(options: argparse.Namespace) -> Sources:
 
 
 def say_columns(recording: Recording, options: argparse.Namespace) -> None:
-    """Print in one line, on stderr, what was taken of a table."""
-    if is_table(recording.path) and not options.quiet:
-        print(printable(f'{recording.name}: {", ".join(recording.columns)}'), file=sys.stderr)
+    """Print on stderr what was taken of a table, in one line, and what cannot be true."""
+    taken = [', '.join(recording.columns)] if is_table(recording.path) else []
+    for clause in () if options.quiet else (*taken, *recording.faults):
+        print(printable(f'{recording.name}: {clause}'), file=sys.stderr)
 
 
 def ratio_text(text: str) -> str:

@@ -31,7 +31,7 @@ _NAMED = 3  # faults of a kind that are named with their moments
 
 
 def gated(recording: Recording) -> Recording:
-    """Leave out what cannot be true of both encoders, with remarks on it.
+    """Leave out what cannot be true of both encoders, and say when it was.
 
     Without such readings, or if the output hardly moves, the recording itself is returned.
     """
@@ -72,32 +72,30 @@ def gated(recording: Recording) -> Recording:
     stray = np.setdiff1d(np.arange(first, last + 1), kept)
     unit, time = (' s', both.seconds) if both.timed else ('', both.seconds + 1.0)
     at = 'at' if both.timed else 'at sample'
-    remarks = []
+    faults = []
     isolated = stray[~frozen[stray]]
     if len(isolated):
         named = ', '.join(number(time[k], 6) for k in isolated[:_NAMED])
         more = f' and {len(isolated) - _NAMED} more' if len(isolated) > _NAMED else ''
         what = 'reading that contradicts' if len(isolated) == 1 else 'readings that contradict'
-        remarks.append(
-            f'{len(isolated)} {what} both neighbours left out, {at} {named}{unit}{more}'
-        )
+        faults.append(f'{len(isolated)} {what} both neighbours left out, {at} {named}{unit}{more}')
     if len(still := np.flatnonzero(frozen)):
         span = f'{number(time[still[0]], 6)} to {number(time[still[-1]], 6)}{unit}'
-        remarks.append(
+        faults.append(
             f'an encoder stood still while the other moved, from {span}: '
             f'{len(still)} readings left out'
         )
     for before, after in ((rows[k - 1], rows[k]) for k in jumps):
         size = number(math.degrees(error[after] - error[before]))
-        remarks.append(
+        faults.append(
             f'the output jumps by {size}° against the rotor {at} {number(time[after], 6)}{unit} '
             '(a slip, or an encoder that jumped)'
         )
     if first or last + 1 < len(error):
         span = f'{number(time[first], 6)} to {number(time[last], 6)}{unit}'
-        remarks.append(f'only the longest part without a fault is used, {span}')
+        faults.append(f'only the longest part without a fault is used, {span}')
     encoders = _without(both, slope * turned, kept, stray)
-    return replace(recording, encoders=encoders, remarks=(*recording.remarks, *remarks))
+    return replace(recording, encoders=encoders, faults=(*recording.faults, *faults))
 
 
 def output_by_rotor(rotor: Array, measured: Array) -> float | None:

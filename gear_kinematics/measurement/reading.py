@@ -147,7 +147,6 @@ class States:
         rotor, encoder, parameters = self._rotor, self._encoder, self._parameters
         rejected = self._gear.input.rejected
         remarks = [f'{rotor}: {count} states {cause}' for cause, count in rejected.items()]
-        remarks += [f'the clock was {step}: nothing is interpolated' for step in self._clock.steps]
         for topic, read in ((rotor, self._inputs), (encoder, self._outputs)):
             if read.every > 1:
                 what = f'one state of {read.every} is used: no more are kept in memory'
@@ -184,6 +183,7 @@ class States:
         return Recording(
             path, path.name, tuple(described), rows, encoders, locked,
             tuple(remarks), damage,
+            tuple(f'the clock was {step}: nothing is interpolated' for step in self._clock.steps),
         )  # fmt: skip
 
 

@@ -233,12 +233,14 @@ class Recording:
     """Clauses about what was left out or assumed."""
     damage: str | None = None
     """At which reading ended."""
+    faults: tuple[str, ...] = ()
+    """Clauses about what cannot be true, such as a slip, each with its moment."""
 
     @property
     def sentences(self) -> list[str]:
-        """What was left out or assumed, and what damage ended the reading."""
+        """What cannot be true, was left out or assumed, and what damage ended the reading."""
         damage = [f'{self.damage}; what is before it is used'] if self.damage else []
-        return [f'{clause}.' for clause in (*self.remarks, *damage)]
+        return [f'{clause}.' for clause in (*self.faults, *self.remarks, *damage)]
 
     def loading(self, ratio: Fraction) -> Loading | None:
         """Torque and twist: of the gear if the output was measured, else of the whole drive."""

@@ -19,6 +19,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.commissioning.analysis import Commissioning, Request, commission
 from gear_kinematics.measurement.commissioning.document import actuator_file
+from gear_kinematics.measurement.gate import gated
 from gear_kinematics.measurement.reading import States
 from gear_kinematics.measurement.rotor_fields import questions
 from gear_kinematics.measurement.wording import shown
@@ -74,7 +75,7 @@ class LiveCommissioning:
             self._states.add(*(found[topic] for topic in self._topics))
             self._count += len(messages)
         name = f'live on {datetime.now().astimezone():%Y-%m-%d at %H:%M}'
-        recording = self._states.recording(Path(name), Sources())
+        recording = gated(self._states.recording(Path(name), Sources()))
         assert recording.encoders  # noqa: S101, there is a topic of the output
         return commission([(recording, recording.encoders)], self.request)
 

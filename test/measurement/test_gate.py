@@ -55,7 +55,7 @@ def test_stray_readings_are_left_out_and_named(clean, gate, wrong):
     both = found.encoders
     assert both.measured == pytest.approx(clean[rows, 2], abs=1e-9)
     assert both.at_measured(both.rotor.turned) == pytest.approx(clean[rows, 1], abs=1e-6)
-    (remark,) = found.remarks
+    (remark,) = found.faults
     assert f'{0.04 * min(wrong)[0]:g}' in remark
 
 
@@ -65,7 +65,7 @@ def test_a_frozen_encoder_is_named_and_its_readings_are_left_out(clean, gate, co
     _, found = gate(clean)
     assert len(found.encoders.measured) == len(clean) - 60
     assert np.ptp(found.encoders.error(RATIO)) < np.radians(0.5)
-    (remark,) = found.remarks
+    (remark,) = found.faults
     assert 'stood still while the other moved, from 28 to 30.36 s' in remark
 
 
@@ -78,7 +78,7 @@ def test_a_jump_divides_and_is_named_with_its_moment(clean, gate, column, size, 
     clean[900:, column] += size
     _, found = gate(clean)
     assert found.encoders.measured == pytest.approx(clean[:900, 2], abs=1e-9)
-    named = re.match('the output jumps by (.*)° against the rotor at 36 s', found.remarks[0])
+    named = re.match('the output jumps by (.*)° against the rotor at 36 s', found.faults[0])
     assert float(named[1]) == pytest.approx(degrees, abs=0.1)  # and the gear's own error
 
 
@@ -97,7 +97,7 @@ def test_wraps_of_encoders_of_one_turn_are_no_faults(clean, gate):
     clean[700, 1] = (clean[700, 1] + 1.3) % (2.0 * np.pi)
     _, found = gate(clean)
     assert len(found.encoders.measured) == len(clean) - 1
-    assert found.remarks[0].endswith('left out, at 28 s')
+    assert found.faults[0].endswith('left out, at 28 s')
 
 
 def test_a_calibration_does_not_help_where_the_error_rises(shared_path):

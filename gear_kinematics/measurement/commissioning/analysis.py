@@ -135,7 +135,7 @@ def commission(
             values.append(
                 Value('delay', None, f'it cannot be separated from hysteresis; {advice}')
             )
-    elif ratio and ratio.advice:
+    elif ratio and ratio.advice and not longest.recording.faults:
         values.append(Value('ratio', None, f'{ratio.plus_minus}; {ratio.advice}'))
     if speed > known.max_rotor_speed:
         values.append(Value('max_rotor_speed', _FASTER * speed, reached))
@@ -148,7 +148,7 @@ def _decided(
     longest: Joint, given: GearRatio | None
 ) -> tuple[RatioEstimate | None, GearRatio | None, str]:
     """The ratio between the encoders, the exact one, and why it is that one, or why it is open."""
-    encoders = longest.encoders
+    encoders, faults = longest.encoders, longest.recording.faults
     try:
         ratio = estimate_ratio(
             longest.turned, encoders.measured, encoders.seconds, encoders.interpolated
@@ -158,7 +158,8 @@ def _decided(
     seen = f'{ratio.plus_minus} after {math.degrees(longest.travel):.1f}° of the output'
     if not (exact := given or ratio.taken):
         such = ', '.join(map(str, ratio.candidates))
-        advice = f'{ratio.advice}, or give the ratio of the nameplate'
+        advice = 'record it anew without these faults' if faults else ratio.advice
+        advice += ', or give the ratio of the nameplate'
         return ratio, None, f'The ratio is undetermined: {seen}, such as {such}; {advice}.'
     for between in (exact, -exact):
         if ratio.fits(between):
