@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.correction.uncertainty import Component, Estimate, pseudo_values
+from gear_kinematics.statistics.uncertainty import Component, Estimate, jackknife
 
 Array = NDArray[np.float64]
 
@@ -84,8 +84,7 @@ def separate(pairs: Sequence[Pair], *others: Component) -> Reversals | None:
     difference, speed = difference + centre[0], speed + centre[1]
 
     def estimate(fits: Array, *others: Component) -> Estimate:
-        values = pseudo_values(fits) if len(fits) > 1 else fits
-        return replace(Estimate.of_mean(values.tolist(), *others), repeats=len(pairs))
+        return replace(jackknife(fits, *others, corrected=True), repeats=len(pairs))
 
     mean = estimate(difference, *others)
     noise = float(np.mean([_noise(pair) for pair in pairs]))

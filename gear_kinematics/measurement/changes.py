@@ -16,11 +16,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import stdtr
 
-from gear_kinematics.correction.uncertainty import COVERAGE, Component, Estimate, combined
 from gear_kinematics.measurement.figures import gear_figures
 from gear_kinematics.measurement.loops import ALIKE
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.measured import HYSTERESIS
+from gear_kinematics.statistics.uncertainty import COVERAGE, Component, Estimate, combined
 
 _OF_SMALL_RAMPS = (HYSTERESIS, 'friction')
 SIGNIFICANCE = 1.0 - COVERAGE

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from gear_kinematics.correction.uncertainty import COVERAGE, Estimate
 from gear_kinematics.measurement.answer import Judgement, Limits, answer, remarks
 from gear_kinematics.measurement.curves import panels
 from gear_kinematics.measurement.figures import GearFigures
@@ -28,6 +27,7 @@ from gear_kinematics.report.document import (
     number,
     printable,
 )
+from gear_kinematics.statistics.uncertainty import COVERAGE, Estimate
 
 SCHEMA = 'gear_kinematics/lost_motion'
 VERSION = 3

@@ -8,7 +8,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from gear_kinematics.correction.uncertainty import Component, Estimate, resolution
 from gear_kinematics.measurement.loops import HalfLoop, Loop, RampError, Ramps
 from gear_kinematics.measurement.measured import HYSTERESIS, LOST_MOTION, Measured
 from gear_kinematics.measurement.middle_line import (
@@ -22,6 +21,7 @@ from gear_kinematics.measurement.middle_line import (
     stiffness_of,
 )
 from gear_kinematics.report.document import number
+from gear_kinematics.statistics.uncertainty import Component, Estimate, resolution
 
 LOST_MOTION_SHARE = 0.03
 """Lost motion is measured between ± this share of the rated torque."""

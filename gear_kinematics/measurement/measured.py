@@ -3,10 +3,10 @@
 
 from typing import NamedTuple
 
-from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.measurement.middle_line import Backlash
 from gear_kinematics.measurement.wording import ARC_MINUTES, plus_minus
 from gear_kinematics.report.document import Cell, Tone, number
+from gear_kinematics.statistics.uncertainty import Estimate
 
 HYSTERESIS = 'hysteresis'
 """The name of the figure that is judged first."""

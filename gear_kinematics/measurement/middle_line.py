@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gear_kinematics.correction.uncertainty import Estimate, resolution, student_t
 from gear_kinematics.measurement.loops import Array, Loop, Ramps
+from gear_kinematics.statistics.uncertainty import Estimate, resolution, student_t
 
 _ANGLES = 400
 """At which a loop is known."""

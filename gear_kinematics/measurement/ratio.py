@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.correction.transmission_error import Direction
-from gear_kinematics.correction.uncertainty import Component, Estimate, combined, pseudo_values
 from gear_kinematics.kinematics.gear_ratio import GearRatio, simplest_fraction
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.recording import Encoders, RecordingError
 from gear_kinematics.measurement.wording import plus_minus
+from gear_kinematics.statistics.uncertainty import Component, Estimate, jackknife
 
 Array = NDArray[np.float64]
 
@@ -184,12 +184,11 @@ def estimate_ratio(
     lagging = _fitted(np.column_stack([columns, _LAG * acceleration]), rest)
     parts = (
         Component(fit.spread / travel),
-        Component(_scatter(fit) / travel, _BLOCKS - 1),
         Component(_ACCURACY / travel),
         Component((lagging.terms[0] - fit.terms[0]) / travel / math.sqrt(3.0)),
         Component((curved.terms[0] - fit.terms[0]) / travel / math.sqrt(3.0)),
     )
-    measured = Estimate(slope, *combined(parts), _BLOCKS)
+    measured = jackknife(slope + _changes(fit) / travel, *parts)
     if not _MAX_DISTANCE * measured.expanded < abs(slope):
         raise RecordingError('the output does not follow the rotor, or turns too little')
     measured = measured.inverse()
@@ -237,12 +236,12 @@ def _fitted(columns: Array, rest: Array) -> _Fit:
     return _Fit(fitted.tolist(), spread, sums, noise)
 
 
-def _scatter(fit: _Fit) -> float:
-    """Standard uncertainty of the first term by the scatter between blocks."""
+def _changes(fit: _Fit) -> Array:
+    """Changes of the first term: 0 with all blocks, then those without each, (1 + blocks,)."""
     squares, products = _parts(fit.sums.sum(axis=0) - fit.sums)
     each = zip(*np.linalg.eigh(squares), products, strict=True)
-    values = pseudo_values([fit.terms[0], *(_solve(*one, fit.noise)[0][0] for one in each)])
-    return float(np.std(values, ddof=1)) / math.sqrt(_BLOCKS)
+    without = [_solve(*one, fit.noise)[0][0] - fit.terms[0] for one in each]
+    return np.array([0.0, *without])
 
 
 def _parts(sums: Array) -> tuple[Array, Array]:

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from gear_kinematics.correction.reversals import Pair, Reversals, separate
 from gear_kinematics.correction.transmission_error import Direction
-from gear_kinematics.correction.uncertainty import Component, Estimate, resolution
 from gear_kinematics.measurement.recording import Encoders
+from gear_kinematics.statistics.uncertainty import Component, Estimate, resolution
 
 Array = NDArray[np.float64]
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from gear_kinematics.correction.uncertainty import COVERAGE, Estimate
 from gear_kinematics.report.document import number
+from gear_kinematics.statistics.uncertainty import COVERAGE, Estimate
 
 ARC_MINUTES = 60.0 * 180.0 / math.pi
 """Arc minutes per radian; catalogues give lost motion in arc minutes."""

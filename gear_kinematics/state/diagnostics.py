@@ -9,13 +9,13 @@ from typing import NamedTuple, Self
 
 from gear_kinematics.correction.error_window import ErrorStatistics
 from gear_kinematics.correction.reversals import Reversals
-from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.output_range import range_fault
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.turn_reference import SAMPLES, TurnReference
+from gear_kinematics.statistics.uncertainty import Estimate
 from gear_kinematics.wire.cdr import SECOND
 
 OK, WARN, ERROR = 0, 1, 2

@@ -2,15 +2,14 @@
 """Causes of deviations: an offset, another mechanism, unit or shaft."""
 
 import math
-from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.correction.uncertainty import Component, Estimate, pseudo_values
 from gear_kinematics.kinematics import Gear, Mechanism
 from gear_kinematics.kinematics.gear_ratio import tooth_pairs
+from gear_kinematics.statistics.uncertainty import Component, Estimate, jackknife
 
 Array = NDArray[np.float64]
 
@@ -92,11 +91,10 @@ def _ratio_of_sums(above: Array, below: Array) -> Estimate | None:
         return None
     with np.errstate(over='ignore', invalid='ignore', divide='ignore'):
         whole = float(above.sum() / below.sum())
-        values = pseudo_values([whole, *(above.sum() - above) / (below.sum() - below)])
-    if not np.isfinite(values).all():
+        fits = np.array([whole, *(above.sum() - above) / (below.sum() - below)])
+    if not np.isfinite(len(fits) * fits).all():
         return None
-    rounding = Component(_ROUNDING * abs(whole))
-    return replace(Estimate.of_mean(values.tolist(), rounding), value=whole)
+    return jackknife(fits, Component(_ROUNDING * abs(whole)))
 
 
 def _is_near(found: Estimate, other: float) -> bool:

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from gear_recordings import Gear, creep, ramps, write_csv
 
-from gear_kinematics.correction.uncertainty import Component, Estimate
 from gear_kinematics.measurement.answer import Limits, answer, remarks
 from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.measured import Measured
@@ -16,6 +15,7 @@ from gear_kinematics.measurement.middle_line import Backlash, Cause
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.wording import rounded
 from gear_kinematics.report.document import Tone
+from gear_kinematics.statistics.uncertainty import Component, Estimate
 
 ARC_MINUTE = math.radians(1.0 / 60.0)
 GEAR = Gear(play=10.0 * ARC_MINUTE, stiffness=300.0, friction=1.0)  # hysteresis 32.9′

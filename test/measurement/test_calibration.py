@@ -22,6 +22,7 @@ from simulated_gear import GearSet, gears, simulate, strokes, wandering
 from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.measurement.calibration import fit, judge
+from gear_kinematics.measurement.calibration.selection import widening
 from gear_kinematics.measurement.recording import RecordingError
 
 RATIO = Fraction(-19)
@@ -174,3 +175,16 @@ def test_interval_and_correction_hold_on_another_recording(name, motion):
 @pytest.mark.parametrize('name', OUT_OF_CLASS)
 def test_interval_holds_where_the_model_does_not(name):
     assert np.mean([one.coverage for one in judged(OUT_OF_CLASS[name], 2, 40.0)]) >= 0.9
+
+
+def test_intervals_hold_on_other_errors_of_a_random_scale():
+    random = np.random.default_rng(3)
+    inside, plain = [], []
+    for _ in range(2000):
+        first, second = random.standard_normal((2, 6))
+        errors = np.repeat(first**2, 4)
+        half_width = 1.96 * np.sqrt(errors.mean())
+        inside.append(np.abs(second) <= half_width * widening(errors))
+        plain.append(np.abs(second) <= half_width)
+    assert np.mean(plain) < 0.91
+    assert 0.93 <= np.mean(inside) <= 0.985

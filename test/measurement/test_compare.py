@@ -9,7 +9,6 @@ import pytest
 from gear_recordings import Gear, creep, ramps
 from scipy import stats
 
-from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.measurement.changes import (
     Change,
     Group,
@@ -24,6 +23,7 @@ from gear_kinematics.measurement.compare import _play, compared
 from gear_kinematics.measurement.figures import gear_figures
 from gear_kinematics.measurement.loops import find_ramps
 from gear_kinematics.measurement.lost_motion import LostMotion
+from gear_kinematics.statistics.uncertainty import Estimate
 
 MINUTE = math.radians(1.0 / 60.0)
 

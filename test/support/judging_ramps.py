@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from simulated_ramps import STEP, Scenario, drawn, hysteresis, simulate
 
-from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.measurement.figures import GearFigures, gear_figures
 from gear_kinematics.measurement.loops import find_ramps
+from gear_kinematics.statistics.uncertainty import Estimate
 
 
 class Judged(NamedTuple):

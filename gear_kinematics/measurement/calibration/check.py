@@ -9,18 +9,15 @@ import numpy as np
 
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.calibration_fit import CalibrationFit
-from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.measurement.calibration.selection import (
-    NormalEquations,
-    block_bounds,
-    jackknife,
-)
+from gear_kinematics.measurement.calibration.selection import TOGETHER
 from gear_kinematics.measurement.calibration.terms import Samples
 from gear_kinematics.measurement.ratio import wrong_ratio
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RecordingError
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.gear_state import GearState
+from gear_kinematics.statistics.normal_equations import NormalEquations, block_bounds
+from gear_kinematics.statistics.uncertainty import Estimate, jackknife
 from gear_kinematics.wire.cdr import SECOND
 
 _STEP = 0.01  # s before and after a sample, for its speed
@@ -154,4 +151,4 @@ def _delay(samples: Samples, residual: Array, shift: float) -> Estimate:
     columns = np.column_stack([samples.own_values(np.arange(len(residual))), residual])
     parts = np.split(columns, bounds[1:-1])
     equations = NormalEquations(np.array([part.T @ part for part in parts]))
-    return jackknife(shift + equations.solve([0, 1])[:, 1])
+    return jackknife(shift + equations.solve([0, 1])[:, 1], together=TOGETHER)

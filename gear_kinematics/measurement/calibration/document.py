@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 
-from gear_kinematics.correction.uncertainty import COVERAGE, Estimate
 from gear_kinematics.measurement.calibration.check import Judgement
 from gear_kinematics.measurement.calibration.fit import Fit
 from gear_kinematics.measurement.envelope import envelope
@@ -33,6 +32,7 @@ from gear_kinematics.report.document import (
     number,
     printable,
 )
+from gear_kinematics.statistics.uncertainty import COVERAGE, Estimate
 
 _MILLI = 1e3
 

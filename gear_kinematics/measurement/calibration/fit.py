@@ -26,14 +26,11 @@ from gear_kinematics.correction.calibration_file import (
     Stop,
     UsedRecording,
 )
-from gear_kinematics.correction.uncertainty import COVERAGE, Estimate
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.measurement.calibration import terms as candidates
 from gear_kinematics.measurement.calibration.selection import (
-    NormalEquations,
-    block_bounds,
+    TOGETHER,
     is_as_good,
-    jackknife,
     select,
     widening,
 )
@@ -41,6 +38,8 @@ from gear_kinematics.measurement.calibration.terms import Recorded, Samples, Ter
 from gear_kinematics.measurement.ratio import wrong_ratio
 from gear_kinematics.measurement.recording import Array, RecordingError
 from gear_kinematics.share import version
+from gear_kinematics.statistics.normal_equations import NormalEquations, block_bounds
+from gear_kinematics.statistics.uncertainty import COVERAGE, Estimate, jackknife
 
 _FEWEST = 100  # samples of a recording
 _SHIFTS = 4  # corrections of the delays, each for what the ones before left
@@ -180,7 +179,7 @@ class _Model:
         """Estimate the delay of a recording, s, of which `shift` has been taken out already."""
         if not self.samples[recording].tells_delay:
             return None
-        return jackknife(shift + self._own[:, 2 * recording + 1])
+        return jackknife(shift + self._own[:, 2 * recording + 1], together=TOGETHER)
 
     def zero(self, recording: int) -> float:
         """What the zero of a recording's encoder adds, rad."""
@@ -241,7 +240,7 @@ def _result(
         fits = model.coefficients[:, place : place + len(term.coefficients)]
         place += len(term.coefficients)
         sizes = np.hypot(*fits.T) if len(term.coefficients) > 1 else fits[:, 0]
-        amplitude = jackknife(term.unit * sizes)
+        amplitude = jackknife(term.unit * sizes, together=TOGETHER)
         entry: Any = term.entry
         entries.append(
             replace(entry, **dict(zip(term.coefficients, fits[0].tolist(), strict=True)))

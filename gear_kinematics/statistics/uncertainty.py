@@ -14,6 +14,7 @@ COVERAGE = 0.95
 """Coverage probability of expanded uncertainties."""
 _NORMAL = 1.959963984540054
 """The quantile of Student's distribution for infinitely many degrees of freedom."""
+_FEWEST = 3  # groups of blocks from which a standard error is estimated
 _MAX_DEGREES = 10_000  # of freedom; the quantile is within 1.3e-4 of the normal one
 
 
@@ -116,17 +117,46 @@ def deviation(values: Sequence[float]) -> float:
     return math.hypot(*(np.asarray(values) - np.mean(values))) / math.sqrt(len(values) - 1)
 
 
-def pseudo_values(fits: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
-    """Tukey's pseudo-values of the jackknife, whose mean and scatter are those of an estimate.
+def standard_error(
+    values: NDArray[np.float64], together: Sequence[int] = (1,)
+) -> tuple[float, int]:
+    """Standard error of the mean of blocks in the order of time, and its degrees of freedom.
+
+    It is the greatest of those from groups of `together` neighbours, as neighbours may be
+    correlated. There are at least three groups, or two of single blocks; a lone value has none: 0.
+    """
+    errors = [(0.0, 1)]
+    for size in together:
+        count = len(values) // size
+        if count >= (_FEWEST if size > 1 else 2):
+            means = [float(np.mean(group)) for group in np.array_split(values, count)]
+            errors.append((deviation(means) / math.sqrt(count), count - 1))
+    return max(errors)
+
+
+def jackknife(
+    fits: Sequence[float] | NDArray[np.float64],
+    *others: Component,
+    together: Sequence[int] = (1,),
+    corrected: bool = False,
+) -> Estimate:
+    """Estimate a quantity from the scatter of Tukey's pseudo-values.
 
     (B. Efron, C. Stein, Annals of Statistics 9 (1981) 586)
 
     Args:
-        fits: of all blocks, and then without each block, (1 + blocks,).
+        fits: to all blocks, which gives the value, and then without each block, (1 + blocks,).
+        others: further components of the uncertainty.
+        together: numbers of neighbouring blocks that `standard_error` takes as one.
+        corrected: whether the value is the mean of the pseudo-values, which has less bias.
     """
-    whole, without = fits[0], np.asarray(fits[1:])
-    values: NDArray[np.float64] = len(without) * whole - (len(without) - 1) * without
-    return values
+    whole, without = float(fits[0]), np.asarray(fits[1:])
+    if not len(without):
+        return Estimate(whole, None, 0.0, 1)
+    pseudo_values = len(without) * whole - (len(without) - 1) * without
+    scatter = Component(*standard_error(pseudo_values, together))
+    value = float(np.mean(pseudo_values)) if corrected else whole
+    return Estimate(value, *combined((scatter, *others)), len(without))
 
 
 def resolution(step: float) -> float:

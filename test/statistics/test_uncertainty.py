@@ -7,10 +7,11 @@ import mpmath
 import numpy as np
 import pytest
 
-from gear_kinematics.correction.uncertainty import (
+from gear_kinematics.statistics.uncertainty import (
     Component,
     Estimate,
-    pseudo_values,
+    jackknife,
+    standard_error,
     student_t,
 )
 
@@ -69,4 +70,13 @@ def test_relative_uncertainty_of_the_inverse_is_the_same():
 def test_jackknife_of_a_mean_is_its_standard_error():
     values = np.random.default_rng(1).standard_normal(24)
     without = [np.delete(values, k).mean() for k in range(24)]
-    assert pseudo_values([values.mean(), *without]) == pytest.approx(values)
+    found = jackknife([values.mean(), *without])
+    assert found == Estimate(
+        values.mean(), pytest.approx(np.std(values, ddof=1) / 24**0.5), 23, 24
+    )
+
+
+def test_standard_error_of_neighbours_that_are_alike_is_that_of_their_groups():
+    groups = np.random.default_rng(0).standard_normal(6)
+    error = standard_error(np.repeat(groups, 4), (1, 2, 4))
+    assert error == (pytest.approx(np.std(groups, ddof=1) / 6**0.5), 5)

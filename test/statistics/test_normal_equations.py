@@ -1,34 +1,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Uncertainties from blocks, elimination of a recording's own unknowns, prediction of folds."""
+"""Elimination of a recording's own unknowns, prediction of folds."""
 
 import numpy as np
 import pytest
 
-from gear_kinematics.measurement.calibration.selection import (
-    NormalEquations,
-    block_bounds,
-    standard_error,
-    widening,
-)
-
-
-def test_standard_error_of_neighbours_that_are_alike_is_that_of_their_groups():
-    groups = np.random.default_rng(0).standard_normal(6)
-    error = standard_error(np.repeat(groups, 4))
-    assert error == (pytest.approx(np.std(groups, ddof=1) / 6**0.5), 5)
-
-
-def test_intervals_hold_on_other_errors_of_a_random_scale():
-    random = np.random.default_rng(3)
-    inside, plain = [], []
-    for _ in range(2000):
-        first, second = random.standard_normal((2, 6))
-        errors = np.repeat(first**2, 4)
-        half_width = 1.96 * np.sqrt(errors.mean())
-        inside.append(np.abs(second) <= half_width * widening(errors))
-        plain.append(np.abs(second) <= half_width)
-    assert np.mean(plain) < 0.91
-    assert 0.93 <= np.mean(inside) <= 0.985
+from gear_kinematics.statistics.normal_equations import NormalEquations, block_bounds
 
 
 @pytest.fixture

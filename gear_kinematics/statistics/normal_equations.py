@@ -1,0 +1,75 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Normal equations of a linear model block by block.
+
+Every fit without a block is the fit of all blocks less its normal equations, so that samples are
+visited once. Blocks, not samples, are independent, as noise is coloured.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+
+_BLOCKS = 24  # blocks of all recordings together
+_RIDGE = 1e-9  # share of a column's sum of squares that keeps equations solvable
+
+
+def block_bounds(counts: Sequence[int]) -> list[list[int]]:
+    """Divide recordings of so many samples into blocks about as long each, two at the least.
+
+    Returns:
+        Where the blocks of each recording begin, and where the last one ends.
+    """
+    parts = (max(2, round(_BLOCKS * count / sum(counts))) for count in counts)
+    return [
+        np.unique(np.linspace(0, count, most + 1).astype(int)).tolist()
+        for count, most in zip(counts, parts, strict=True)
+    ]
+
+
+class NormalEquations:
+    """Fits to all blocks and without folds of them, and how well these predict the folds.
+
+    Arrays (fits, ...) are of the fit to all blocks, and then of those without each fold.
+    """
+
+    def __init__(self, products: Array, folds: Array | None = None) -> None:
+        """Take products (blocks, size, size) of the columns and the error in each block.
+
+        Blocks of the same number in `folds`, (blocks,), are left out together; None: each alone.
+        """
+        self._blocks = products
+        self._fold = np.arange(len(products)) if folds is None else folds
+        scale = np.sqrt(np.einsum('bii->i', products))
+        self._scale = np.where(scale == 0.0, 1.0, scale)
+        kept = self._fold != np.arange(-1, self._fold.max() + 1)[:, None]
+        sums = np.tensordot(1.0 * kept, products, axes=1)
+        self.products = sums / np.outer(self._scale, self._scale)
+        """Of the columns and the error, each over its size, (fits, size, size)."""
+
+    def regular(self, chosen: Sequence[int]) -> Array:
+        """Products of the chosen columns that can be solved, (fits, chosen, chosen).
+
+        They can also where a fold lacks what tells two columns apart.
+        """
+        places = list(chosen)
+        matrices: Array = self.products[:, places][:, :, places] + _RIDGE * np.eye(len(places))
+        return matrices
+
+    def solve(self, chosen: Sequence[int]) -> Array:
+        """Coefficients of the chosen columns, (fits, chosen)."""
+        places = list(chosen)
+        solution = np.linalg.solve(self.regular(places), self.products[:, places, -1:])
+        coefficients: Array = solution[:, :, 0] * self._scale[-1] / self._scale[places]
+        return coefficients
+
+    def errors(self, chosen: Sequence[int]) -> Array:
+        """Sum of the squared residuals of each block, predicted without its fold, rad²."""
+        coefficients, places = self.solve(chosen)[1 + self._fold], [*chosen, -1]
+        factors = np.column_stack([-coefficients, np.ones(len(coefficients))])
+        products = self._blocks[:, places][:, :, places]
+        errors: Array = np.einsum('bi,bij,bj->b', factors, products, factors)
+        return errors
