@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from gear_kinematics.report import document
 from gear_kinematics.report.document import counted, number, printable
-from gear_kinematics.validation.recorder import AFTER, BEFORE, NO_INPUT
+from gear_kinematics.validation.recorder import AFTER, BEFORE, LOST, NO_INPUT
 from gear_kinematics.validation.report import BagReport, FieldReport, Finding, TopicReport
 from gear_kinematics.validation.task import QUANTITIES
 
@@ -17,6 +17,7 @@ _SKIPPED = {
     BEFORE: 'the recording had just begun',
     AFTER: 'the recording ended first',
     NO_INPUT: 'their input was not recorded',
+    LOST: 'the recorder says that it lost them',
 }
 
 

@@ -24,6 +24,7 @@ Flags = NDArray[np.bool_]
 BEFORE = 'before the recorder settled'
 AFTER = 'after the last output'
 NO_INPUT = 'whose input was not recorded'
+LOST = 'that the recorder says that it lost'
 
 _SETTLING_TIME = 1_000_000_000  # ns after which a recorder has settled
 _QUIET_TIME = 150_000_000  # ns without a loss after which it has settled earlier
@@ -68,8 +69,11 @@ class Missing:
             self._after_since = int(received[end])
         self._after.add(stamp[end:])
 
-    def close(self, last: int, *, strict: bool) -> None:
-        """Judge the inputs after the last output; the last one was received at a time, ns."""
+    def close(self, last: int, *, strict: bool, lost: int) -> None:
+        """Judge the inputs after the last output; the last one was received at a time, ns.
+
+        `lost` is how many messages of the topic the recorder says that it lost.
+        """
         late = self._after.count and last - self._after_since > _MAX_END
         if strict or late or self._last_answered is None:
             self._judge_after()
@@ -77,6 +81,9 @@ class Missing:
             self.left_out[AFTER] += self._after.count
         if late and self._last_answered is not None:
             self.ended_early = (last - self._last_answered) * 1e-9
+        if not strict and 0 < self.inputs.count <= lost:
+            self.left_out[LOST] += self.inputs.count
+            self.inputs = Occurrences()
 
     def _judge_after(self) -> None:
         self.inputs.add_all(self._after)
@@ -134,10 +141,13 @@ class Completeness:
         series = first[: pauses[0]] if len(pauses) else first
         self._settled = int(series[-1]) if len(series) else self._settled
 
-    def close(self) -> None:
-        """Judge the inputs after the last outputs."""
-        for missing in (*self.topics.values(), self._on_all):
-            missing.close(self._last, strict=self._strict)
+    def close(self, lost: Mapping[str, int]) -> None:
+        """Judge the inputs after the last outputs; skip what the recorder lost, by topic."""
+        counts = [lost.get(name, 0) for name in self.topics]
+        for missing, count in zip(
+            (*self.topics.values(), self._on_all), (*counts, max(counts)), strict=True
+        ):
+            missing.close(self._last, strict=self._strict, lost=count)
 
     def causes(self) -> Iterator[Finding]:
         """Yield why messages may be missing."""

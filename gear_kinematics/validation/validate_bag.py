@@ -106,6 +106,7 @@ def _judged(
     encoder = find_encoder_topic(bag, topics.rotor) if task.parameters.absolute else ''
     found = only_joint(bag, topics.rotor, joint) if task.only_joint and joint else joint
     task = replace(task, parameters=replace(task.parameters, rotor_joint=found))
+    names: Sequence[str] = ()
     if play:
         total = count_due(bag, [topics.rotor]) if progress else None
         messages = play(
@@ -131,9 +132,14 @@ def _judged(
         validator.feed(_seen(proof, batches) if proof else batches)
     except BagError as error:
         damage = str(error)
-    report = with_proof(validator.report(damage), proof)
-    if not play:
-        report = replace(report, findings=(*report.findings, *_recorded_losses(bag, names)))
+    lost = Counter[str]() if play else _recorded_losses(bag)
+    report = with_proof(validator.report(damage, lost), proof)
+    said = [
+        Finding(f'the recorder says that it lost {counted(lost[name], "message")}', topic=name)
+        for name in names
+        if lost[name]
+    ]
+    report = replace(report, findings=(*report.findings, *said))
     if found != joint:
         taken = Finding(f'{found}, the only joint on {topics.rotor}, is taken')
         return replace(report, findings=(taken, *report.findings))
@@ -147,17 +153,14 @@ def _judged(
     return report
 
 
-def _recorded_losses(bag: Bag, topics: Iterable[str]) -> Iterator[Finding]:
-    """Yield what the recorder says that it lost of topics, where this is recorded."""
+def _recorded_losses(bag: Bag) -> Counter[str]:
+    """Count the messages that the recorder says that it lost, by topic, where this is recorded."""
     events = [name for name, kind in bag.topics.items() if kind == _LOSSES]
     lost: Counter[str] = Counter()
     with suppress(BagError, MalformedMessageError):
         for _, _, data in bag.messages(events) if events else ():
             lost += messages_lost(data)
-    for topic in topics:
-        if lost[topic]:
-            words = f'the recorder says that it lost {counted(lost[topic], "message")}'
-            yield Finding(words, topic=topic)
+    return lost
 
 
 def independent_of(task: Task, topics: Topics) -> Independent:

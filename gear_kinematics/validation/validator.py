@@ -131,17 +131,20 @@ class Validator:
             self._take(self._sorted(batch))
 
     @np.errstate(all='ignore')  # recorded numbers are arbitrary; overflows fail
-    def report(self, error: str | None = None) -> BagReport:
+    def report(
+        self, error: str | None = None, lost: Mapping[str, int] = MappingProxyType({})
+    ) -> BagReport:
         """Return the report on all messages; must be called once, at the end.
 
         Args:
             error: damage at which reading ended, if any.
+            lost: numbers of messages that the recorder says that it lost, by topic.
         """
         for _ in range(2):  # late messages wait for one more batch
             self.feed([()])
         self._drop(len(self._window))
         for group, _ in self._groups:
-            group.close()
+            group.close(lost)
         if self._changes.homed:  # which the correction knows nothing of
             why = 'the zero of the rotor changes during the recording'
             self._corrector, self._why_unjudged = None, self._why_unjudged or why
