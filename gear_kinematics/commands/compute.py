@@ -84,3 +84,11 @@ def _print_summary(out: Path, result: ComputeResult) -> None:
     )
     if result.left_out:
         print(printable(f'left out: {listed(result.left_out)}'))
+    doubts = (
+        rotor.plausibility.jumped,
+        rotor.velocity_field.meaning,
+        'the effort is 0 throughout the motion, and left out' if rotor.effort_field.absent else '',
+        '' if rotor.referenced else 'the turns of the rotor are not known at the end',
+    )
+    for doubt in filter(None, doubts):
+        complain(f'{out}: {doubt}')

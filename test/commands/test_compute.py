@@ -201,3 +201,27 @@ def test_a_joint_of_270_degrees_is_at_250(shared_path, tmp_path):
         angle = decode_joint_states([last], 'output_shaft').values[0, 0]
         assert math.degrees(angle) == pytest.approx(found, abs=0.01)
         assert main(['validate', str(out), '--config', str(config)]) == 0
+
+
+@pytest.mark.parametrize(
+    ('name', 'config', 'said'),
+    [
+        (
+            'multi_turn_drive_restarts',
+            None,
+            "the rotor's encoder jumped by -104.2 rad at 1790000001.000 s",
+        ),
+        (
+            'single_turn_velocity_field_is_zero',
+            'single_turn.yaml',
+            'the velocities contradict the positions: they seem to be 0',
+        ),
+    ],
+)
+def test_what_cannot_be_true_is_said(shared_path, tmp_path, capsys, name, config, said):
+    bag, out = shared_path(f'data/faults/{name}.mcap'), tmp_path / 'out'
+    options = ['--config', str(shared_path(f'data/faults/{config}'))] if config else []
+    assert main(['compute', str(bag), str(out), *options]) == 0
+    told = capsys.readouterr().err
+    assert f'gearkin: {out}: {said}\n' in told
+    assert 'the turns of the rotor are not known at the end' in told
