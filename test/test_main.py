@@ -113,8 +113,8 @@ def test_nothing_heavy_is_imported_before_signals_are_handled():
     [
         ('--version', 'bag commands correction kinematics parameters report wire'),
         ('--help', 'bag correction measurement parameters plotting state validation'),
-        (f'info {BAG}', 'measurement plotting shape validation watch'),
-        (f'validate {BAG}', 'measurement plotting shape watch'),
+        (f'info {BAG}', 'plotting shape validation watch'),
+        (f'validate {BAG}', 'measurement plotting watch'),
         ('describe', 'measurement validation watch'),
     ],
     ids=lambda text: text.split()[0],

@@ -301,6 +301,21 @@ def test_a_clock_that_is_set_back_is_restored_and_named(tmp_path, config, step):
     assert len(both.starts(None)) == 2  # the motion in the step is unknown
 
 
+@pytest.mark.parametrize('stall', [40, 100, 400])
+def test_a_stall_is_no_step_of_the_clock(tmp_path, config, stall):
+    """What came meanwhile is received at once, as from a driver on a busy machine."""
+    ideal = np.linspace(0.0, 1.0, 4000) ** 2
+    stamps = START + np.arange(4000) * MS
+    received = stamps.copy()
+    received[2000 : 2000 + stall] = stamps[2000 + stall] + np.arange(stall) * 1000
+    received = np.maximum.accumulate(received)
+    rotor = Samples(stamps, -19.0 * ideal, received=received)
+    write_recording(tmp_path / 'bag', rotor, Samples(stamps, ideal, received=received))
+    recording, both = read_encoders(tmp_path / 'bag', config)
+    assert recording.faults == ()
+    assert np.ptp(both.error(Fraction(-19))) < 1e-6
+
+
 def test_one_clock_of_two_that_is_set_back_is_restored(tmp_path, config):
     ideal = np.linspace(0.0, 1.0, 4000)
     stamps = START + np.arange(4000) * MS
