@@ -100,7 +100,7 @@ class GearNode:
             self.statuses.clear()
             self.parameters, self.fault, self.earlier = None, '', {}
             self.revision, self._due = next(_revisions), 0.0
-        self._publishers = publishers
+        self._publishers = publishers or self._publishers  # a busy machine loses sight of them
 
     def poll(self) -> None:
         """Take the messages that have arrived."""

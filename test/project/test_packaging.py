@@ -31,6 +31,7 @@ ROSDEP_KEYS = {
     'PIL': 'python3-pil',
     'matplotlib': 'python3-matplotlib',
     'numpy': 'python3-numpy',
+    'pandas': 'python3-pandas',
     'rich': 'python3-rich',
     'scipy': 'python3-scipy',
     'tornado': 'python3-tornado',
@@ -38,7 +39,7 @@ ROSDEP_KEYS = {
 }
 # Extras, libraries of compressed recordings, and what Python itself has from 3.14 on.
 WITHOUT_KEY = {'compression', 'distributed', 'mapbox_earcut', 'mujoco', 'plotly', 'rainflow'}
-WITHOUT_KEY |= {'backports', 'lz4', 'rosbags', 'zstandard'}
+WITHOUT_KEY |= {'asammdf', 'backports', 'lz4', 'nptdms', 'pyarrow', 'rosbags', 'zstandard'}
 PYPI_NAMES = {'PIL': 'pillow', 'yaml': 'pyyaml', 'backports': 'backports.zstd'}
 
 
