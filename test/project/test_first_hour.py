@@ -155,7 +155,7 @@ def test_every_command_with_pip_alone_does_what_the_page_says(folder):
             elif words[0] == 'record':
                 recording = motion.enter_context(contextlib.ExitStack())
                 recorder = recording.enter_context(gearkin(folder, *words))
-                recorder.wait_for('recording .*/rotor_state.*/output_state')
+                recorder.wait_for('recording (?=.*/rotor_state).*/output_state')
             elif command in TOLD:
                 said = run(folder, command)
                 assert re.search(TOLD[command], said), said
