@@ -40,6 +40,10 @@ class RotorPosition(NamedTuple):
     angle: float
     """rad, within the turn."""
 
+    def since(self, before: 'RotorPosition') -> float:
+        """Travel from another position, rad."""
+        return TURN * (self.turns - before.turns) + (self.angle - before.angle)
+
 
 class RotorSample(NamedTuple):
     """A state of the rotor: its angle φ2, its rate and torque at a time."""

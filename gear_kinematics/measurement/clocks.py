@@ -19,7 +19,7 @@ _UNREADABLE = 0.01
 """Share of times that cannot be read, at most."""
 _LATE_ROWS = 25
 """Rows in succession that are out of order, at most; after more the clock was set back."""
-_FASTEST, _MOST = 1000.0, 0.9
+FASTEST, MOST = 1000.0, 0.9
 """rad/s, which hardly any rotor exceeds; share of the samples in motion that are slower."""
 
 
@@ -35,14 +35,14 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
         raise ValueError(f'the times in {clock.name}: {cause}')
     steps = np.diff(times)[later]
     step = float(np.median(steps))
-    speed = float(np.quantile(np.abs(np.diff(angle)[later]) / steps, _MOST))
+    speed = float(np.quantile(np.abs(np.diff(angle)[later]) / steps, MOST))
     if role == 'angle':  # of a locked shaft, whose times tell the order alone
         speed = 0.0
     spans = {unit: (step * TIME_UNITS[unit], times[0] * TIME_UNITS[unit]) for unit in _LEAST_STEP}
     dated = [unit for unit, (_, at) in spans.items() if _DATES[0] < at < _DATES[1]]
     likely = [unit for unit, (size, _) in spans.items() if _LEAST_STEP[unit] <= size <= _MOST_STEP]
     if len(likely) > 1:
-        likely = [unit for unit in likely if speed <= _FASTEST * TIME_UNITS[unit]]
+        likely = [unit for unit in likely if speed <= FASTEST * TIME_UNITS[unit]]
     if common := [unit for unit in dated if unit in likely]:
         likely = common
     elif 's' in likely and not np.all(times == np.round(times)):

@@ -22,7 +22,7 @@ _MOST_ROWS = 1_000_000
 _HEAD, _BLOCK = 2**16, 2**23
 """Bytes in which the dialect shows, and that are read at once."""
 _ROWS, _BEGIN = 100, 3
-"""Of the head, that show what the columns contain; rows of numbers that begin a table."""
+"""Rows of the head that show what the columns contain; rows of numbers that begin a table."""
 _LONG = 2**16
 """Bytes that have some rows in them."""
 _SEPARATORS = ';', '\t', ',', '|', ' '
@@ -36,7 +36,7 @@ _TOPICS, _VALUE = ('topic', 'series', 'signal', 'channel', 'label', 'name'), 'va
 """Columns of a table with a row for each value."""
 
 
-class Table(NamedTuple):
+class TableFile(NamedTuple):
     """Columns that can be loaded."""
 
     names: Sequence[str]
@@ -48,6 +48,17 @@ class Table(NamedTuple):
     """The first values, as they are written."""
     load: Callable[[Sequence[str]], tuple[dict[str, Any], int]]
     """Returns columns as numbers or datetime64, by name, and of how many rows these are one."""
+
+
+def loaded(
+    columns: Mapping[str, Any],
+    units: Mapping[str, str] | None = None,
+    clocks: Mapping[str, str] | None = None,
+) -> TableFile:
+    """Return a table of columns that are in memory."""
+    first = {name: str(values[0]) for name, values in columns.items() if len(values)}
+    load = lambda names: ({name: columns[name] for name in names}, 1)  # noqa: E731
+    return TableFile([*columns], units or {}, clocks or {}, first, load)
 
 
 class _Layout(NamedTuple):
@@ -65,7 +76,7 @@ class _Layout(NamedTuple):
     clocks: dict[str, str]
 
 
-def open_text(path: Path) -> Table:
+def open_text(path: Path) -> TableFile:
     """Find out the dialect of a text.
 
     Raises:
@@ -95,7 +106,7 @@ def open_text(path: Path) -> Table:
         return {name: _joined(part) for name, part in zip(wanted, parts, strict=True)}, every
 
     first = dict(zip(names, layout.row, strict=False))
-    return Table(names, layout.units, layout.clocks, first, load)
+    return TableFile(names, layout.units, layout.clocks, first, load)
 
 
 def _joined(parts: Sequence[Any]) -> Any:
@@ -288,7 +299,7 @@ def _joint_state(row: Sequence[str]) -> tuple[list[str], dict[str, str], dict[st
     return names, dict.fromkeys(joints, 'rad'), {}
 
 
-def _long(path: Path, layout: _Layout, topic: str, value: str) -> Table:
+def _long(path: Path, layout: _Layout, topic: str, value: str) -> TableFile:
     """Return the series in a table with a row for each value, as exports of plots have them."""
     import pandas as pd  # noqa: PLC0415, of an extra
 
@@ -301,7 +312,4 @@ def _long(path: Path, layout: _Layout, topic: str, value: str) -> Table:
         if clock:
             clocks[str(name)] = own = f'{clock} of {name}'
             columns[own] = numbers(series[clock], layout.point)
-    first = {name: str(values[0]) for name, values in columns.items()}
-    units = dict.fromkeys(clocks.values(), unit)
-    load = lambda names: ({name: columns[name] for name in names}, 1)  # noqa: E731
-    return Table([*columns], units, clocks, first, load)
+    return loaded(columns, dict.fromkeys(clocks.values(), unit), clocks)

@@ -10,25 +10,10 @@ import numpy as np
 
 from gear_kinematics.bag import Bag, BagError
 from gear_kinematics.bag.finding import BAG_NAME
-from gear_kinematics.measurement.dialects import Table, numbers, open_text
+from gear_kinematics.measurement.dialects import TableFile, loaded, numbers, open_text
 
 
-def _table(
-    columns: Mapping[str, Any],
-    units: Mapping[str, str] | None = None,
-    clocks: Mapping[str, str] | None = None,
-) -> Table:
-    first = {name: str(values[0]) for name, values in columns.items() if len(values)}
-    return Table(
-        [*columns],
-        units or {},
-        clocks or {},
-        first,
-        lambda names: ({name: columns[name] for name in names}, 1),
-    )
-
-
-def _parquet(path: Path) -> Table:
+def _parquet(path: Path) -> TableFile:
     """Columns of numbers, and the elements of vectors, as LeRobot has them."""
     import pyarrow.parquet as pq  # noqa: PLC0415, of an extra
 
@@ -39,10 +24,10 @@ def _parquet(path: Path) -> Table:
             columns |= {f'{name}[{k}]': vectors[:, k] for k in range(vectors.shape[1])}
         elif column.dtype.kind in 'iufbM':
             columns[str(name)] = numbers(column)
-    return _table(columns)
+    return loaded(columns)
 
 
-def _mat(path: Path) -> Table:
+def _mat(path: Path) -> TableFile:
     """Vectors, columns of matrices, and those in structures."""
     from scipy.io import loadmat  # noqa: PLC0415, of an extra
 
@@ -66,10 +51,10 @@ def _mat(path: Path) -> Table:
     add('', {key: value for key, value in found.items() if not key.startswith('__')})
     if len({name.partition('.')[0] for name in columns}) == 1:  # all are in one structure
         columns = {name.partition('.')[2] or name: values for name, values in columns.items()}
-    return _table(columns)
+    return loaded(columns)
 
 
-def _tdms(path: Path) -> Table:
+def _tdms(path: Path) -> TableFile:
     """Channels of LabVIEW, with their units and times."""
     from nptdms import TdmsFile  # noqa: PLC0415, of an extra
 
@@ -83,10 +68,10 @@ def _tdms(path: Path) -> Table:
                 clocks[channel.name] = clock = f'time of {channel.name} [s]'
                 start = known.get('wf_start_offset', 0.0)
                 columns[clock] = start + step * np.arange(len(channel))
-    return _table(columns, units, clocks)
+    return loaded(columns, units, clocks)
 
 
-def _mf4(path: Path) -> Table:
+def _mf4(path: Path) -> TableFile:
     """Channels of ASAM MDF, with their units and times."""
     from asammdf import MDF  # noqa: PLC0415, of an extra
 
@@ -98,10 +83,10 @@ def _mf4(path: Path) -> Table:
                 clocks[signal.name] = clock = f'time of {signal.name} [s]'
                 columns |= {signal.name: signal.samples, clock: signal.timestamps}
                 units[signal.name] = signal.unit
-    return _table(columns, units, clocks)
+    return loaded(columns, units, clocks)
 
 
-READERS: Mapping[str, Callable[[Path], Table]] = {
+READERS: Mapping[str, Callable[[Path], TableFile]] = {
     **dict.fromkeys(('.csv', '.tsv', '.txt', '.dat', '.asc', '.lvm'), open_text),
     '.parquet': _parquet,
     '.mat': _mat,
@@ -129,7 +114,7 @@ def open_bag(path: Path) -> Iterator[Bag]:
         raise
 
 
-def open_table(path: Path) -> Table:
+def open_table(path: Path) -> TableFile:
     """Open a table; OSError or ValueError if it cannot be read."""
     if path.exists() and not path.is_file():
         raise ValueError('not a regular file')

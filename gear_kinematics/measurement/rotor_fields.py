@@ -10,7 +10,7 @@ from gear_kinematics.bag import Bag, DamagedBagError
 from gear_kinematics.measurement.commissioning.encoder_range import find_range
 from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.state.effort_field import EffortField, questioned
-from gear_kinematics.state.velocity_field import Finding, VelocityField, contradiction
+from gear_kinematics.state.velocity_field import VelocityField, VelocityMeaning, contradiction
 from gear_kinematics.wire.batches import decode_joint_states
 from gear_kinematics.wire.cdr import SECOND
 
@@ -47,7 +47,7 @@ def questions(
     velocities = VelocityField(float(1 / ratio) if ratio else np.nan)
     velocities.believed(stamp, values, float(np.min(steps[steps > _EQUAL], initial=1.0)))
     if len(given) and not given.any() and np.ptp(values[:, 0]) > _MOVED:
-        yield contradiction(Finding.ZERO)
+        yield contradiction(VelocityMeaning.ZERO)
     elif velocities.meaning:
         yield velocities.meaning
     field = EffortField()

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_turns
-from gear_kinematics.measurement.clocks import stamps, with_unit
+from gear_kinematics.measurement.clocks import FASTEST, MOST, stamps, with_unit
 from gear_kinematics.measurement.columns import (
     Column,
     ColumnsError,
@@ -22,9 +22,9 @@ from gear_kinematics.measurement.columns import (
     find_columns,
     nanoseconds_beside,
 )
-from gear_kinematics.measurement.commissioning.encoder_range import count_wraps
+from gear_kinematics.measurement.commissioning.encoder_range import unwrapped
 from gear_kinematics.measurement.commissioning.joint import other_unit
-from gear_kinematics.measurement.dialects import Table
+from gear_kinematics.measurement.dialects import TableFile
 from gear_kinematics.measurement.encoder_step import Step, step_of
 from gear_kinematics.measurement.formats import open_table
 from gear_kinematics.measurement.gate import output_by_rotor
@@ -46,8 +46,6 @@ _GAP = 5
 """Usual intervals of the rotor's samples over which its motion is interpolated, at most."""
 _HALF_TURN = 180.0
 """Degrees, by which the readings of a single-turn encoder jump at least."""
-_FASTEST, _MOST = 1000.0, 0.9
-"""rad/s, above which a unit is asked for; share of the samples in motion that are slower."""
 _MOST_TWIST = 0.35
 """rad of the output under torque: a shaft that turns further is not locked."""
 _BLOCKS, _LIKE = 10, (0.08, 1.0)
@@ -91,7 +89,7 @@ def read_rotor(path: Path, sources: Sources, ratio: Fraction) -> tuple[Array, Ar
         one, torque = series[role], _torque(found, series, series[role], ratio) / float(ratio)
         on_rotor = role == 'rotor' or found[role].on_rotor
         angle = one.values[role]
-        angle = np.unwrap(angle) if count_wraps(angle, TURN) else angle
+        angle = unwrapped(angle)
         angle = angle if on_rotor else angle * float(ratio)
         return one.stamp, angle, torque, ', '.join(said)
 
@@ -119,7 +117,7 @@ class _Series(NamedTuple):
     """Number that changes where rows were left out, as the motion in them is unknown."""
 
 
-def _recording(path: Path, table: Table, sources: Sources, ratio: Fraction) -> Recording:
+def _recording(path: Path, table: TableFile, sources: Sources, ratio: Fraction) -> Recording:
     found, series, said, remarks = _read(path, table, sources, ratio)
     timed = said[0].startswith('time')
     encoders, locked = _measured(found, series, sources, ratio, timed=timed)
@@ -128,7 +126,7 @@ def _recording(path: Path, table: Table, sources: Sources, ratio: Fraction) -> R
 
 
 def _read(
-    path: Path, table: Table, sources: Sources, ratio: Fraction
+    path: Path, table: TableFile, sources: Sources, ratio: Fraction
 ) -> tuple[dict[str, Column], dict[str, _Series], list[str], list[str]]:
     """Return columns and samples by role, what was taken, and remarks."""
     try:
@@ -214,7 +212,7 @@ def _measured(
         return None, locked
     rotor, output = values['rotor'], values['output']
     if not sources.as_recorded:
-        rotor, output = (np.unwrap(v) if count_wraps(v, TURN) else v for v in (rotor, output))
+        rotor, output = unwrapped(rotor), unwrapped(output)
     before, share, inside = (
         np.arange(len(output)),
         np.zeros(len(output)),
@@ -249,7 +247,7 @@ def _torque(
 
 def _error(rotor: Array, output: Array) -> float:
     """By how much the output leaves the rotor within most parts of a recording, rad."""
-    rotor, output = (np.unwrap(v) if count_wraps(v, TURN) else v for v in (rotor, output))
+    rotor, output = unwrapped(rotor), unwrapped(output)
     every = max(1, len(rotor) // _ROWS)
     rotor, output = rotor[::every], output[::every]
     ratio = output_by_rotor(rotor, output)
@@ -259,7 +257,7 @@ def _error(rotor: Array, output: Array) -> float:
     parts = [part - [[np.median(part[0])], [0.0]] for part in parts]
     error, speed = np.concatenate(parts, axis=1)
     delay = error @ speed / max(speed @ speed, _LEAST)
-    spreads = [np.ptp(np.quantile(e - delay * v, (1.0 - _MOST, _MOST))) for e, v in parts]
+    spreads = [np.ptp(np.quantile(e - delay * v, (1.0 - MOST, MOST))) for e, v in parts]
     return float(np.median(spreads))
 
 
@@ -278,7 +276,7 @@ def _against(series: _Series, role: str, step: Step | None, *, timed: bool) -> s
         return f'positions in {unit}'
     if timed and (moving := moved > 0.0).any():
         seconds = np.maximum(np.diff(series.stamp)[moving], 1) / SECOND
-        if (speed := np.quantile(moved[moving] / seconds, _MOST)) > _FASTEST:
+        if (speed := np.quantile(moved[moving] / seconds, MOST)) > FASTEST:
             return f'speeds of {speed:.3g} a second, as in degrees'
     return ''
 
@@ -291,7 +289,7 @@ def _described(role: str, column: Column) -> str:
     return f'{role}{side} [{unit.replace("nm", "N·m")}] from {column.name}'
 
 
-def _advice(path: Path, table: Table, sources: Sources, ratio: Fraction) -> str:
+def _advice(path: Path, table: TableFile, sources: Sources, ratio: Fraction) -> str:
     """List the columns with their first values, and end with a command line that works, if any."""
     names = [name for name in table.names if name]
     listed = ', '.join(f'{name} ({table.first.get(name, "")})' for name in names)

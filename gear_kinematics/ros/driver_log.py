@@ -6,7 +6,6 @@ import math
 from rclpy.node import Node
 
 from gear_kinematics.kinematics import RotorSample
-from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.ros.graph import Graph
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.nearest import listed
@@ -56,10 +55,7 @@ class DriverLog:
     def heard(self, sample: RotorSample) -> None:
         """Take the first sample while the driver was awaited."""
         self.awaited, before, self._before = False, self._before, None
-        turns, angle = (
-            b - a for a, b in zip((before or sample).position, sample.position, strict=True)
-        )
-        moved = TURN * turns + angle
+        moved = sample.position.since((before or sample).position)
         if abs(moved) > _ELSEWHERE:
             self._jumps = self._input.plausibility.jumps
             at = f'the rotor is {math.degrees(moved):.0f}° from where it was'

@@ -65,10 +65,8 @@ class Homing:
             self._before, self._segment, self._speed = sample, segment, 0.0
         elapsed = (sample.stamp - self._before.stamp) / SECOND
         if elapsed >= _SPEED_SPAN:
-            turns, angle = (
-                b - a for a, b in zip(self._before.position, sample.position, strict=True)
-            )
-            self._before, self._speed = sample, (TURN * turns + angle) / elapsed
+            travel = sample.position.since(self._before.position)
+            self._before, self._speed = sample, travel / elapsed
         if sample.velocity is not None:
             self._speed = sample.velocity
 

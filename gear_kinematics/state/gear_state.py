@@ -29,7 +29,7 @@ from gear_kinematics.wire.topics import (
 )
 
 
-class Answer(NamedTuple):
+class RotorAnswer(NamedTuple):
     """What came of a valid message of the rotor."""
 
     sample: RotorSample
@@ -45,8 +45,8 @@ class Answer(NamedTuple):
     """The transmission errors that have become known, in order."""
 
 
-class Answers(NamedTuple):
-    """What came of many messages: the fields of n `Answer`s as arrays (n,)."""
+class RotorAnswers(NamedTuple):
+    """What came of many messages: the fields of n `RotorAnswer`s as arrays (n,)."""
 
     samples: RotorSamples
     correction: Correction | None
@@ -54,7 +54,7 @@ class Answers(NamedTuple):
     """Those that became known with a message of either encoder."""
 
 
-_answer = partial(tuple.__new__, Answer)
+_answer = partial(tuple.__new__, RotorAnswer)
 
 
 class GearState:
@@ -119,7 +119,7 @@ class GearState:
         if self._load_topics and not self._loads:
             self._loads = Loads(self.parameters)
 
-    def rotor(self, data: bytes | JointValues, now: Callable[[], int]) -> Answer:
+    def rotor(self, data: bytes | JointValues, now: Callable[[], int]) -> RotorAnswer:
         """Process the next message of the rotor; see `RotorInput.accept`."""
         rotor = self.input
         sample = rotor.accept(data, now)
@@ -137,10 +137,10 @@ class GearState:
         """Process the next message of the output's encoder; see `OutputEncoder.accept`."""
         return self.output_encoder.accept(data, now)
 
-    def encode(self, answer: Answer) -> list[tuple[str, bytes]]:
+    def encode(self, answer: RotorAnswer) -> list[tuple[str, bytes]]:
         """Return topic and message of what is published on the chosen topics.
 
-        Answers are taken in order, as accelerations, of which loads depend, follow the motion.
+        They are taken in order, as accelerations, of which loads depend, follow the motion.
         """
         sample, segment, _, withheld, correction, errors = answer
         encoded: list[tuple[str, bytes]] = []
@@ -166,7 +166,7 @@ class GearState:
 
     def batch(
         self, messages: Sequence[tuple[str, int, bytes]], rotor: str, encoder: str = ''
-    ) -> Answers:
+    ) -> RotorAnswers:
         """Process many messages in the order of their reception.
 
         Args:
@@ -193,7 +193,7 @@ class GearState:
             if self.corrector:
                 columns = np.array(corrections, float).reshape(-1, len(Correction._fields)).T
                 correction = Correction(*columns)
-            return Answers(samples, correction, errors)
+            return RotorAnswers(samples, correction, errors)
         places = [row for row, (topic, *_) in enumerate(messages) if topic == rotor]
         samples = self.samples(
             [messages[row][2] for row in places], [messages[row][1] for row in places]
@@ -203,9 +203,9 @@ class GearState:
             correction = self.corrector.correct_batch(
                 *samples[:5], samples.segment, referenced=samples.referenced
             )
-        return Answers(samples, correction, errors)
+        return RotorAnswers(samples, correction, errors)
 
-    def encode_batch(self, answers: Answers) -> dict[str, list[bytes]]:
+    def encode_batch(self, answers: RotorAnswers) -> dict[str, list[bytes]]:
         """Encode the recorded states, all corrections if any, and all loads if one is chosen.
 
         A message is empty where there is none for a sample. Nothing is withheld.

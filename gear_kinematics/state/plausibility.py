@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.state.reach import FLOOR, REGULAR, STALEST, Limits, Reading
+from gear_kinematics.state.reach import FLOOR, REGULAR, STALEST, Reading, RotorLimits
 
 _COARSEST = TURN / 6.0  # rad; what a Hall sensor of one pole pair resolves
 _EQUAL = 1e-9  # rad, below which steps differ by rounding alone
@@ -26,7 +26,7 @@ _STALEST_NS = round(STALEST * 1e9)
 _LONGEST_NS = 12_000_000  # between readings for which a look at the step alone may be enough
 
 
-class Verdict(Enum):
+class Belief(Enum):
     """What a reading is."""
 
     BELIEVED = 'believed'
@@ -34,7 +34,7 @@ class Verdict(Enum):
     JUMP = 'jump'
 
 
-BELIEVED = Verdict.BELIEVED  # an attribute of an enum is slow for what each message takes
+BELIEVED = Belief.BELIEVED  # an attribute of an enum is slow for what each message takes
 
 
 class Jump(NamedTuple):
@@ -68,7 +68,7 @@ class Plausibility:
 
     def restrict(self, max_speed: float, max_acceleration: float, period: float = 0.0) -> None:
         """Change the limits from now on."""
-        self.limits = Limits(max_speed, max_acceleration)
+        self.limits = RotorLimits(max_speed, max_acceleration)
         self.period = period
         self.seen_speed = self.seen_acceleration = 0.0
         """rad/s and rad/s², of motions beyond the limits, which are raised above them."""
@@ -109,7 +109,7 @@ class Plausibility:
         self._last = position, changed - time, step, span
         self._stamp -= time
 
-    def judge(self, position: float, stamp: int) -> Verdict:
+    def judge(self, position: float, stamp: int) -> Belief:
         """Take the next reading, rad, with a stamp, ns, not before the last believed one."""
         last = self._last
         before, changed, former, _ = last
@@ -195,7 +195,7 @@ class Plausibility:
         """rad and ns: a step that differs from the last by at most so much, in a time within these
         limits, is in reach, and tells no more of the resolution."""
 
-    def _look_closer(self, position: float, step: float, stamp: int) -> Verdict:
+    def _look_closer(self, position: float, step: float, stamp: int) -> Belief:
         """Judge a reading by all that is known."""
         last, former = self._last, self._former
         before, changed, last_step, last_span = last
@@ -238,7 +238,7 @@ class Plausibility:
                 self._shortest, self._longest = math.ceil(shortest), int(longest)
         return BELIEVED
 
-    def _hold(self, position: float, stamp: int) -> Verdict:
+    def _hold(self, position: float, stamp: int) -> Belief:
         """Judge a reading that repeats the last position.
 
         A rotor that has turned fast cannot stand at once.
@@ -272,11 +272,11 @@ class Plausibility:
         self.reset()
         self._last, self._stamp = (position, stamp, 0.0, 0), stamp
 
-    def _doubt(self, position: float, stamp: int) -> Verdict:
+    def _doubt(self, position: float, stamp: int) -> Belief:
         """Note a reading that is out of reach, and see whether it agrees with those before."""
         self._doubted = [*self._doubted[1 - _AGREEING :], (stamp, position)]
         if len(self._doubted) < _AGREEING:
-            return Verdict.IMPLAUSIBLE
+            return Belief.IMPLAUSIBLE
         times, positions = zip(*self._doubted, strict=True)
         spans = [(b - a) * 1e-9 for a, b in pairwise(times)]
         steps = [self._wrapped(b - a) for a, b in pairwise(positions)]
@@ -284,7 +284,7 @@ class Plausibility:
         noise = max(FLOOR, 2.0 * self.finest)
         total = sum(spans)
         if total < 0.0:
-            return Verdict.IMPLAUSIBLE
+            return Belief.IMPLAUSIBLE
         speed = sum(steps) / total if total else 0.0
         slack = noise + self.limits.acceleration * total * total
         uneven = max(abs(s - speed * t) for s, t in zip(steps, spans, strict=True))
@@ -293,7 +293,7 @@ class Plausibility:
             for s, t in zip(steps, spans, strict=True)
         )
         if uneven > slack + abs(speed) * stale or not (within or total):
-            return Verdict.IMPLAUSIBLE
+            return Belief.IMPLAUSIBLE
         first = self._wrapped(positions[0] - self._last[0])
         elapsed = (times[0] - (self._stamp if first else self._last[1])) * 1e-9
         before = self._speed()
@@ -315,7 +315,7 @@ class Plausibility:
         self.finest = finest
         if spans[-1]:
             self._last = position, stamp, steps[-1], times[-1] - times[-2]
-        return Verdict.BELIEVED if continuous else Verdict.JUMP
+        return Belief.BELIEVED if continuous else Belief.JUMP
 
     def _wrapped(self, step: float) -> float:
         return math.remainder(step, self.period) if self.period else step

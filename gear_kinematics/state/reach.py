@@ -12,7 +12,7 @@ STALEST = 0.01
 FLOOR = 0.05
 """rad: noise of any encoder, and what two successive steps may always differ by."""
 REGULAR = 1.0 / 3.0
-"""Of the usual time between readings: by what it may vary in `Limits.even_step`."""
+"""Share of the usual time between readings by which it may vary in `RotorLimits.even_step`."""
 _UNEVEN = 0.25  # of a speed: what it may differ by, as readings are older than their stamps
 
 Reading = tuple[float, int, float, int]
@@ -25,8 +25,8 @@ def _stale(last: Reading, former: Reading) -> float:
     return min(STALEST, 1.25e-9 * max(last[3], former[3]))
 
 
-class Limits(NamedTuple):
-    """Limits of a rotor."""
+class RotorLimits(NamedTuple):
+    """RotorLimits of a rotor."""
 
     speed: float
     """rad/s."""

@@ -14,7 +14,7 @@ from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.disorder import Disorder
 from gear_kinematics.state.effort_field import EffortField
-from gear_kinematics.state.plausibility import BELIEVED, Plausibility, Verdict
+from gear_kinematics.state.plausibility import BELIEVED, Belief, Plausibility
 from gear_kinematics.state.rotor_samples import RotorSamples
 from gear_kinematics.state.rotor_settings import (
     encoders_differ,
@@ -298,7 +298,7 @@ class RotorInput:
             self.turns.set_back(time)
             self.plausibility.set_back(time)
         if (verdict := self.plausibility.judge(position, stamp)) is not BELIEVED:
-            if verdict is Verdict.IMPLAUSIBLE:
+            if verdict is Belief.IMPLAUSIBLE:
                 raise RejectedInputError(IMPLAUSIBLE)
             self.turns.lose()
         if stamp < self.velocity_field.quiet_until:

@@ -20,7 +20,7 @@ _TRAVEL = 3.0  # rad, at least, in a comparison
 _STEPS = 20  # of the encoder, at least, in a comparison
 
 
-class Finding(StrEnum):
+class VelocityMeaning(StrEnum):
     """What a field with velocities has."""
 
     UNDECIDED = ''
@@ -34,7 +34,7 @@ class Finding(StrEnum):
     UNKNOWN = 'an unknown quantity'
 
 
-def contradiction(finding: Finding) -> str:
+def contradiction(finding: VelocityMeaning) -> str:
     """Say that velocities contradict the positions, and what they seem to be."""
     return f'the velocities contradict the positions: they seem to be {finding}'
 
@@ -45,18 +45,18 @@ class VelocityField:
     def __init__(self, output_factor: float) -> None:
         """Take the velocity of the output for one of the rotor, which times a factor gives it."""
         self._factors = {
-            Finding.RPM: 30.0 / math.pi,
-            Finding.TURNS: 0.5 / math.pi,
-            Finding.DEGREES: 180.0 / math.pi,
-            Finding.OUTPUT: output_factor,
-            Finding.OPPOSITE: -1.0,
+            VelocityMeaning.RPM: 30.0 / math.pi,
+            VelocityMeaning.TURNS: 0.5 / math.pi,
+            VelocityMeaning.DEGREES: 180.0 / math.pi,
+            VelocityMeaning.OUTPUT: output_factor,
+            VelocityMeaning.OPPOSITE: -1.0,
         }
-        self.finding = Finding.UNDECIDED
+        self.finding = VelocityMeaning.UNDECIDED
         self.factor = math.nan
         """The velocities in the messages as a multiple of the slope of the positions."""
         self.contradicts = False
         """Whether the velocities contradict the positions."""
-        self._candidate = Finding.UNDECIDED
+        self._candidate = VelocityMeaning.UNDECIDED
         self.restart()
 
     def restart(self) -> None:
@@ -73,7 +73,7 @@ class VelocityField:
         if not self.contradicts:
             return ''
         seem = contradiction(self.finding)
-        unknown = self.finding is Finding.UNKNOWN and math.isfinite(self.factor)
+        unknown = self.finding is VelocityMeaning.UNKNOWN and math.isfinite(self.factor)
         return f'{seem}, {self.factor:.3g} times the slope' if unknown else seem
 
     def believed(self, stamps: Array, values: Array, finest: float) -> Array:
@@ -127,18 +127,18 @@ class VelocityField:
 
     def _decide(self, factor: float) -> None:
         """Change the finding if two comparisons in a row find the same."""
-        found = Finding.UNKNOWN
+        found = VelocityMeaning.UNKNOWN
         if factor == 0.0:
-            found = Finding.ZERO
+            found = VelocityMeaning.ZERO
         elif abs(factor - 1.0) <= _AGREES:
-            found = Finding.RIGHT
+            found = VelocityMeaning.RIGHT
         else:
             for name, known in self._factors.items():
                 if abs(factor - known) <= _ALIKE * abs(known):
                     found = name
         if found is self._candidate:
             self.finding, self.factor = found, factor
-            self.contradicts = found is not Finding.RIGHT
+            self.contradicts = found is not VelocityMeaning.RIGHT
             if not self.contradicts:
                 self.due += _PAUSE
         self._candidate = found

@@ -48,7 +48,7 @@ class NormalEquations:
         kept = self._fold != np.arange(-1, self._fold.max() + 1)[:, None]
         sums = np.tensordot(1.0 * kept, products, axes=1)
         self.products = sums / np.outer(self._scale, self._scale)
-        """Of the columns and the error, each over its size, (fits, size, size)."""
+        """Normal matrices of the columns and the error, each over its size, (fits, size, size)."""
 
     def regular(self, chosen: Sequence[int]) -> Array:
         """Products of the chosen columns that can be solved, (fits, chosen, chosen).

@@ -71,7 +71,7 @@ class TwinParameters:
 
 
 PARAMETERS: Mapping[str, Parameter] = declared_in(TwinParameters)
-"""The same by name."""
+"""The parameters by name."""
 
 
 def default_config() -> Path:

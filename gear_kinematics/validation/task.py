@@ -53,7 +53,7 @@ class Task:
     output_topic: str | None = None
     poses_topic: str | None = None
     namespace: str | None = None
-    """Of the node, to choose among several sets of topics."""
+    """Namespace of the node, to choose among several sets of topics."""
     calibration: Calibration | None = None
     """That of `parameters.calibration`; without it, the corrected output is not judged."""
     debug: bool = False

@@ -15,7 +15,7 @@ from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.diagnostics import ERROR, OK, WARN, Fault, GraphFaults, InputMonitor
 from gear_kinematics.state.plausibility import Jump
 from gear_kinematics.state.rotor_input import RotorInput
-from gear_kinematics.state.velocity_field import Finding
+from gear_kinematics.state.velocity_field import VelocityMeaning
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
 SETTINGS = NodeParameters.load()
@@ -169,7 +169,7 @@ def test_every_fault_is_documented_with_its_level():
     bench.monitor.drivers, bench.monitor.lost, bench.monitor.unsent = 2, 3, 1
     bench.input.zero_stamps = 12
     bench.input.velocity_field.contradicts = True
-    bench.input.velocity_field.finding = Finding.RPM
+    bench.input.velocity_field.finding = VelocityMeaning.RPM
     bench.input.plausibility.jump = Jump(1_700_000_000_500_000_000, 100.0)
     report = bench.report(START + 4.0)
     assert report.message.split('; ') == [

@@ -12,7 +12,7 @@ from gear_kinematics.measurement.recording import Array
 _UNCLEAR = 0.3, 0.7
 """Ranges between samples that may be a motion or a wrap."""
 _MOST_UNCLEAR = 0.05
-"""Of such steps, as a share of the wraps, as in gaps: with more, there is no wrap at all."""
+"""Share of such steps in the wraps, as in gaps, above which there is no wrap at all."""
 _MOST_SPAN = 1.001
 """Ranges within which positions are that wrap, with room for noise and rounding."""
 _EQUAL = 0.02
@@ -36,6 +36,11 @@ def count_wraps(values: Array, turn: float, error: float = 1.0) -> int:
     motion = np.abs(size - np.round(size))[np.maximum(wraps - 1, 0)]  # goes on in the wrap
     same = abs(float(np.median(size[wraps] + motion)) - 1.0) < error
     return len(wraps) if same and np.ptp(values) <= _MOST_SPAN * turn else 0
+
+
+def unwrapped(values: Array) -> Array:
+    """Take the wraps of a turn, if there are any, out of positions (n,), rad."""
+    return np.unwrap(values) if count_wraps(values, TURN) else values
 
 
 def find_range(values: Array, seconds: Array, step: Step) -> tuple[float, int]:
