@@ -12,10 +12,10 @@ EXPLAIN_PIP = if grep -q 'connection broken' $(PIP_LOG); then \
 	elif test "$$(uname -sm)" != 'Linux x86_64'; then \
 	echo "ROS has no wheels for $$(uname -sm): install ROS 2 Jazzy, then colcon build"; \
 	else grep -m 1 '^ERROR' $(PIP_LOG) || tail -n 1 $(PIP_LOG); fi
-# Live tests wait most of the time, so that three workers keep two processors busy.
+# Live tests wait most of the time, so that four workers keep two processors busy.
 # Without a limit, pytest-xdist begins a test that has ended its worker again, up to 8 times, and
 # may wait for good after that.
-PYTEST := -m pytest --numprocesses 3 --dist loadfile --no-loadscope-reorder --max-worker-restart 0 \
+PYTEST := -m pytest --numprocesses 4 --dist loadfile --no-loadscope-reorder --max-worker-restart 0 \
 	-o faulthandler_exit_on_timeout=true
 LOCK := uv pip compile --universal --generate-hashes --python-version 3.11 \
 	--no-emit-index-url --quiet --upgrade

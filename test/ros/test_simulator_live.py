@@ -77,10 +77,9 @@ class Bench(Participant):
         kind = SetBool if values else Trigger
         client = self.node.create_client(kind, f'gear_simulator/{service}')
         self.wait_until(client.service_is_ready, service)
-        future = client.call_async(kind.Request(**values))
-        self.wait_until(future.done, 'an answer')
-        assert future.result().success
-        return future.result().message
+        answer = self.answer_to(lambda: client.call_async(kind.Request(**values)))
+        assert answer.success
+        return answer.message
 
     def up_to_date(self) -> bool:
         """Whether the latest state is of the present time; 0.4 s are those of a busy machine."""

@@ -127,6 +127,24 @@ class Participant:
             self._executor.spin_once(timeout_sec=0.02)
         return result
 
+    def answer_to(self, call):
+        """Call a service until it answers.
+
+        A service discovers the request and the answer of a client one by one: it loses a request,
+        or has nowhere to send its answer, though the client already takes it for ready.
+        """
+        future, until = None, 0.0
+
+        def answered():
+            nonlocal future, until
+            if time.monotonic() > until:
+                future = call()
+                until = time.monotonic() + 5.0
+            return future.done()
+
+        self.wait_until(answered, 'an answer')
+        return future.result()
+
 
 class Listener(Participant):
     """Keeps the node's outputs."""
@@ -278,36 +296,24 @@ class Peer(Listener):
         """Call ~/home."""
         client = self.node.create_client(Trigger, 'gear_state_publisher/home')
         self.wait_until(client.service_is_ready, '~/home')
-        return self._result(client.call_async(Trigger.Request()))
+        return self.answer_to(lambda: client.call_async(Trigger.Request()))
 
     def set(self, **values):
         """Set parameters through the service, one by one; returns the result of the last."""
         self.wait_until(self._parameters.services_are_ready, 'the parameter services')
         parameters = [Parameter(name, value=value) for name, value in values.items()]
-        return self._result(self._parameters.set_parameters(parameters)).results[-1]
+        return self.answer_to(lambda: self._parameters.set_parameters(parameters)).results[-1]
 
     def set_atomically(self, parameters):
         """Set all of some parameters or none of them through the service; returns the result."""
         self.wait_until(self._parameters.services_are_ready, 'the parameter services')
-        return self._result(self._parameters.set_parameters_atomically(parameters)).result
+        return self.answer_to(lambda: self._parameters.set_parameters_atomically(parameters)).result
 
     def get(self, *names) -> list:
         """Get the values of parameters through the service."""
         self.wait_until(self._parameters.services_are_ready, 'the parameter services')
-        future, until = None, 0.0
-
-        def answered():
-            # Again and again: a service that has not discovered this peer yet loses the request.
-            nonlocal future, until
-            if time.monotonic() > until:
-                future = self._parameters.get_parameters(list(names))
-                until = time.monotonic() + 2.0
-            return future.done()
-
-        self.wait_until(answered, 'an answer')
-        return [
-            rclpy.parameter.parameter_value_to_python(value) for value in future.result().values
-        ]
+        values = self.answer_to(lambda: self._parameters.get_parameters(list(names))).values
+        return [rclpy.parameter.parameter_value_to_python(value) for value in values]
 
     def description(self) -> str:
         """Listen to robot_description from now on and take what was latched."""
@@ -317,10 +323,6 @@ class Peer(Listener):
 
     def _keep_report(self, message, about) -> None:
         self._reports.append((about['source_timestamp'], message))
-
-    def _result(self, future):
-        self.wait_until(future.done, 'an answer')
-        return future.result()
 
 
 class Live(NamedTuple):
