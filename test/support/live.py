@@ -307,7 +307,9 @@ class Peer(Listener):
     def set_atomically(self, parameters):
         """Set all of some parameters or none of them through the service; returns the result."""
         self.wait_until(self._parameters.services_are_ready, 'the parameter services')
-        return self.answer_to(lambda: self._parameters.set_parameters_atomically(parameters)).result
+        return self.answer_to(
+            lambda: self._parameters.set_parameters_atomically(parameters)
+        ).result
 
     def get(self, *names) -> list:
         """Get the values of parameters through the service."""
