@@ -33,6 +33,13 @@ sys.modules['mujoco'] = None  # which the page does not install
 from gear_kinematics.__main__ import {0}
 sys.exit({0}())
 """
+STUB = f"""#!{sys.executable} -IS
+import signal
+for number in (signal.SIGINT, signal.SIGTERM):
+    signal.signal(number, signal.SIG_DFL)
+print('runs', flush=True)
+signal.pause()
+"""
 TOLD = {
     'gearkin replay bags/servo_point_to_point --as rotor_command': '3000 messages',
     'gearkin validate monday --config config/simulated_actuator.yaml': 'verdict: passed',
@@ -128,7 +135,8 @@ def test_what_ends_make_ends_both_nodes(tmp_path, send, number):
     (tmp_path / 'bin').mkdir()
     (tmp_path / 'demo.stamp').touch()
     for name in ('gear_simulator', 'gear_state_publisher'):
-        (tmp_path / 'bin' / name).write_text('#!/bin/sh\necho runs; exec sleep 60\n')
+        # As the nodes do, it takes SIGINT, which a shell lets its background jobs ignore.
+        (tmp_path / 'bin' / name).write_text(STUB)
         (tmp_path / 'bin' / name).chmod(0o755)
     command = ['make', '--no-print-directory', 'simulator', f'VENV={tmp_path}']
     with subprocess.Popen(

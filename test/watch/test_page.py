@@ -9,7 +9,6 @@ import threading
 import pytest
 from chromium import chromium
 from live import Listener
-from rclpy.parameter_client import AsyncParameterClient
 from steady_driver import RATIO
 from watching import (
     MOTOR,
@@ -20,6 +19,7 @@ from watching import (
     driving,
     gearkin,
     node,
+    parameters,
 )
 
 from gear_kinematics.watch.drivers import DriverTopic
@@ -147,19 +147,6 @@ def test_node_has_to_compute_only_what_is_shown():
         listener.close()
 
 
-def rotor_zero() -> float:
-    """Ask the node."""
-    listener = Listener(NAMESPACE, 'asking')
-    try:
-        client = AsyncParameterClient(listener.node, NODE)
-        listener.wait_until(client.services_are_ready, 'the parameter services')
-        future = client.get_parameters(['rotor_zero'])
-        listener.wait_until(future.done, 'the parameter')
-        return future.result().values[0].double_value
-    finally:
-        listener.close()
-
-
 def test_home_is_asked_called_and_undone_with_the_keyboard(connected):
     expect, question = connected.expect, connected.locator('#question')
     home, answer = connected.locator('#home'), connected.locator('#answer')
@@ -186,7 +173,7 @@ def test_home_is_asked_called_and_undone_with_the_keyboard(connected):
         )
     )
     shown = float(re.search(r'rotor_zero (\S+) rad', answer.inner_text())[1])
-    assert shown == pytest.approx(rotor_zero(), abs=6e-4) != 0.0
+    assert shown == pytest.approx(*parameters('rotor_zero'), abs=6e-4) != 0.0
     expect(reading(connected, 'zero')).to_have_text(
         f'zero{shown:.3f} radlost at restart: set home_file'
     )
@@ -194,7 +181,7 @@ def test_home_is_asked_called_and_undone_with_the_keyboard(connected):
     connected.keyboard.press('Enter')
     expect(answer).to_have_text('Undone: rotor_zero 0 again.')
     expect(connected.locator('#undo')).not_to_have_text('Undo sets rotor_zero 0 again')
-    assert rotor_zero() == 0.0
+    assert parameters('rotor_zero') == [0.0]
 
 
 def test_another_node_is_chosen_from_those_that_run(connected, folder):
