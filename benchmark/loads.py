@@ -16,7 +16,7 @@ from dataclasses import replace
 from gear_kinematics.kinematics import RotorSample, split_turns
 from gear_kinematics.kinematics.loads import Bodies
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.loads import Loads, PreloadMonitor
+from gear_kinematics.state.loads import LoadEstimator, PreloadMonitor
 from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.wire.topics import BODY_POSES, OUTPUT_STATE
 
@@ -33,7 +33,7 @@ def main() -> None:
     parameters = replace(NodeParameters.load(), preload=3.0, branch_stiffness=(2000.0,))
     messages = state_messages(parameters)
     monitor = PreloadMonitor(parameters)
-    braced, heavy = Loads(parameters), Loads(replace(parameters, loads=_BODIES))
+    braced, heavy = LoadEstimator(parameters), LoadEstimator(replace(parameters, loads=_BODIES))
 
     def margin(sample: RotorSample) -> None:
         monitor.follow(sample, 0)

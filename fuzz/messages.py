@@ -26,8 +26,8 @@ from gear_kinematics.wire.batches import decode_joint_states, decode_pose_arrays
 from gear_kinematics.wire.cdr import (
     SECOND,
     STAMP_OFFSET,
-    Layout,
     MalformedMessageError,
+    MessageLayout,
     joint_state_layout,
     pose_array_layout,
 )
@@ -84,7 +84,7 @@ def decode_pose_array(data: bytes) -> PoseArray:
     return PoseArray(stamp, layout.texts[0], numbers)
 
 
-def _content(data: bytes, layout: Layout) -> tuple[int, list[tuple[float, ...]]]:
+def _content(data: bytes, layout: MessageLayout) -> tuple[int, list[tuple[float, ...]]]:
     seconds, nanoseconds = struct.unpack_from(f'{layout.order}iI', data, STAMP_OFFSET)
     arrays = [
         struct.unpack_from(f'{layout.order}{count}d', data, offset)

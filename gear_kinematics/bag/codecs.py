@@ -67,7 +67,7 @@ def _decompress_lz4(data: bytes, limit: int) -> tuple[bytes, bool]:
     return decompressor.decompress(data, min(limit, 256 * len(data))), decompressor.eof
 
 
-class Limits:
+class ReadLimits:
     """The bytes and descriptions that may still be read from the files of a bag.
 
     Chunks of a recording expand to up to 20 times their size, and a message takes at least a byte
@@ -148,7 +148,7 @@ def codec_of(data: bytes) -> Codec | None:
     return next((codec for codec in CODECS.values() if data.startswith(codec.magic)), None)
 
 
-def decompressed(data: bytes, decompress: Decompressor, limits: Limits, what: str) -> bytes:
+def decompressed(data: bytes, decompress: Decompressor, limits: ReadLimits, what: str) -> bytes:
     """Decompress a chunk or message.
 
     Raises:
@@ -163,7 +163,7 @@ def decompressed(data: bytes, decompress: Decompressor, limits: Limits, what: st
 
 def decompress_file(source: IO[bytes], target: Path, codec: Codec) -> str:
     """Decompress as much as possible; returns the cause of an early end, or an empty text."""
-    limit = left = Limits.expanded_file(os.fstat(source.fileno()).st_size)
+    limit = left = ReadLimits.expanded_file(os.fstat(source.fileno()).st_size)
     with target.open('wb') as output, codec.open(source) as expanded:
         try:
             while piece := expanded.read1(2**18):  # returns partial data, unlike read()

@@ -9,7 +9,7 @@ from operator import itemgetter
 from pathlib import Path
 from zlib import crc32
 
-from gear_kinematics.bag.codecs import CODECS, Limits
+from gear_kinematics.bag.codecs import CODECS, ReadLimits
 from gear_kinematics.bag.storage import Message, Published, Storage, Topic, UnsortedError
 
 MCAP_MAGIC = b'\x89MCAP0\r\n'
@@ -35,7 +35,7 @@ class Mcap(Storage):
     topics without reading everything, so a file without an index is read like any other.
     """
 
-    def __init__(self, path: Path, limits: Limits) -> None:
+    def __init__(self, path: Path, limits: ReadLimits) -> None:
         super().__init__(limits)
         self._stream = path.open('rb')
         self._size = os.fstat(self._stream.fileno()).st_size

@@ -11,7 +11,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import IO, Self
 
-from gear_kinematics.bag.codecs import Limits, codec_of, decompress_file, decompressed
+from gear_kinematics.bag.codecs import ReadLimits, codec_of, decompress_file, decompressed
 from gear_kinematics.bag.errors import BagError, DamagedBagError, bag_errors, cause
 from gear_kinematics.bag.finding import find_contents
 from gear_kinematics.bag.mcap import MCAP_MAGIC, Mcap
@@ -32,13 +32,13 @@ _BATCH, _BATCH_SIZE = 16_384, 2**22
 """Messages, bytes; of a quarter of them, the validation of a recording takes 1.2 times as long."""
 
 
-def _ros1(path: Path, limits: Limits) -> Storage:
+def _ros1(path: Path, limits: ReadLimits) -> Storage:
     from gear_kinematics.bag.ros1 import Ros1  # noqa: PLC0415, needs rosbags
 
     return Ros1(path, limits)
 
 
-_KINDS: Mapping[bytes, Callable[[Path, Limits], Storage]] = {
+_KINDS: Mapping[bytes, Callable[[Path, ReadLimits], Storage]] = {
     MCAP_MAGIC: Mcap,
     b'SQLite format 3\0': Sqlite,
     b'#ROSBAG V2.0': _ros1,
@@ -152,8 +152,8 @@ class Bag:
             qos=topic.qos or listed.qos,
         )
 
-    def _limits(self) -> Limits:
-        return Limits(sum(file.stat().st_size for file in self._files if file.exists()))
+    def _limits(self) -> ReadLimits:
+        return ReadLimits(sum(file.stat().st_size for file in self._files if file.exists()))
 
     def _describe(self) -> None:
         """Collect the descriptions of the topics."""
@@ -198,7 +198,7 @@ def by_topic(messages: Iterable[Message], topics: Iterable[str]) -> dict[str, To
     return columns
 
 
-def _plain(pieces: Iterator[list[Message]], limits: Limits) -> Iterator[list[Message]]:
+def _plain(pieces: Iterator[list[Message]], limits: ReadLimits) -> Iterator[list[Message]]:
     """Decompress messages, if the first one is compressed."""
     first = next(pieces, [])
     pieces = chain([first], pieces)
@@ -229,7 +229,7 @@ def _joined(pieces: Iterable[list[Message]]) -> Iterator[list[Message]]:
 
 
 @contextmanager
-def _opened(file: Path, limits: Limits, read: int = 0) -> Iterator[Storage]:
+def _opened(file: Path, limits: ReadLimits, read: int = 0) -> Iterator[Storage]:
     """Open a file of a bag, after so many messages of others; if compressed, a temporary copy.
 
     Raises:

@@ -10,7 +10,7 @@ import lz4.frame  # type: ignore[import-untyped]
 from rosbags import rosbag1
 from rosbags.typesys import Stores, get_typestore
 
-from gear_kinematics.bag.codecs import CODECS, Decompressor, Limits, decompressed
+from gear_kinematics.bag.codecs import CODECS, Decompressor, ReadLimits, decompressed
 from gear_kinematics.bag.storage import Message, Storage, Topic, in_batches
 from gear_kinematics.wire.topics import JOINT_STATE, POSE_ARRAY
 
@@ -32,7 +32,7 @@ _CONVERTED = {JOINT_STATE, POSE_ARRAY}
 class Ros1(Storage):
     """A ROS 1 bag, of which joint states and poses are converted to CDR."""
 
-    def __init__(self, path: Path, limits: Limits) -> None:
+    def __init__(self, path: Path, limits: ReadLimits) -> None:
         super().__init__(limits)
         self._reader = rosbag1.Reader(path)
         self._reader.open()

@@ -8,7 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from gear_kinematics.bag.codecs import Limits
+from gear_kinematics.bag.codecs import ReadLimits
 from gear_kinematics.bag.storage import Message, Storage, Topic
 
 _STEPS = 1000
@@ -18,7 +18,7 @@ _PIECE, _PIECE_SIZE = 256, 2**20  # messages, bytes
 class Sqlite(Storage):
     """An sqlite3 file."""
 
-    def __init__(self, path: Path, limits: Limits) -> None:
+    def __init__(self, path: Path, limits: ReadLimits) -> None:
         super().__init__(limits)
         _check_size(path)
         # Without a journal nothing changes, so no locks are needed; read-only media have none.

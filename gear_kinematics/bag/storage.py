@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
-from gear_kinematics.bag.codecs import Limits
+from gear_kinematics.bag.codecs import ReadLimits
 from gear_kinematics.bag.errors import BagError
 from gear_kinematics.wire.nearest import listed, nearest
 
@@ -78,7 +78,7 @@ class UnsortedError(ValueError):
 class Storage:
     """A file of a bag."""
 
-    def __init__(self, limits: Limits) -> None:
+    def __init__(self, limits: ReadLimits) -> None:
         """Start with the limits on the files of the bag."""
         self.limits = limits
         self.read = 0

@@ -12,7 +12,7 @@ from gear_kinematics.commands.encoders import add_columns, sources
 from gear_kinematics.commands.output import complain
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.measurement.loads.document import WORK, document
-from gear_kinematics.measurement.loads.recorded import Task
+from gear_kinematics.measurement.loads.recorded import LoadTask
 from gear_kinematics.parameters import default_config
 from gear_kinematics.report.document import Verdict, printable
 
@@ -50,7 +50,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     found = find_bags(options.bags)
     reporter = Reporter(options, len(found.bags), brief=not options.verbose)
     tasks = [
-        Task(
+        LoadTask(
             bag,
             arguments.load_config(options, bag),
             options.rotor_topic,

@@ -17,7 +17,7 @@ from gear_kinematics.commands.pins import Pins
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.preload import Preload, Stiffness, braced
-from gear_kinematics.measurement.loads.recorded import Task, read_loads
+from gear_kinematics.measurement.loads.recorded import LoadTask, read_loads
 from gear_kinematics.report.document import Document, Layout, Section, Table
 from gear_kinematics.shape.angles import arc
 
@@ -148,7 +148,7 @@ def _wanted(options: argparse.Namespace, pair: Mechanism, stiffness: Stiffness) 
         config = arguments.load_config(options, options.recording)
         sign = math.copysign(1.0, config.preload)
         with message_progress(options.recording.name, quiet=options.quiet) as report_progress:
-            loads = read_loads(Task(options.recording, config), report_progress)
+            loads = read_loads(LoadTask(options.recording, config), report_progress)
         needed = -float(np.min(Preload(stiffness, 0.0).margin(-sign * loads.torque)))
         preload = Preload.from_torque(stiffness, options.margin * needed)
     else:

@@ -66,18 +66,18 @@ def _of_ramps(figures: GearFigures) -> str:
 # Limits
 
 
-class Judgement(NamedTuple):
-    """What became of a limit."""
+class LimitCheck(NamedTuple):
+    """Whether a recording is shown to keep to a limit."""
 
     limit: str
-    """Its name."""
+    """Name of the limit."""
     holds: bool
     text: str
 
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Of a gear: the most of angles, rad, and the least stiffness; None where there is none."""
+    """Acceptance limits: greatest angles, rad, and least stiffness; None means no limit."""
 
     hysteresis: float | None = None
     lost_motion: float | None = None
@@ -86,12 +86,12 @@ class Limits:
     stiffness: float | None = None
     """N·m/rad, in the highest range of torque."""
 
-    def judge(self, report: LostMotion) -> list[Judgement]:
+    def judge(self, report: LostMotion) -> list[LimitCheck]:
         """Judge a recording by each limit, at the end of the interval that speaks against it."""
         limits = {name.replace('_', ' '): limit for name, limit in asdict(self).items()}
         held = report.figures is not None and report.figures.held_by_friction
         return [
-            Judgement(LOST_MOTION, holds=False, text=_HELD)
+            LimitCheck(LOST_MOTION, holds=False, text=_HELD)
             if held and figure.name == LOST_MOTION
             else _judged(figure, limit)
             for figure in report.main_figures
@@ -99,10 +99,10 @@ class Limits:
         ]
 
 
-def _judged(figure: Measured, limit: float) -> Judgement:
+def _judged(figure: Measured, limit: float) -> LimitCheck:
     name = figure.name
     if not figure.ends or max(figure.ends) < 0.0:  # which no gear has
-        return Judgement(name, holds=False, text=f'the {name} is not known')
+        return LimitCheck(name, holds=False, text=f'the {name} is not known')
     sign = -1.0 if name == 'stiffness' else 1.0  # the least of it, not the most
     low, high = sorted(sign * end for end in figure.ends)
     holds, fails = high <= sign * limit, low > sign * limit
@@ -114,7 +114,7 @@ def _judged(figure: Measured, limit: float) -> Judgement:
             f'the {name} of {value} cannot be shown to hold the limit of {most}: it was measured '
             'once, so that its uncertainty is not known'
         )
-    return Judgement(name, holds, text)
+    return LimitCheck(name, holds, text)
 
 
 # Remarks

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from gear_kinematics.measurement.answer import Judgement, Limits, answer, remarks
+from gear_kinematics.measurement.answer import LimitCheck, Limits, answer, remarks
 from gear_kinematics.measurement.curves import panels
 from gear_kinematics.measurement.figures import GearFigures
 from gear_kinematics.measurement.loops import Ramps
@@ -18,9 +18,9 @@ from gear_kinematics.report.document import (
     Cell,
     Document,
     Figure,
-    Finding,
     Layout,
     Section,
+    Sentence,
     Table,
     Verdict,
     counted,
@@ -73,7 +73,7 @@ def document(
 
 
 def _section(
-    report: LostMotion, said: str, judged: Sequence[Judgement], remarked: tuple[str, ...]
+    report: LostMotion, said: str, judged: Sequence[LimitCheck], remarked: tuple[str, ...]
 ) -> Section:
     passed = all(judgement.holds for judgement in judged)
     return Section(
@@ -82,10 +82,10 @@ def _section(
         (Verdict.PASS if passed else Verdict.FAIL) if judged else None,
         (
             *(
-                Finding('finding', f'{one.text[0].upper()}{one.text[1:]}.')
+                Sentence('finding', f'{one.text[0].upper()}{one.text[1:]}.')
                 for one in sorted(judged, key=lambda one: one.holds)
             ),
-            Finding('finding', said),
+            Sentence('finding', said),
         ),
         remarked,
         Figure(tuple(panels(report)), columns=_COLUMNS),
@@ -149,7 +149,7 @@ def _table(figures: Iterable[Measured]) -> Table:
 
 
 def _recording(
-    report: LostMotion, said: str, judged: Sequence[Judgement], remarked: tuple[str, ...]
+    report: LostMotion, said: str, judged: Sequence[LimitCheck], remarked: tuple[str, ...]
 ) -> Mapping[str, Any]:
     recording, both = report.recording, report.recording.encoders
     return {

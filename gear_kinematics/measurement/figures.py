@@ -36,7 +36,7 @@ _TORQUES = 200
 
 
 @dataclass(frozen=True, slots=True)
-class Stiffness:
+class MeasuredStiffness:
     """Torsional stiffness between two magnitudes of torque, N·m."""
 
     low: float
@@ -66,7 +66,7 @@ class GearFigures:
     lost_motion: Estimate | None
     """Between the middles of the curve at ± `LOST_MOTION_SHARE` of the rated torque; None if the
     ramps are too small."""
-    stiffness: tuple[Stiffness, ...]
+    stiffness: tuple[MeasuredStiffness, ...]
     """In the ranges that the ramps cover, while the torque increases in magnitude."""
     overall: Estimate | None
     """N·m/rad, the slope of a straight line through each whole side of the loop."""
@@ -213,7 +213,7 @@ def _lost_motion(loops: Sequence[Loop], rated: float, angle_step: float) -> Esti
 # Stiffness
 
 
-def _stiffness(ramps: Ramps, rated: float, angle_step: float) -> tuple[Stiffness, ...]:
+def _stiffness(ramps: Ramps, rated: float, angle_step: float) -> tuple[MeasuredStiffness, ...]:
     reach, still = min(rated, ramps.amplitude), _still(ramps, angle_step)
     corners = (corner for share in STIFFNESS_SHARES if (corner := share * rated) < reach)
     found = []
@@ -228,7 +228,9 @@ def _stiffness(ramps: Ramps, rated: float, angle_step: float) -> tuple[Stiffness
         # Else friction holds the gear throughout.
         if compliances and float(np.mean(compliances)) * (high - low) > still:
             steps = Component(math.sqrt(2.0) * resolution(angle_step) / (high - low))
-            found.append(Stiffness(low, high, Estimate.of_mean(compliances, steps).inverse()))
+            found.append(
+                MeasuredStiffness(low, high, Estimate.of_mean(compliances, steps).inverse())
+            )
     return tuple(found)
 
 

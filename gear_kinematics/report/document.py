@@ -133,7 +133,7 @@ def _with_units(row: tuple[Cell, ...]) -> tuple[Cell, ...]:
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class Sentence:
     """A sentence that explains the verdict."""
 
     kind: Literal['error', 'finding']
@@ -238,7 +238,7 @@ class Section:
     tables: tuple[Table, ...]
     """Tables, of which the first describes the subject of the report."""
     verdict: Verdict | None = None
-    findings: tuple[Finding, ...] = ()
+    findings: tuple[Sentence, ...] = ()
     remarks: tuple[str, ...] = ()
     """Notes on the interpretation of the values."""
     figure: Figure | None = None

@@ -9,11 +9,11 @@ from gear_kinematics.report.document import (
     OUTCOME,
     Document,
     Figure,
-    Finding,
     Layout,
     Origin,
     Panel,
     Section,
+    Sentence,
     Table,
     Verdict,
 )
@@ -148,7 +148,7 @@ def _badge(verdict: Verdict | None) -> str:
     return f'<span class="badge {verdict}">{OUTCOME[verdict]}</span> ' if verdict else ''
 
 
-def _sentence(finding: Finding, figure: str) -> str:
+def _sentence(finding: Sentence, figure: str) -> str:
     """Write a finding; if it refers to a moment in the figure, as a link to it."""
     text = escape(finding.text)
     if finding.time is None or not figure:

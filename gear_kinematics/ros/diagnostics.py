@@ -11,14 +11,14 @@ from rclpy.qos import QoSCompatibility, QoSProfile, ReliabilityPolicy, qos_check
 from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-from gear_kinematics.state.diagnostics import Fault, GraphFaults, Report
+from gear_kinematics.state.diagnostics import Fault, GraphFaults, StatusReport
 
 _POLICIES = 'reliability', 'durability', 'deadline', 'liveliness', 'liveliness_lease_duration'
 """Policies in which a subscription can request more than a publisher offers."""
 _TWO_NODES = 'Stop one of the two nodes, or give each its own namespace.'
 
 
-def diagnostic_array(node: Node, reports: Mapping[str, Report | None]) -> DiagnosticArray:
+def diagnostic_array(node: Node, reports: Mapping[str, StatusReport | None]) -> DiagnosticArray:
     """Return the message for the reports that are not None, given by their subjects."""
     name = node.get_fully_qualified_name()
     message = DiagnosticArray()

@@ -55,7 +55,7 @@ class Fault(str):
         return fault
 
 
-class Report(NamedTuple):
+class StatusReport(NamedTuple):
     """One status: level, message, and values by name."""
 
     level: int
@@ -102,7 +102,7 @@ class DriverMonitor:
         warnings: Sequence[Fault],
         values: dict[str, str],
         notes: Sequence[str] = (),
-    ) -> Report:
+    ) -> StatusReport:
         """Report on faults, or that there are none; notes do not raise the level."""
         level = ERROR if errors else WARN if warnings else OK
         if faults := (*errors, *warnings):
@@ -112,7 +112,7 @@ class DriverMonitor:
             messages.append('losses unknown')
             values['lost messages'] = 'unknown'
         messages += notes
-        return Report(level, '; '.join(messages) or 'ok', values)
+        return StatusReport(level, '; '.join(messages) or 'ok', values)
 
 
 @dataclass(slots=True, kw_only=True)
@@ -139,7 +139,7 @@ class InputMonitor(DriverMonitor):
 
     def report(
         self, rotor_input: RotorInput, now: float, reference: TurnReference | None = None
-    ) -> Report:
+    ) -> StatusReport:
         """Report on an input in the time since the last report, until now."""
         elapsed = now - max(self._reported, self.started)
         count = rotor_input.received - rotor_input.of_others
@@ -223,7 +223,7 @@ class EncoderMonitor(DriverMonitor):
 
     def report(
         self, encoder: OutputEncoder, parameters: NodeParameters, now: float
-    ) -> Report | None:
+    ) -> StatusReport | None:
         """Report on an encoder in the time since the last report, until now.
 
         None until it has sent a message. `parameters` have the limits.

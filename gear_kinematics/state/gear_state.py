@@ -13,7 +13,7 @@ from gear_kinematics.correction.corrector import Correction, Corrector
 from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics import Mechanism, RotorSample
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.loads import Loads
+from gear_kinematics.state.loads import LoadEstimator
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.rotor_samples import RotorSamples
@@ -93,7 +93,7 @@ class GearState:
         self.corrector = (
             Corrector(calibration, parameters.max_rotor_acceleration) if calibration else None
         )
-        self._loads: Loads | None = None
+        self._loads: LoadEstimator | None = None
         self._withholding = parameters.unreferenced_outputs == 'withhold'
 
     @property
@@ -117,7 +117,7 @@ class GearState:
         self._errors = TRANSMISSION_ERROR in topics
         self.messages = state_messages(self.parameters)
         if self._load_topics and not self._loads:
-            self._loads = Loads(self.parameters)
+            self._loads = LoadEstimator(self.parameters)
 
     def rotor(self, data: bytes | JointValues, now: Callable[[], int]) -> RotorAnswer:
         """Process the next message of the rotor; see `RotorInput.accept`."""

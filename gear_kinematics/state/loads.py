@@ -19,7 +19,7 @@ from gear_kinematics.kinematics.loads import AT_REST, BranchLoads, Inertia, Load
 from gear_kinematics.kinematics.motion import BranchPosition, closed_form
 from gear_kinematics.kinematics.preload import Pair
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.diagnostics import OK, WARN, Report
+from gear_kinematics.state.diagnostics import OK, WARN, StatusReport
 from gear_kinematics.state.rotor_samples import RotorSamples
 from gear_kinematics.wire.batches import Array, encode
 from gear_kinematics.wire.cdr import SECOND, JointStateTemplate, Template, WrenchesTemplate
@@ -50,7 +50,7 @@ class SampleLoads(NamedTuple):
         return self.equations.branches(self.positions, self.torques, self.inertias)
 
 
-class Loads:
+class LoadEstimator:
     """Computes and encodes the loads of a mechanism."""
 
     def __init__(self, parameters: NodeParameters) -> None:
@@ -195,7 +195,7 @@ class PreloadMonitor:
 
     def __init__(self, parameters: NodeParameters) -> None:
         """Start for a mechanism with a preload."""
-        self._loads, self._preload = Loads(parameters), abs(parameters.preload)
+        self._loads, self._preload = LoadEstimator(parameters), abs(parameters.preload)
         self._rows: list[tuple[Any, ...]] = []
 
     def follow(self, sample: RotorSample, segment: int) -> None:
@@ -203,14 +203,14 @@ class PreloadMonitor:
         stamp, position, velocity, effort = sample
         self._rows.append((stamp, *position, velocity, effort, 0, 0, segment, True))
 
-    def report(self) -> Report:
+    def report(self) -> StatusReport:
         """Report on the time since the last report."""
         samples = RotorSamples.of(self._rows, np.zeros(0, np.int64))
         self._rows.clear()
         torques = self._loads.follow_batch(samples).torque
         known = np.isfinite(torques)
         if not known.any():
-            return Report(OK, f'unknown: no {self._loads.needed} in rotor_state', {})
+            return StatusReport(OK, f'unknown: no {self._loads.needed} in rotor_state', {})
         margins, stamps = self._loads.sharing.margin(torques[known]), samples.stamp[known]
         least = float(margins.min())
         steps = np.diff(stamps, prepend=stamps[0]).clip(1, SECOND)
@@ -221,6 +221,6 @@ class PreloadMonitor:
             values[f'{name} (% of the preload)'] = f'{100.0 * margin / self._preload:.1f}'
         values['out of mesh (% of the time)'] = share
         if least > 0.0:
-            return Report(OK, 'ok', values)
+            return StatusReport(OK, 'ok', values)
         values['advice'] = 'Raise the preload (gearkin preload) or lower the torque of the output.'
-        return Report(WARN, f'a branch was out of mesh for {share} % of the time', values)
+        return StatusReport(WARN, f'a branch was out of mesh for {share} % of the time', values)

@@ -21,16 +21,16 @@ _SKIPPED = {
 }
 
 
-def findings(report: BagReport) -> list[document.Finding]:
+def findings(report: BagReport) -> list[document.Sentence]:
     """Return all that is wrong with a bag: its damage, its faults by gravity, and the rest.
 
     Wrong numbers come before missing messages, a cause before its effects.
     """
-    damage = [] if report.error is None else [document.Finding('error', printable(report.error))]
+    damage = [] if report.error is None else [document.Sentence('error', printable(report.error))]
     notes = [finding for finding in report.findings if not (finding.fails or finding.cause)]
     wrong = sorted((*report.causes, *faults(report)), key=lambda found: found.missing)
     return damage + [
-        document.Finding(
+        document.Sentence(
             'finding',
             printable(f'{found.topic}: ' if found.topic else '') + described(found, report),
             None if found.stamp is None else report.seconds(found.stamp),

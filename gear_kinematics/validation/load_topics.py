@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gear_kinematics.state.loads import NUMBERS, Loads
+from gear_kinematics.state.loads import NUMBERS, LoadEstimator
 from gear_kinematics.validation.fields import Array, FieldSamples
 from gear_kinematics.validation.matching import Expectation, OutputTopic
 from gear_kinematics.validation.output_topics import finite_or_infinite
@@ -25,7 +25,9 @@ class LoadTopic(OutputTopic):
     Samples have an `acceleration`, too, which is NaN there.
     """
 
-    def __init__(self, topic: str, name: str, loads: Loads, expectation: Expectation) -> None:
+    def __init__(
+        self, topic: str, name: str, loads: LoadEstimator, expectation: Expectation
+    ) -> None:
         """Take the loads of the node, for one of LOAD_TOPICS."""
         self._topic, self._loads, self._template = topic, loads, loads.templates[topic]
         self.layout = self._template.layout

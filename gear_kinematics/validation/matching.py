@@ -25,7 +25,7 @@ from gear_kinematics.validation.fields import (
 from gear_kinematics.validation.recorder import NO_INPUT, Missing, RecordedInputs
 from gear_kinematics.validation.report import Finding, TopicReport
 from gear_kinematics.validation.task import Tolerances
-from gear_kinematics.wire.cdr import Layout
+from gear_kinematics.wire.cdr import MessageLayout
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
 Solver = Callable[..., MotionState]
@@ -190,7 +190,7 @@ class OutputTopic:
     A class for each type of message, or topic, decodes its messages and compares their fields.
     """
 
-    layout: Callable[[bytes], Layout]
+    layout: Callable[[bytes], MessageLayout]
     """Returns the layout of a message, of which the last text is the label."""
 
     def __init__(

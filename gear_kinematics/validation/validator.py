@@ -17,7 +17,7 @@ from gear_kinematics.kinematics import Mechanism, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state.gear_state import GearState
-from gear_kinematics.state.loads import Loads
+from gear_kinematics.state.loads import LoadEstimator
 from gear_kinematics.validation import input_health
 from gear_kinematics.validation.corrected_topics import (
     CORRECTED,
@@ -108,7 +108,7 @@ class Validator:
         groups: list[list[OutputTopic]] = [[*filter(None, (self.output, self.poses))]]
         for topic, name in further.items():
             if topic in LOAD_TOPICS:
-                self._loads = self._loads or Loads(parameters)
+                self._loads = self._loads or LoadEstimator(parameters)
                 groups.append([LoadTopic(topic, name, self._loads, self._expectation)])
             elif self._corrector:
                 groups.append([CORRECTED[topic](name, joint, self._expectation)])

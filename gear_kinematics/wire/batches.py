@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from gear_kinematics.wire.cdr import (
     SECOND,
     STAMP_OFFSET,
-    Layout,
     MalformedMessageError,
+    MessageLayout,
     Template,
     arrays_fit,
     joint_index,
@@ -155,8 +155,8 @@ def encode(template: Template, stamps: Array, numbers: Sequence[Array | float]) 
 
 
 def _tables(
-    messages: Sequence[bytes], find_layout: Callable[[bytes], Layout]
-) -> Iterator[tuple[Array, Layout, Array]]:
+    messages: Sequence[bytes], find_layout: Callable[[bytes], MessageLayout]
+) -> Iterator[tuple[Array, MessageLayout, Array]]:
     """Yield each layout with its rows and their bytes, (rows, size), without malformed ones."""
     sizes = np.fromiter(map(len, messages), np.intp, len(messages))
     for size in np.unique(sizes):
@@ -180,14 +180,14 @@ def _tables(
             rows, table = rows[~alike], table[~alike]
 
 
-def _stamps(table: Array, layout: Layout) -> tuple[Array, Array]:
+def _stamps(table: Array, layout: MessageLayout) -> tuple[Array, Array]:
     """The stamps, ns, and their field `nanosec`."""
     seconds = _columns(table, STAMP_OFFSET, f'{layout.order}i4')[:, 0].astype(np.int64)
     nanoseconds = _columns(table, STAMP_OFFSET + 4, f'{layout.order}u4')[:, 0]
     return seconds * SECOND + nanoseconds, nanoseconds
 
 
-def _doubles(table: Array, layout: Layout, offset: int, count: int) -> Array:
+def _doubles(table: Array, layout: MessageLayout, offset: int, count: int) -> Array:
     return _columns(table, offset, f'{layout.order}f8', count)
 
 

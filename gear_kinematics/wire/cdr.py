@@ -37,7 +37,7 @@ class MalformedMessageError(ValueError):
     """Bytes that are not a message of this type."""
 
 
-class Layout(NamedTuple):
+class MessageLayout(NamedTuple):
     """Positions in a message; messages of one layout differ only in the stamp and the arrays."""
 
     order: str
@@ -52,7 +52,7 @@ class Layout(NamedTuple):
     """Spans (start, end) of the bytes that define it: encapsulation, lengths, strings."""
 
 
-def joint_names(layout: Layout) -> list[bytes]:
+def joint_names(layout: MessageLayout) -> list[bytes]:
     """List the names of the joints of a JointState.
 
     If no joint has a name, as in messages of many micro-ROS drivers, their indices are their
@@ -65,7 +65,7 @@ def joint_names(layout: Layout) -> list[bytes]:
     return [b'%d' % index for index in range(len(names) or positions)]
 
 
-def joint_index(layout: Layout, joint: bytes) -> int | None:
+def joint_index(layout: MessageLayout, joint: bytes) -> int | None:
     """Find the index of a joint of `joint_names`, b'' for the only one; None if it is missing."""
     names = joint_names(layout)
     if joint:
@@ -73,7 +73,7 @@ def joint_index(layout: Layout, joint: bytes) -> int | None:
     return 0 if len(names) == 1 else None
 
 
-def arrays_fit(layout: Layout) -> bool:
+def arrays_fit(layout: MessageLayout) -> bool:
     """Whether each array of a JointState is empty or has a value for each of its joints."""
     joints = len(joint_names(layout))
     return all(count in {0, joints} for _, count in layout.arrays)
@@ -94,7 +94,7 @@ def with_stamp(data: bytes, stamp: int) -> bytes:
     return data[: STAMP_BYTES.start] + encoded + data[STAMP_BYTES.stop :]
 
 
-def joint_state_layout(data: bytes) -> Layout:
+def joint_state_layout(data: bytes) -> MessageLayout:
     """Find the layout of a sensor_msgs/JointState.
 
     Raises:
@@ -103,7 +103,7 @@ def joint_state_layout(data: bytes) -> Layout:
     return _layout(data, (1, 1, 1))  # position, velocity, effort
 
 
-def pose_array_layout(data: bytes) -> Layout:
+def pose_array_layout(data: bytes) -> MessageLayout:
     """Find the layout of a geometry_msgs/PoseArray.
 
     Raises:
@@ -112,7 +112,7 @@ def pose_array_layout(data: bytes) -> Layout:
     return _layout(data, (7,), named=False)
 
 
-def _layout(data: bytes, arrays: Sequence[int], *, named: bool = True) -> Layout:
+def _layout(data: bytes, arrays: Sequence[int], *, named: bool = True) -> MessageLayout:
     """Find the layout of names, if any, and of arrays, given by the numbers of each item."""
     reader = _Reader(data)
     reader.string()  # frame_id
@@ -183,9 +183,9 @@ class _Reader:
         if self._offset > len(self._data):
             raise MalformedMessageError('the message is cut off')
 
-    def layout(self) -> Layout:
+    def layout(self) -> MessageLayout:
         texts, arrays, fixed = tuple(self._texts), tuple(self._arrays), tuple(self._fixed)
-        return Layout(self._order, len(self._data), texts, arrays, fixed)
+        return MessageLayout(self._order, len(self._data), texts, arrays, fixed)
 
 
 class Template:
@@ -230,7 +230,7 @@ class Template:
                 values.insert(place, gap)
         return self._pack(_ENCAPSULATION, *divmod(stamp, SECOND), self._start, *values)
 
-    def layout(self, data: bytes) -> Layout:
+    def layout(self, data: bytes) -> MessageLayout:
         """Find the layout of a message of the same type.
 
         Raises:

@@ -13,8 +13,8 @@ from gear_kinematics.wire.cdr import (
     LATEST,
     SECOND,
     STAMP_OFFSET,
-    Layout,
     MalformedMessageError,
+    MessageLayout,
     arrays_fit,
     joint_index,
     joint_names,
@@ -148,7 +148,7 @@ class JointReader:
 
 
 def _unpacker(
-    layout: Layout, items: Iterable[tuple[int, str]]
+    layout: MessageLayout, items: Iterable[tuple[int, str]]
 ) -> Callable[[bytes], tuple[Any, ...]]:
     """Make a function that takes items, given by offset and format, out of a message."""
     code, end = layout.order, 0

@@ -30,7 +30,7 @@ from mcap.writer import CompressionType, Writer
 from shipped_bags import BAGS, TYPES
 
 from gear_kinematics.bag import Bag, BagError, DamagedBagError, Message
-from gear_kinematics.bag.codecs import Limits
+from gear_kinematics.bag.codecs import ReadLimits
 
 CORPUS = BAGS.parent / 'test' / 'corpus' / 'bags'
 
@@ -169,7 +169,7 @@ def test_a_lost_file_of_a_split_bag_ends_it_there(recorded, tmp_path, loss):
 
 
 def test_a_record_that_is_too_large_is_not_loaded(recorded, tmp_path, monkeypatch):
-    monkeypatch.setattr(Limits, 'max_record', 2000)
+    monkeypatch.setattr(ReadLimits, 'max_record', 2000)
     large = (*recorded[-1][:2], bytes(2000))
     path = mcap_file(tmp_path / 'b.mcap', [*recorded[:-1], large], use_chunking=False)
     messages, error = read_up_to_damage(path)

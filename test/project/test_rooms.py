@@ -185,6 +185,12 @@ def test_no_file_is_longer_than_350_lines():
     assert not {path: count for path, count in lines.items() if count > 350}
 
 
+def test_no_two_classes_share_a_name():
+    trees = [ast.parse(path.read_text('utf-8')) for path in PACKAGE.rglob('*.py')]
+    names = [n.name for tree in trees for n in ast.walk(tree) if isinstance(n, ast.ClassDef)]
+    assert not {name for name in names if names.count(name) > 1}
+
+
 def test_rooms_import_as_the_table_says(imports):
     found = {room: set() for room in ROOMS}
     for path, names in imports.items():

@@ -14,7 +14,7 @@ from gear_kinematics.kinematics.loads import Bodies
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.diagnostics import OK, WARN
-from gear_kinematics.state.loads import Acceleration, Loads, PreloadMonitor
+from gear_kinematics.state.loads import Acceleration, LoadEstimator, PreloadMonitor
 
 DEFAULT = NodeParameters.load()
 BRACED = replace(DEFAULT, preload=3.0, branch_stiffness=(2000.0, 1000.0), shaft_stiffness=5000.0)
@@ -34,7 +34,7 @@ def accelerated(count: int = 60, rate: float = 700.0) -> list[RotorSample]:
 
 def test_output_torque_is_what_the_inertias_leave_of_the_rotors():
     """The torques that `kinematics.loads` needs for the rotor's effort, at the true motion."""
-    followed, last = Loads(HEAVY), None
+    followed, last = LoadEstimator(HEAVY), None
     for last in accelerated():
         found = followed.follow(last, 0)
     rotor = TURN * last.position.turns + last.position.angle
@@ -49,7 +49,7 @@ def test_output_torque_is_what_the_inertias_leave_of_the_rotors():
 
 def test_messages_are_those_of_the_contract():
     parameters = replace(BRACED, frame_prefix='left_')
-    followed = Loads(parameters)
+    followed = LoadEstimator(parameters)
     sample = RotorSample(5, split_turns(0.3), 10.0, 0.5)
     encoded = dict(followed.encode(5, followed.follow(sample, 0)))
     branches = deserialize_message(encoded['branch_loads'], JointState)
@@ -74,7 +74,7 @@ def test_messages_are_those_of_the_contract():
 
 
 def test_without_effort_there_are_no_messages():
-    followed = Loads(BRACED)
+    followed = LoadEstimator(BRACED)
     found = followed.follow(RotorSample(5, split_turns(0.3), 10.0, None), 0)
     assert not list(followed.encode(5, found))
 
@@ -109,7 +109,7 @@ def test_acceleration_is_unknown_across_a_break(stamp, segment):
 )
 def test_preload_that_cannot_be_is_refused(changes, cause):
     with pytest.raises(MechanismError, match=cause):
-        Loads(replace(BRACED, **changes))
+        LoadEstimator(replace(BRACED, **changes))
 
 
 def monitored(torques):

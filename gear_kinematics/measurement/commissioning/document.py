@@ -15,11 +15,11 @@ from gear_kinematics.parameters.node_parameters import default_config
 from gear_kinematics.report.document import (
     Document,
     Figure,
-    Finding,
     Line,
     Panel,
     Pen,
     Section,
+    Sentence,
     Table,
     Verdict,
     printable,
@@ -85,7 +85,7 @@ def document(result: Commissioning, target: str) -> Document:
         printable(', '.join(names)),
         (table,),
         verdict,
-        tuple(Finding('finding', printable(each)) for each in (answer, *result.questions)),
+        tuple(Sentence('finding', printable(each)) for each in (answer, *result.questions)),
         tuple(map(printable, remarks)),
         _figure(result),
     )

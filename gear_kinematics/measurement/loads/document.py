@@ -15,20 +15,20 @@ from gear_kinematics.measurement.envelope import envelope
 from gear_kinematics.measurement.loads.recorded import (
     ANGLE_BINS,
     Force,
+    LoadTask,
     Moment,
     RecordedLoads,
-    Task,
     read_loads,
 )
 from gear_kinematics.report.document import (
     PENS,
     Document,
     Figure,
-    Finding,
     Line,
     Panel,
     Pen,
     Section,
+    Sentence,
     Table,
     Verdict,
     counted,
@@ -43,7 +43,7 @@ _FRAMES = 1000  # of the moving mechanism
 _AROUND = 50  # more frames before and after the begin of each moment
 
 
-class Report(NamedTuple):
+class LoadReport(NamedTuple):
     """The report on one recording, or why there is none."""
 
     section: Section | None
@@ -54,7 +54,7 @@ class Report(NamedTuple):
     """What was taken of a table."""
 
 
-def document(reports: Sequence[Report]) -> Document:
+def document(reports: Sequence[LoadReport]) -> Document:
     """Join the reports on recordings."""
     sections = tuple(report.section for report in reports if report.section)
     verdicts = {section.verdict for section in sections}
@@ -64,7 +64,7 @@ def document(reports: Sequence[Report]) -> Document:
     return Document('gearkin loads', sections, data, verdict)
 
 
-def report(task: Task, progress: ReportProgress | None = None) -> Report:
+def report(task: LoadTask, progress: ReportProgress | None = None) -> LoadReport:
     """Report the loads of a recording, and any error about it."""
     try:
         return _report(task, read_loads(task, progress))
@@ -76,15 +76,15 @@ def report(task: Task, progress: ReportProgress | None = None) -> Report:
         return _lost(task, unexpected(error, debug=task.debug))
 
 
-def _lost(task: Task, cause: str) -> Report:
-    return Report(None, {}, cause if str(task.bag) in cause else f'{task.bag}: {cause}')
+def _lost(task: LoadTask, cause: str) -> LoadReport:
+    return LoadReport(None, {}, cause if str(task.bag) in cause else f'{task.bag}: {cause}')
 
 
 WORK = Work(report, _lost)
 """For `fleet.processes`."""
 
 
-def _report(task: Task, loads: RecordedLoads) -> Report:
+def _report(task: LoadTask, loads: RecordedLoads) -> LoadReport:
     preload, verdict = abs(loads.parameters.preload), None
     moments, forces = [*loads.moments()], [*loads.forces(task.cam_rating)]
     source = 'the default parameters' if task.by_default else 'the given parameters'
@@ -116,7 +116,7 @@ def _report(task: Task, loads: RecordedLoads) -> Report:
         'forces': {force.name: force._asdict() for force in forces},
         'slot_loss': loss,
     }
-    return Report(section, data, loads.damage, loads.taken)
+    return LoadReport(section, data, loads.damage, loads.taken)
 
 
 def _answer(loads: RecordedLoads, moments: Sequence[Moment], source: str) -> str:
@@ -137,17 +137,17 @@ def _answer(loads: RecordedLoads, moments: Sequence[Moment], source: str) -> str
     return f'{held}; the least preload that would have held: {needed}.'
 
 
-def _findings(answer: str, moments: Sequence[Moment]) -> Iterator[Finding]:
-    yield Finding('error' if moments else 'finding', answer)
+def _findings(answer: str, moments: Sequence[Moment]) -> Iterator[Sentence]:
+    yield Sentence('error' if moments else 'finding', answer)
     for moment in moments[:_MOST_MOMENTS]:
         text = (
             f'branch {moment.branch} was out of mesh for {number(moment.duration)} s from '
             f'{moment.start:.3f} s on: {number(-moment.least_margin)} N·m beyond the preload'
         )
-        yield Finding('error', text, moment.start)
+        yield Sentence('error', text, moment.start)
 
 
-def _remarks(task: Task, loads: RecordedLoads, loss: float) -> Iterator[str]:
+def _remarks(task: LoadTask, loads: RecordedLoads, loss: float) -> Iterator[str]:
     if loads.left_out:
         causes = ', '.join(f'{cause} {count}' for cause, count in loads.left_out.items())
         yield f'Messages left out: {causes}.'

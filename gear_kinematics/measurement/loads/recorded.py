@@ -21,7 +21,7 @@ from gear_kinematics.measurement.tables import read_rotor
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.effort_field import questioned
 from gear_kinematics.state.gear_state import GearState
-from gear_kinematics.state.loads import Loads
+from gear_kinematics.state.loads import LoadEstimator
 from gear_kinematics.wire.batches import encode
 from gear_kinematics.wire.cdr import SECOND, JointStateTemplate
 
@@ -36,7 +36,7 @@ _LONGEST_STEP = SECOND  # ns, of a sample without a next one to show how long it
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
+class LoadTask:
     """A recording, and how to report its loads."""
 
     bag: Path
@@ -193,7 +193,7 @@ class RecordedLoads:
         return float(friction * 4.0 / math.pi * teeth * taken / given)
 
 
-def read_loads(task: Task, progress: ReportProgress | None = None) -> RecordedLoads:
+def read_loads(task: LoadTask, progress: ReportProgress | None = None) -> RecordedLoads:
     """Read a recording, up to any damage, and compute its loads.
 
     Raises:
@@ -215,7 +215,7 @@ def read_loads(task: Task, progress: ReportProgress | None = None) -> RecordedLo
                 joint = only_joint(bag, topic, parameters.rotor_joint)
                 parameters = replace(parameters, rotor_joint=joint)
             batches = (by_topic(batch, [topic])[topic] for batch in bag.batches([topic], progress))
-        gear, loads = GearState(parameters), Loads(parameters)
+        gear, loads = GearState(parameters), LoadEstimator(parameters)
         try:
             for messages in batches:
                 samples = gear.samples(messages.data, messages.received)
@@ -251,7 +251,7 @@ def read_loads(task: Task, progress: ReportProgress | None = None) -> RecordedLo
     )
 
 
-def _of_table(task: Task) -> tuple[TopicMessages, str]:
+def _of_table(task: LoadTask) -> tuple[TopicMessages, str]:
     """Return the rows of a table as messages of a driver, and what was taken of it."""
     parameters, sources = task.parameters, task.sources or Sources()
     stamp, angle, torque, taken = read_rotor(task.bag, sources, parameters.gear.gear_ratio)
