@@ -10,6 +10,7 @@ import numpy as np
 from gear_kinematics.kinematics import split_turns
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, repeated
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.fields import Array, FieldSamples
 from gear_kinematics.validation.report import Finding
 
@@ -119,12 +120,12 @@ class CountChanges:
         return True
 
     def notes(self) -> Iterator[Finding]:
-        """Say with what the outputs are compared."""
+        """Yield with what the outputs are compared."""
         yield from self._notes
         if self._last_alone:
-            yield Finding('the last output alone is off', fails=True)
+            yield Finding(FindingCause.LAST_ALONE, fails=True)
         if self._turns_taken:
-            yield Finding('the turns of the single-turn encoder are taken from the outputs')
+            yield Finding(FindingCause.TURNS_TAKEN)
 
     def _explain(
         self, sample: Any, before: int, angle: float, jump: float, *, whole: bool, constant: bool
@@ -141,15 +142,15 @@ class CountChanges:
             self._turns_taken = True
             return int(first_number(segment))
         if before < 0 and constant and (self._homing or absolute):
-            way = 'by the output encoder' if absolute else 'as after homing'
-            text = f'all output angles are moved by {jump:.12g} rad, {way}'
-            self._notes.append(Finding(text))
+            cause = (
+                FindingCause.ALL_MOVED_BY_ENCODER if absolute else FindingCause.ALL_MOVED_BY_HOMING
+            )
+            self._notes.append(Finding(cause, values={'angle': jump}))
             return 0
         at_home = abs(angle + jump - self._parameters.home_angle) <= self._tolerance
         if self._homing and at_home:
             self.homed = True
-            stamp = int(sample['stamp'])
-            self._notes.append(Finding('compared as after homing', stamp=stamp, when='from'))
+            self._notes.append(Finding(FindingCause.HOMED, stamp=int(sample['stamp'])))
         elif absolute and segment != self._referenced and (whole or not repeats):
             self._referenced = segment
         else:

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 from gear_kinematics.kinematics import Gear, Mechanism
 from gear_kinematics.kinematics.gear_ratio import tooth_pairs
 from gear_kinematics.statistics.uncertainty import Component, Estimate, jackknife
+from gear_kinematics.validation.causes import FindingCause
+from gear_kinematics.validation.report import Finding
 
 Array = NDArray[np.float64]
 
-_REMEDY = 'validate with the parameters of the recorded node'
 _MAX_TEETH = 1000
 _MAX_DENOMINATOR, _CHANCE = 100, 0.01
 _MIN_TURNING = 0.1  # rad of the rotor, to determine a ratio
@@ -106,11 +107,11 @@ def _written(found: Estimate) -> str:
     return f'{found.value:.9g} ± {found.uncertainty:.2g}'
 
 
-def diagnose(gear: Gear, fit: AngleFit, tolerance: float) -> str | None:
-    """Describe a systematic deviation of the output angles from a gear's, beyond a tolerance."""
+def diagnose(gear: Gear, fit: AngleFit, tolerance: float) -> Finding | None:
+    """Find a systematic deviation of the output angles from a gear's, beyond a tolerance, rad."""
     offset = fit.offset(tolerance)
     if offset is not None:
-        return f'the recorded output angle is off by a constant {offset:.12g} rad'
+        return Finding(FindingCause.OFFSET, values={'offset': offset}, explains=True)
     slope = fit.slope()
     if slope is None:
         return None
@@ -118,29 +119,21 @@ def diagnose(gear: Gear, fit: AngleFit, tolerance: float) -> str | None:
         return _another_ratio(gear, slope)
     mean = fit.mean_error()
     if mean and abs(mean.value) > tolerance and not _is_near(mean, 0.0):
-        return (
-            f'the recorded output angle is off by {_written(mean)} rad on average, and scatters '
-            f'from {fit.lowest_error:.3g} to {fit.highest_error:.3g} rad'
-        )
+        values = {'mean': _written(mean), 'lowest': fit.lowest_error, 'highest': fit.highest_error}
+        return Finding(FindingCause.MEAN_OFFSET, values=values, explains=True)
     return None
 
 
-def _another_ratio(gear: Gear, slope: Estimate) -> str:
-    ratio = _as_fraction(slope.inverse())
+def _another_ratio(gear: Gear, slope: Estimate) -> Finding:
+    cause, spread = FindingCause.ANOTHER_RATIO, _CLEAR_DEVIATION * slope.expanded
+    values = {'ratio': _as_fraction(slope.inverse()), 'expected': str(gear.gear_ratio)}
     if _is_near(slope, -float(1 / gear.gear_ratio)):
-        return (
-            'the sign is flipped: the recorded output turns the other way (rotor_direction?), '
-            f'with a ratio of {ratio}'
-        )
-    spread = _CLEAR_DEVIATION * slope.expanded
-    if isinstance(gear, Mechanism) and (pair := _tooth_pair(gear, abs(slope.value), spread)):
-        ring, satellite = pair
+        cause = FindingCause.SIGN_FLIPPED
+    elif isinstance(gear, Mechanism) and (pair := _tooth_pair(gear, abs(slope.value), spread)):
+        cause = FindingCause.ANOTHER_TOOTH_PAIR
         flipped = ' with the sign flipped' if slope.value > 0.0 else ''
-        return (
-            f'the recorded ratio is {ratio}, not {gear.gear_ratio}, as that of ring_teeth {ring}, '
-            f'satellite_teeth {satellite}{flipped}: {_REMEDY}'
-        )
-    return f'the recorded ratio is {ratio}, not {gear.gear_ratio}: {_REMEDY}'
+        values |= {'ring': str(pair[0]), 'satellite': str(pair[1]), 'flipped': flipped}
+    return Finding(cause, values=values, explains=True)
 
 
 def _as_fraction(found: Estimate) -> str:

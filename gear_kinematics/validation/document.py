@@ -32,10 +32,10 @@ from gear_kinematics.report.document import (
 from gear_kinematics.report.mechanism import MovingMechanism
 from gear_kinematics.validation.findings import (
     answer,
-    described,
     faults,
     field_name,
     findings,
+    sentence,
     worst_field,
 )
 from gear_kinematics.validation.report import (
@@ -102,9 +102,9 @@ def _bag(report: BagReport) -> dict[str, Any]:
     for left_out in ('series', 'mechanism', 'module', 'elapsed'):
         del content[left_out]
     content['findings'] = [one.text for one in findings(report) if one.kind == 'finding']
-    content['causes'] = [described(finding, report) for finding in report.causes]
+    content['causes'] = [sentence(finding, report) for finding in report.causes]
     for topic, written in zip(report.topics, content['topics'], strict=True):
-        written['faults'] = [described(fault, report) for fault in topic.faults]
+        written['faults'] = [sentence(fault, report) for fault in topic.faults]
         written['passed'] = topic.passed
         for field, values in zip(topic.fields, written['fields'], strict=True):
             values |= {'passed': field.passed, 'budget_used': field.budget_used}
@@ -122,7 +122,7 @@ def _cases(report: BagReport) -> Iterator[Case]:
         yield Case(printable(f'input {report.rotor.topic}'))
     for topic in report.topics:
         for name in (topic.topic, *(field_name(topic, field) for field in topic.fields)):
-            at_fault = (described(one, report) for one in faults(report) if one.topic == name)
+            at_fault = (sentence(one, report) for one in faults(report) if one.topic == name)
             yield Case(printable(name), tuple(at_fault))
 
 

@@ -3,17 +3,17 @@
 
 import math
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from typing import Any
 
-from gear_kinematics.report import document
-from gear_kinematics.report.document import counted, number, printable
+from gear_kinematics.report.document import Sentence, counted, number, printable
+from gear_kinematics.validation.causes import LESS_GRAVE, FindingCause
 from gear_kinematics.validation.recorder import AFTER, BEFORE, LOST, NO_INPUT
 from gear_kinematics.validation.report import BagReport, FieldReport, Finding, TopicReport
 from gear_kinematics.validation.task import QUANTITIES
 
-_FIRST = 'the first at'
-_SKIPPED = {
+_WHY_LEFT_OUT = {
     BEFORE: 'the recording had just begun',
     AFTER: 'the recording ended first',
     NO_INPUT: 'their input was not recorded',
@@ -21,18 +21,18 @@ _SKIPPED = {
 }
 
 
-def findings(report: BagReport) -> list[document.Sentence]:
+def findings(report: BagReport) -> list[Sentence]:
     """Return all that is wrong with a bag: its damage, its faults by gravity, and the rest.
 
     Wrong numbers come before missing messages, a cause before its effects.
     """
-    damage = [] if report.error is None else [document.Sentence('error', printable(report.error))]
-    notes = [finding for finding in report.findings if not (finding.fails or finding.cause)]
-    wrong = sorted((*report.causes, *faults(report)), key=lambda found: found.missing)
+    damage = [] if report.error is None else [Sentence('error', printable(report.error))]
+    notes = [found for found in report.findings if not (found.fails or found.explains)]
+    wrong = sorted((*report.causes, *faults(report)), key=lambda found: found.cause in LESS_GRAVE)
     return damage + [
-        document.Sentence(
+        Sentence(
             'finding',
-            printable(f'{found.topic}: ' if found.topic else '') + described(found, report),
+            printable(f'{found.topic}: ' if found.topic else '') + sentence(found, report),
             None if found.stamp is None else report.seconds(found.stamp),
         )
         for found in (*wrong, *notes, *_left_out(report))
@@ -44,13 +44,24 @@ def explain(report: BagReport) -> str:
     return '\n'.join(found.text for found in findings(report))
 
 
-def described(found: Finding, report: BagReport) -> str:
-    """Write a finding with its moment, without its topic."""
-    if found.stamp is None or not found.when:
-        return printable(found.text)
-    time = report.seconds(found.stamp)
-    moment = f'stamp {found.stamp}' if time is None else f'{time:+.3f} s'
-    return printable(f'{found.text}, {found.when} {moment}')
+def sentence(found: Finding, report: BagReport | None = None) -> str:
+    """Put a finding into words, without its topic; the report has the time of the start."""
+    text, _, of_moment = found.cause.value.rstrip(']').partition('[')
+    moment = ''
+    if found.stamp is not None:
+        text += of_moment
+        time = report.seconds(found.stamp) if report else None
+        moment = f'stamp {found.stamp}' if time is None else f'{time:+.3f} s'
+    messages, items = (counted(found.count, noun) for noun in ('message', 'value'))
+    values = {name: _in_words(value) for name, value in found.values.items()}
+    return printable(text.format(messages=messages, items=items, moment=moment, **values))
+
+
+def _in_words(value: Any) -> Any:
+    """List names, or numbers of messages by their topics; leave other values as they are."""
+    if isinstance(value, Mapping):
+        value = [f'{counted(count, "message")} of {topic}' for topic, count in value.items()]
+    return ', '.join(value) if isinstance(value, list) else value
 
 
 def answer(report: BagReport) -> str:
@@ -85,45 +96,44 @@ def faults(report: BagReport) -> Iterator[Finding]:
     """Yield why topics and their fields fail."""
     for topic in report.topics:
         if not topic.compared:
-            yield Finding('no message could be compared', topic=topic.topic, missing=True)
-        for count, fault, stamp in (
-            (topic.missing, 'missing', topic.first_missing),
-            (topic.extra, 'too many', topic.first_extra),
-            (topic.out_of_order, 'out of order', topic.first_out_of_order),
+            yield Finding(FindingCause.NOTHING_COMPARED, topic.topic)
+        for cause, count, stamp in (
+            (FindingCause.MISSING, topic.missing, topic.first_missing),
+            (FindingCause.EXTRA, topic.extra, topic.first_extra),
+            (FindingCause.OUT_OF_ORDER, topic.out_of_order, topic.first_out_of_order),
         ):
             if count:
-                text = f'{counted(count, "message")} {fault}'
-                yield Finding(text, topic=topic.topic, stamp=stamp, when=_FIRST, missing=True)
+                yield Finding(cause, topic.topic, stamp, count)
         yield from (replace(fault, topic=topic.topic) for fault in topic.faults)
         for field in topic.fields:
             name = field_name(topic, field)
             if field.is_beyond:
-                text = _beyond(field)
-                yield Finding(text, topic=name, stamp=field.worst_stamp, when='at')
-            for count, fault, stamp in (
-                (field.non_finite, 'not finite', field.first_non_finite),
-                (field.absent, 'without a counterpart', field.first_absent),
+                stamp = field.worst_stamp
+                yield Finding(FindingCause.BEYOND_TOLERANCE, name, stamp, values=_beyond(field))
+            for cause, count, stamp in (
+                (FindingCause.NOT_FINITE, field.non_finite, field.first_non_finite),
+                (FindingCause.ABSENT, field.absent, field.first_absent),
             ):
                 if count:
-                    text = f'{counted(count, "value")} {fault}'
-                    yield Finding(text, topic=name, stamp=stamp, when=_FIRST)
+                    yield Finding(cause, name, stamp, count)
 
 
-def _beyond(field: FieldReport) -> str:
-    quantity = f' of the {QUANTITIES[field.unit]}' if field.unit in QUANTITIES else ''
-    angle = field.worst_rotor_angle
-    where = '' if angle is None else f' at rotor angle {number(angle, 9)} rad'
-    return (
-        f'error {number(field.max_error)} {field.unit}{where} exceeds the tolerance{quantity}, '
-        f'{number(field.tolerance)} {field.unit}'
-    )
+def _beyond(field: FieldReport) -> dict[str, str]:
+    angle, known = field.worst_rotor_angle, field.unit in QUANTITIES
+    return {
+        'error': number(field.max_error),
+        'tolerance': number(field.tolerance),
+        'unit': field.unit,
+        'quantity': f' of the {QUANTITIES[field.unit]}' if known else '',
+        'where': '' if angle is None else f' at rotor angle {number(angle, 9)} rad',
+    }
 
 
 def _left_out(report: BagReport) -> Iterator[Finding]:
     """Yield how many messages are not judged, as the recorder lost what they belong to."""
     left_out = sum((Counter(topic.left_out) for topic in report.topics), Counter[str]())
     for cause, count in left_out.items():
-        yield Finding(f'{counted(count, "message")} skipped: {_SKIPPED[cause]}')
+        yield Finding(FindingCause.LEFT_OUT, count=count, values={'why': _WHY_LEFT_OUT[cause]})
 
 
 def field_name(topic: TopicReport, field: FieldReport) -> str:

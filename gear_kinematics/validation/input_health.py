@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.report import Finding, Gap, InputReport
 from gear_kinematics.wire.cdr import SECOND
 
@@ -85,15 +86,9 @@ class InputHealth:
         )
 
 
-def repeated_stamps(rotor: InputReport) -> str:
-    """Say that outputs and inputs cannot be told apart by their stamps; '' if they can."""
-    if rotor.duplicates <= _MANY_REPEATED * rotor.valid:
-        return ''
-    return (
-        f'{rotor.duplicates} of {rotor.valid} stamps of {rotor.topic} repeat the one before, as '
-        'if their nanoseconds were lost: where messages are missing, outputs are compared with '
-        'other inputs than theirs; record the stamps with their nanoseconds'
-    )
+def repeats_stamps(rotor: InputReport) -> bool:
+    """Whether so many stamps repeat that they do not tell outputs and inputs apart."""
+    return rotor.duplicates > _MANY_REPEATED * rotor.valid
 
 
 def _mostly_rejected(rotor: InputReport) -> Iterator[Finding]:
@@ -101,33 +96,27 @@ def _mostly_rejected(rotor: InputReport) -> Iterator[Finding]:
     rejected = sum(rotor.rejected.values())
     if 2 * rejected > rotor.messages - rotor.of_others:
         causes = ', '.join(f'{cause} {count}' for cause, count in rotor.rejected.items())
-        yield Finding(
-            f'{rejected} of {rotor.messages} messages of {rotor.topic} were rejected '
-            f'({causes}): too few are left to pass',
-            fails=True,
-        )
+        values = {'rotor': rotor, 'rejected': rejected, 'causes': causes}
+        yield Finding(FindingCause.MOSTLY_REJECTED, values=values, fails=True)
 
 
 def _counted(rotor: InputReport) -> Iterator[Finding]:
-    """Explain the counts that are not 0."""
-    for count, sentence in _SENTENCES.items():
-        if getattr(rotor, count):
-            yield Finding(sentence.format(rotor=rotor))
+    """Yield the counts and texts of the report that are not 0 or empty."""
+    for name in _NOTED:
+        if getattr(rotor, name):
+            yield Finding(FindingCause[name.upper()], values={'rotor': rotor})
 
 
-_SENTENCES = {
-    'jumps': '{rotor.jumps} gaps of {rotor.topic} could hide a turn of the rotor: after each, '
-    'its turns are taken from the outputs',
-    'jumped': '{rotor.jumped}: what follows has another zero',
-    'velocity_is': '{rotor.velocity_is}',
-    'beyond_limits': '{rotor.beyond_limits}',
-    'overspeed': '{rotor.overspeed} steps of {rotor.topic} are faster than max_rotor_speed, at '
-    'most {rotor.max_speed:.4g} rad/s',
-    'of_others': '{rotor.of_others} messages of {rotor.topic} are of other joints: no fault',
-    'zero_stamps': '{rotor.zero_stamps} messages of {rotor.topic} have no stamp: their outputs '
-    "have the node's time, and are matched in their order",
-}
-"""Sentences by the names of the counts in `InputReport`."""
+_NOTED = (
+    'jumps',
+    'jumped',
+    'velocity_is',
+    'beyond_limits',
+    'overspeed',
+    'of_others',
+    'zero_stamps',
+)
+"""Fields of `InputReport` that are noted; their causes have the same names."""
 
 CHECKS: Sequence[Callable[[InputReport], Iterator[Finding]]] = (_mostly_rejected, _counted)
-"""What judges the contents of the rotor topic, each by findings."""
+"""Checks of the contents of the rotor topic."""

@@ -13,7 +13,7 @@ import numpy as np
 
 from gear_kinematics.kinematics import Gear, Mechanism, MotionState
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.report.document import counted
+from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.count_changes import CountChanges
 from gear_kinematics.validation.fields import (
     Array,
@@ -215,7 +215,8 @@ class OutputTopic:
         self._wrong = 0
         self._unrecorded = 0  # messages whose input was not recorded
         self._malformed = Occurrences()  # when they were received, as they have no stamp
-        self._faults: defaultdict[str, Occurrences] = defaultdict(Occurrences)
+        self._faults: defaultdict[tuple[FindingCause, str], Occurrences] = defaultdict(Occurrences)
+        """By what is wrong, and the name of the joint or the frame."""
         self._late: tuple[list[bytes], list[int]] = [], []
         self.unstamped = False
         """Whether the node gave its own time to some inputs, which had no stamp."""
@@ -295,9 +296,9 @@ class OutputTopic:
 
     def _found_faults(self) -> Iterator[Finding]:
         if count := self._malformed.count:
-            first = f'the first received at {self._malformed.first}'
-            yield Finding(f'malformed: {counted(count, "message")}, {first}')
-        for fault, found in self._faults.items():
+            received = {'received': self._malformed.first}
+            yield Finding(FindingCause.MALFORMED, count=count, values=received)
+        for (cause, name), found in self._faults.items():
             if found.count:
-                text = f'{fault}: {counted(found.count, "message")}'
-                yield Finding(text, stamp=found.first, when='the first at')
+                values = {'name': name, 'expected': self.label}
+                yield Finding(cause, stamp=found.first, count=found.count, values=values)

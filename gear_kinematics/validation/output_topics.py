@@ -9,11 +9,8 @@ from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.validation.diagnosis import (
-    AngleFit,
-    FactorFit,
-    diagnose,
-)
+from gear_kinematics.validation.causes import FindingCause
+from gear_kinematics.validation.diagnosis import AngleFit, FactorFit, diagnose
 from gear_kinematics.validation.fields import FieldSamples
 from gear_kinematics.validation.matching import Expectation, OutputTopic, in_order, rotor_angle
 from gear_kinematics.validation.report import Finding
@@ -50,7 +47,8 @@ class JointStateTopic(OutputTopic):
 
     def _compare(self, rows: Array, samples: Array) -> Sequence[FieldSamples]:
         states = self._states
-        self._faults[f'no joint {self.label!r}'].add(samples['stamp'][~states.joint_found[rows]])
+        without = samples['stamp'][~states.joint_found[rows]]
+        self._faults[FindingCause.NO_JOINT, self.label].add(without)
         recorded = states.values[rows, : len(self.units)]
         least, most = np.stack(self._expected(samples), axis=-1)
         # Any value between them is as expected.
@@ -137,13 +135,13 @@ class OutputState(JointStateTopic):
     def causes(self) -> Iterator[Finding]:
         """Yield what explains errors of the angle, or else of the velocity and the effort."""
         if not self.errors[0].report().passed:
-            if text := diagnose(self._gear, self.fit, self._tolerances.angle):
-                yield Finding(text, cause=True)
+            if found := diagnose(self._gear, self.fit, self._tolerances.angle):
+                yield found
             return
         for field, fit in self._factors.items():
             if (factor := fit.factor()) is not None:
-                text = f'the recorded {field} is {factor:.6g} times the expected one'
-                yield Finding(text, cause=True)
+                values = {'field': field, 'factor': factor}
+                yield Finding(FindingCause.ANOTHER_UNIT, values=values, explains=True)
 
 
 class BodyPoses(OutputTopic):
@@ -166,7 +164,7 @@ class BodyPoses(OutputTopic):
         arrays, stamp = self._arrays, samples['stamp']
         for k, frame_id in enumerate(arrays.frame_ids):
             if frame_id != self.label.encode():
-                fault = f'frame {frame_id.decode(errors="replace")!r}, not {self.label!r}'
+                fault = FindingCause.ANOTHER_FRAME, frame_id.decode(errors='replace')
                 self._faults[fault].add(stamp[arrays.frame[rows] == k])
         poses = arrays.poses[rows] if len(rows) < len(arrays.poses) else arrays.poses
         state = self._solver(self._mechanism, samples['angle'], rotor_turns=samples['turns'])

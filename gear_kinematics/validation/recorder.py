@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.report.document import counted
+from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.fields import Occurrences
 from gear_kinematics.validation.report import Finding
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
@@ -151,28 +151,21 @@ class Completeness:
 
     def causes(self) -> Iterator[Finding]:
         """Yield why messages may be missing."""
-        texts = [
-            f'{name} ends {topic.ended_early:.3f} s before {self._rotor}: the node may have ended'
-            for name, topic in self.topics.items()
-            if topic.ended_early is not None and not self._strict
-        ]
         missing = {name: topic.inputs.count for name, topic in self.topics.items()}
-        lost = [
-            f'{counted(count, "message")} of {name}' for name, count in missing.items() if count
-        ]
+        lost = {name: count for name, count in missing.items() if count}
         complete = [name for name, count in missing.items() if not count]
-        on_all = self._on_all.inputs.count
-        if len(missing) > 1 and lost and not texts and set(missing.values()) == {on_all}:
-            texts.append(
-                f'{counted(on_all, "message")} of {self._rotor} without any output: '
-                'the node did not receive them, or was blocked'
-            )
+        on_all, early = self._on_all.inputs.count, False
+        for name, topic in self.topics.items():
+            if topic.ended_early is not None and not self._strict:
+                early = True
+                values = {'output': name, 'seconds': topic.ended_early, 'topic': self._rotor}
+                yield Finding(FindingCause.ENDED_EARLY, values=values, explains=True)
+        if len(missing) > 1 and lost and not early and set(missing.values()) == {on_all}:
+            values = {'topic': self._rotor}
+            yield Finding(FindingCause.NO_OUTPUT, count=on_all, values=values, explains=True)
         elif lost and complete:
-            texts.append(
-                f'{", ".join(lost)} missing, but none of {", ".join(complete)}: the node had the '
-                'inputs, and the messages were lost on their way to the recording'
-            )
-        yield from (Finding(text, cause=True, missing=True) for text in texts)
+            values = {'lost': lost, 'complete': complete}
+            yield Finding(FindingCause.LOST_ON_THE_WAY, values=values, explains=True)
 
 
 class RecordedInputs:

@@ -5,31 +5,34 @@ Stamps are ns, times s, angles rad, lengths m. What `first_...` is the stamp of 
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.report.document import Verdict
+from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.independent import IndependentReport
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A sentence about a recording, and what it is about."""
+    """Something found in a recording; `findings.sentence` puts it into words."""
 
-    text: str
-    fails: bool = False
-    """Whether the bag fails because of it, whatever the numbers are."""
-    cause: bool = False
-    """Whether it explains why the bag fails."""
+    cause: FindingCause
     topic: str = ''
-    """The topic, or topic and field, that it is about; empty if it names them itself."""
+    """The topic, or topic and field, that it is about; empty if its values name them."""
     stamp: int | None = None
     """The moment that it is about."""
-    when: str = ''
-    """What is written before that moment, such as `the first at`; empty: it is not written."""
-    missing: bool = False
-    """Whether it is about missing or additional messages, which is less grave than wrong ones."""
+    count: int = 0
+    """How many messages or values are concerned."""
+    values: Mapping[str, Any] = field(default_factory=dict)
+    """Further numbers and names, by their names in the sentence."""
+    fails: bool = False
+    """Whether the bag fails because of it, whatever the other numbers are."""
+    explains: bool = False
+    """Whether it explains why the bag fails."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,7 +210,7 @@ class BagReport:
     def causes(self) -> list[Finding]:
         """Those findings that say why the bag fails: what fails it by itself, then the causes."""
         failing = [finding for finding in self.findings if finding.fails]
-        return failing + [finding for finding in self.findings if finding.cause]
+        return failing + [finding for finding in self.findings if finding.explains]
 
     def seconds(self, stamp: int) -> float | None:
         """Return the time of a stamp since the first stamp of the input, s, if there is one."""

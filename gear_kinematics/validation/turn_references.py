@@ -14,6 +14,7 @@ from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics import RotorPosition, RotorSample
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.turn_reference import ErrorBlock
+from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.fields import Array
 from gear_kinematics.validation.report import Finding
 from gear_kinematics.wire.joint_reader import RejectedInputError
@@ -55,9 +56,9 @@ class TurnReferences:
         """Judge the references."""
         if self._fault:
             return self._fault
-        if self._agreed:
-            return Finding('the outputs agree with output_encoder')
-        return Finding('the reference is not judged: no recorded output_encoder tells the turns')
+        return Finding(
+            FindingCause.ENCODER_AGREES if self._agreed else FindingCause.ENCODER_UNKNOWN
+        )
 
     def _judge(self, samples: Sequence[ErrorSample]) -> None:
         for sample in samples:
@@ -68,4 +69,9 @@ class TurnReferences:
             self._agreed |= decision.unambiguous and not fault
             self._disagreeing = self._disagreeing + 1 if fault else 0
             if fault and self._disagreeing == _PATIENCE and not self._fault:
-                self._fault = Finding(fault, fails=True, stamp=sample.stamp, when='at')
+                self._fault = Finding(
+                    FindingCause.ENCODER_DISAGREES,
+                    stamp=sample.stamp,
+                    values={'disagreement': fault},
+                    fails=True,
+                )

@@ -25,7 +25,8 @@ from gear_kinematics.bag.schedule import count_due
 from gear_kinematics.fleet.processes import Work
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.report.document import Verdict, counted
+from gear_kinematics.report.document import Verdict
+from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.independent import Independent
 from gear_kinematics.validation.report import BagReport, Finding, unusable
 from gear_kinematics.validation.task import Task
@@ -135,20 +136,18 @@ def _judged(
     lost = Counter[str]() if play else _recorded_losses(bag)
     report = with_proof(validator.report(damage, lost), proof)
     said = [
-        Finding(f'the recorder says that it lost {counted(lost[name], "message")}', topic=name)
-        for name in names
-        if lost[name]
+        Finding(FindingCause.RECORDER_LOST, name, count=lost[name]) for name in names if lost[name]
     ]
     report = replace(report, findings=(*report.findings, *said))
     if found != joint:
-        taken = Finding(f'{found}, the only joint on {topics.rotor}, is taken')
+        taken = Finding(FindingCause.ONLY_JOINT, values={'joint': found, 'topic': topics.rotor})
         return replace(report, findings=(taken, *report.findings))
     if not play and any(topic.wrong for topic in report.topics):
         for other in joints_on(bag, [topics.rotor])[topics.rotor]:
             of_other = replace(task, parameters=replace(task.parameters, rotor_joint=other))
             if other != found and agrees(of_other, topics, islice(bag.batches(topics), 1)):
-                text = f'the outputs are not those of {found}: they are those of {other}'
-                whose = Finding(f'{text}; repeat with --joint {other}', cause=True)
+                values = {'joint': found, 'other': other}
+                whose = Finding(FindingCause.OTHER_JOINT, values=values, explains=True)
                 return replace(report, findings=(whose, *report.findings))
     return report
 
@@ -180,7 +179,12 @@ def with_proof(report: BagReport, proof: Independent | None) -> BagReport:
     if not proof or report.verdict == Verdict.UNUSABLE:
         return report
     found = proof.report()
-    finding = Finding(found.text, fails=not found.passed, stamp=found.first_wrong)
+    finding = Finding(
+        FindingCause.INDEPENDENT,
+        stamp=found.first_wrong,
+        values={'independent': found},
+        fails=not found.passed,
+    )
     return replace(
         report,
         verdict=report.verdict if found.passed else Verdict.FAIL,

@@ -19,6 +19,7 @@ from gear_kinematics.report.document import Verdict
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.loads import LoadEstimator
 from gear_kinematics.validation import input_health
+from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.corrected_topics import (
     CORRECTED,
     Unbroken,
@@ -164,8 +165,10 @@ class Validator:
         checked = [finding for check in input_health.CHECKS for finding in check(rotor)]
         findings = *self._found(), *checked
         passed = not any(finding.fails for finding in findings) and all(t.passed for t in topics)
-        if repeated := input_health.repeated_stamps(rotor):
-            findings = Finding(repeated, cause=not passed), *findings
+        if input_health.repeats_stamps(rotor):
+            values = {'rotor': rotor}
+            repeated = Finding(FindingCause.REPEATED_STAMPS, values=values, explains=not passed)
+            findings = repeated, *findings
         start = rotor.first_stamp or 0
         series = (output.series.series(output.name, start) for output in self._outputs)
         return BagReport(
@@ -295,8 +298,8 @@ class Validator:
                         self._parameters = replace(self._parameters, frame_prefix=prefix)
                         for each in self._outputs:
                             each.label = prefix + each.label
-                        text = f'frame_prefix {prefix!r} is taken from the outputs'
-                        self._findings.append(Finding(text))
+                        taken = Finding(FindingCause.PREFIX_TAKEN, values={'prefix': prefix})
+                        self._findings.append(taken)
                     return
 
     def _sorted(self, messages: Iterable[Message]) -> _Batch:
@@ -306,7 +309,7 @@ class Validator:
         """Yield with what the outputs are compared, what explains their faults, and the rest."""
         rotor = self._topics.rotor
         if isinstance(self._gear, Mechanism) and not self.poses:
-            yield Finding(f'no poses are recorded: {self.output.name} alone is compared')
+            yield Finding(FindingCause.NO_POSES, values={'output': self.output.name})
         yield from self._findings
         yield from self._changes.notes()
         if self._references:
@@ -314,11 +317,12 @@ class Validator:
         for output in self._outputs:
             yield from output.causes()
         if self._state.input.mostly_rejected and self._state.input.missing_joint:
-            yield Finding(f'{rotor}: {self._state.input.missing_joint}', cause=True)
+            values = {'topic': rotor, 'detail': self._state.input.missing_joint}
+            yield Finding(FindingCause.JOINT_MISSING, values=values, explains=True)
         for group, _ in self._groups:
             yield from group.causes()
         if not self._corrector and self._begun.keys() & set(self._corrected):
-            yield Finding(f'the corrected output is not judged: {self._why_unjudged}')
+            yield Finding(FindingCause.CORRECTION_UNJUDGED, values={'why': self._why_unjudged})
 
 
 def agrees(task: Task, topics: Topics, batches: Iterable[Sequence[Message]]) -> bool:

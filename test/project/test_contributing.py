@@ -4,19 +4,20 @@
 import json
 import re
 import sys
+from enum import Enum
 from pathlib import Path
 from types import ModuleType
 
 import pytest
 
 from gear_kinematics.commands import cli
-from gear_kinematics.validation import document, input_health
+from gear_kinematics.validation import causes, document, input_health
 
 ROOT = Path(__file__).resolve().parents[2]
 BAG = ROOT / 'bags' / 'driver_faults'
-CHECK, FIELD, COMMAND = re.findall(
-    r'```python\n(.*?)```', (ROOT / 'CONTRIBUTING.md').read_text('utf-8'), re.DOTALL
-)
+TEXT = (ROOT / 'CONTRIBUTING.md').read_text('utf-8')
+CHECK, FIELD, COMMAND = re.findall(r'```python\n(.*?)```', TEXT, re.DOTALL)
+[(NAME, SENTENCE)] = re.findall(r"`([A-Z_]+) = '(.*)'`", TEXT)
 
 
 def module(source: str) -> ModuleType:
@@ -27,7 +28,13 @@ def module(source: str) -> ModuleType:
 
 @pytest.mark.parametrize('name', ['driver_faults', 'constant_speed_3000rpm'])
 def test_a_check_fails_a_bag_and_says_why(name, monkeypatch, capsys):
-    added = (*input_health.CHECKS, module(CHECK).slow_driver)
+    more = Enum(
+        'FindingCause',
+        {**{cause.name: cause.value for cause in causes.FindingCause}, NAME: SENTENCE},
+    )
+    with monkeypatch.context() as patched:
+        patched.setattr(causes, 'FindingCause', more)
+        added = (*input_health.CHECKS, module(CHECK).slow_driver)
     monkeypatch.setattr(input_health, 'CHECKS', added)
     slow = name == 'driver_faults'
     assert cli.main(['validate', str(BAG.parent / name), '--json', '-']) == slow

@@ -19,6 +19,7 @@ from gear_kinematics.report.document import Figure, Line, Panel, Pen, Section, T
 from gear_kinematics.report.html import to_html
 from gear_kinematics.shape.outlines import bodies
 from gear_kinematics.validation.document import document
+from gear_kinematics.validation.findings import sentence
 from gear_kinematics.validation.report import Series
 
 pytestmark = pytest.mark.slow
@@ -195,7 +196,7 @@ def test_first_screen_shows_what_failed_and_findings_lead_to_their_moment(opened
         assert box['y'] >= 0, part
         assert box['y'] + box['height'] <= WIDE['height'], part
     expect(tab.locator('h1 .badge')).to_have_text('failed')
-    expect(tab.locator('.first')).to_have_text(samples.FAILING.causes[0].text)
+    expect(tab.locator('.first')).to_have_text(sentence(samples.FAILING.causes[0]))
     # At the gravest finding, which is from the start on.
     expect(tab.locator('.motion output')).to_have_text('0.0000 s')
     tab.locator('summary').first.click()

@@ -21,6 +21,7 @@ from gear_kinematics.report.interactive import interactive
 from gear_kinematics.report.json import to_json
 from gear_kinematics.report.junit import to_junit
 from gear_kinematics.validation.document import document
+from gear_kinematics.validation.findings import sentence
 from gear_kinematics.validation.report import Series
 
 
@@ -141,7 +142,7 @@ def test_page_begins_with_cause_and_figure_and_ends_with_folded_tables():
         ('dl', 'inline'),
         ('details', None),
     ]
-    assert section.find_class('first')[0].text == samples.FAILING.causes[0].text
+    assert section.find_class('first')[0].text == sentence(samples.FAILING.causes[0])
     findings, tables = section.findall('details')
     assert findings.find('summary').text == '10 more findings'
     assert len(findings.findall('.//li')) == 10

@@ -11,6 +11,7 @@ from lxml import etree
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.report.junit import to_junit
 from gear_kinematics.validation.document import document
+from gear_kinematics.validation.findings import sentence
 
 
 @pytest.fixture(scope='module')
@@ -61,7 +62,7 @@ def test_failing_parts_fail_with_a_message():
     (suite,) = parse(replace(samples.FAILING, elapsed=1.25))
     first = 'the first at stamp 1700000001123456789'
     assert outcomes(suite) == [
-        ('bag', f'failure: {samples.FAILING.causes[0].text}'),
+        ('bag', f'failure: {sentence(samples.FAILING.causes[0])}'),
         ('input /rotor_state',),
         ('/output_state', f'failure: 11 messages missing, {first}'),
         (
@@ -103,9 +104,13 @@ def test_unusable_bag_is_an_error_and_keeps_what_was_readable():
 
 def test_failing_bag_is_red_even_if_no_part_of_it_fails():
     (suite,) = parse(
-        replace(samples.PASSING, verdict=Verdict.FAIL, findings=(samples.Finding('another gear'),))
+        replace(
+            samples.PASSING,
+            verdict=Verdict.FAIL,
+            findings=(samples.Finding(samples.FindingCause.LAST_ALONE),),
+        )
     )
-    assert outcomes(suite)[0] == ('bag', 'failure: another gear')
+    assert outcomes(suite)[0] == ('bag', 'failure: the last output alone is off')
     (suite,) = parse(samples.EMPTY)
     assert outcomes(suite) == [('bag', 'failure: the bag failed')]
     assert suite.get('failures') == '1'

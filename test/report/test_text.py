@@ -11,8 +11,9 @@ from rich.console import Console
 
 from gear_kinematics.report.document import Verdict, number
 from gear_kinematics.report.text import lines, render
+from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.document import document
-from gear_kinematics.validation.findings import answer, faults, field_name, findings
+from gear_kinematics.validation.findings import answer, faults, field_name, findings, sentence
 
 ESCAPES = re.compile(r'\x1b\[[0-9;]*m')
 
@@ -40,7 +41,7 @@ def visible(*reports, width=100):
 
 def test_pipe_has_one_row_per_line_in_the_order_of_the_report():
     lines = piped(samples.FAILING).splitlines()
-    first = f'{samples.FAILING.bag}: verdict: failed: The recorded angles have the ratio of the '
+    first = f'{samples.FAILING.bag}: verdict: failed: the recorded ratio is -29, not -19: '
     assert lines[0].startswith(first)
     name = f'{samples.FAILING.bag}: '
     tables = [line.removeprefix(name) for line in lines if f'{name}/rotor_state' in line]
@@ -55,8 +56,8 @@ def test_every_fault_is_a_sentence_that_names_and_locates_it():
     """By gravity: wrong numbers and names before missing messages, and a cause before both."""
     cause, note = samples.FAILING.findings
     assert [finding.text for finding in findings(samples.FAILING)] == [
-        cause.text,
-        f'/output_state: joint name "shaft" in 3 messages, the first at stamp {samples.START}',
+        sentence(cause),
+        f"/output_state: no joint 'shaft': 3 messages, the first at stamp {samples.START}",
         (
             '/output_state position: error 0.002 rad at rotor angle 785.398163 rad exceeds the '
             'tolerance of the angle, 1e-9 rad, at stamp 1700000002623456789'
@@ -68,12 +69,12 @@ def test_every_fault_is_a_sentence_that_names_and_locates_it():
         '/output_state: 1 message out of order',
         '/body_poses: no message could be compared',
         '/body_poses: 4008 messages missing',
-        note.text,
+        sentence(note),
     ]
     # A cause of missing messages is less grave than a wrong number, too.
-    lost = samples.Finding('lost on their way', cause=True, missing=True)
+    lost = samples.Finding(FindingCause.NO_OUTPUT, count=1, values={'topic': '/a'}, explains=True)
     order = [f.text for f in findings(replace(samples.FAILING, findings=(lost,)))]
-    assert order.index(lost.text) == 4
+    assert order.index(sentence(lost)) == 4
 
 
 def test_a_brief_report_is_verdict_findings_and_one_line_of_numbers():
@@ -84,7 +85,7 @@ def test_a_brief_report_is_verdict_findings_and_one_line_of_numbers():
     assert found == [
         'summary: 3 bags: 1 passed, 1 failed, 1 unusable',
         (
-            f'{failing.bag}: verdict: failed: {cause.removesuffix(".")}; 4008 inputs, 12 of 3997 '
+            f'{failing.bag}: verdict: failed: {cause}; 4008 inputs, 12 of 3997 '
             'outputs wrong, largest error 0.002 rad (tolerance 1e-9 rad), 5 values not finite'
         ),
         *(f'{failing.bag}: finding: {text}' for text in others),

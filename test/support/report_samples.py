@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.report.document import Verdict
+from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.independent import IndependentReport
 from gear_kinematics.validation.report import (
     BagReport,
@@ -122,8 +123,7 @@ FAILING = replace(
             first_missing=START + 1_000_000_000,
             first_extra=START + 1_000_000_001,
             faults=(
-                Finding(f'joint name "shaft" in 3 messages, the first at stamp {START}',
-                        stamp=START),
+                Finding(FindingCause.NO_JOINT, stamp=START, count=3, values={'name': 'shaft'}),
             ),
             fields=(
                 replace(POSITION, max_error=2e-3, rms_error=7.1e-4),
@@ -134,12 +134,9 @@ FAILING = replace(
         replace(POSES, compared=0, missing=4008, messages=0, fields=()),
     ),
     findings=(
-        Finding(
-            'The recorded angles have the ratio of the tooth pair 60/58, not of the configured '
-            '80/76.',
-            cause=True,
-        ),
-        Finding('The turns of the encoder were not known between 1.8 s and the end.'),
+        Finding(FindingCause.ANOTHER_RATIO, values={'ratio': '-29', 'expected': '-19'},
+                explains=True),
+        Finding(FindingCause.TURNS_TAKEN),
     ),
     series=series(2e-3),
 )  # fmt: skip
@@ -158,6 +155,14 @@ DAMAGED = replace(
     messages=2310,
 )
 
+HOSTILE_FINDING = Finding(
+    FindingCause.VELOCITY_IS,
+    values={'rotor': InputReport('', '', velocity_is=HOSTILE)},
+    explains=True,
+)
+CONTROL_FINDING = replace(
+    HOSTILE_FINDING, values={'rotor': InputReport('', '', velocity_is=CONTROL)}, explains=False
+)
 HOSTILE_NAMES = replace(
     FAILING,
     bag=HOSTILE,
@@ -166,10 +171,10 @@ HOSTILE_NAMES = replace(
     error=HOSTILE,
     rotor=replace(ROTOR, topic=HOSTILE, joint=HOSTILE, rejected={HOSTILE: 1}),
     topics=(
-        replace(OUTPUT, topic=HOSTILE, faults=(Finding(HOSTILE),),
+        replace(OUTPUT, topic=HOSTILE, faults=(replace(HOSTILE_FINDING, explains=False),),
                 fields=(replace(POSITION, name=HOSTILE, unit=HOSTILE, max_error=1.0),)),
     ),
-    findings=(Finding(HOSTILE, cause=True),),
+    findings=(HOSTILE_FINDING,),
     series=(Series(HOSTILE, [0.0, 1.0], [0.0, 1.0], {HOSTILE: [0.0, 1.0]}),),
 )  # fmt: skip
 
@@ -179,8 +184,8 @@ UNPRINTABLE = replace(
     config=CONTROL,
     error=CONTROL,
     rotor=replace(ROTOR, topic=CONTROL, joint=CONTROL, rejected={CONTROL: 1}),
-    topics=(replace(OUTPUT, topic=CONTROL, faults=(Finding(CONTROL),)),),
-    findings=(Finding(CONTROL),),
+    topics=(replace(OUTPUT, topic=CONTROL, faults=(CONTROL_FINDING,)),),
+    findings=(CONTROL_FINDING,),
 )
 
 EMPTY = BagReport('', Verdict.FAIL)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from gear_kinematics.bag import Message, in_batches
 from gear_kinematics.kinematics import solve
+from gear_kinematics.validation.findings import sentence
 from gear_kinematics.validation.report import BagReport, FieldReport, TopicReport
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validator import Validator
@@ -28,7 +29,7 @@ def validate(
 
 
 def texts(report: BagReport) -> list[str]:
-    return [finding.text for finding in report.findings]
+    return [sentence(finding) for finding in report.findings]
 
 
 def topic_of(report: BagReport, topic: str) -> TopicReport:

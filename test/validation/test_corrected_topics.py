@@ -182,6 +182,4 @@ def test_single_turn_encoder_is_judged_where_its_turns_do_not_matter():
     report = validate(corrected(bag, config, MADE), config, MADE)
     assert report.verdict == Verdict.PASS
     assert len(report.topics) == 2
-    assert any(
-        'when a single-turn encoder was referenced' in found.text for found in report.findings
-    )
+    assert any('when a single-turn encoder was referenced' in text for text in texts(report))

@@ -11,6 +11,7 @@ from validating import topic_of
 
 from gear_kinematics.kinematics.loads import Bodies
 from gear_kinematics.report.document import Verdict
+from gear_kinematics.validation.causes import FindingCause
 
 NAMES = {'branch_loads': '/branch_loads', 'joint_loads': '/joint_loads'}
 HEAVY = Bodies(0.05, 2e-5, 0.02, 3e-6, 4e-5, 0.4)
@@ -69,7 +70,7 @@ def test_wrench_out_of_the_plane_is_no_message_of_the_topic(config):
     report = of_changed_number('/joint_loads', -32, config)  # the force along z
     assert report.verdict == Verdict.FAIL
     (fault,) = topic_of(report, '/joint_loads').faults
-    assert fault.text.startswith('malformed: 1 message')
+    assert (fault.cause, fault.count) == (FindingCause.MALFORMED, 1)
 
 
 def of_changed_number(topic, place, config):

@@ -20,8 +20,10 @@ from validating import validate
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
+from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.findings import findings
 from gear_kinematics.validation.recorder import BEFORE, NO_INPUT
+from gear_kinematics.validation.report import Finding
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validate_bag import validate_bag
 
@@ -277,7 +279,7 @@ def test_turns_before_the_recording_are_taken_from_the_outputs(single_turn):
     assert abs(output_turns(next(m for m in later if m.topic == OUTPUT))) > 1.0
     report = validate(later, config)
     assert report.verdict == Verdict.PASS
-    assert any('are taken from the outputs' in finding.text for finding in report.findings)
+    assert FindingCause.TURNS_TAKEN in [found.cause for found in report.findings]
     assert all(field.max_error < 1e-12 for topic in report.topics for field in topic.fields)
 
 
@@ -460,5 +462,5 @@ def test_what_the_recorder_says_that_it_lost_is_said_and_skipped(
     assert report.passed is (skipped == missing)
     assert sum(topic.missing for topic in report.topics) == missing - skipped
     assert sum(sum(topic.left_out.values()) for topic in report.topics) == skipped
-    said = [(finding.topic, finding.text) for finding in report.findings if 'says' in finding.text]
-    assert said == [(OUTPUT, 'the recorder says that it lost 6 messages')]
+    said = [found for found in report.findings if found.cause == FindingCause.RECORDER_LOST]
+    assert said == [Finding(FindingCause.RECORDER_LOST, OUTPUT, count=6)]

@@ -20,6 +20,7 @@ from validating import texts, validate
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.ros.live import live_messages
+from gear_kinematics.validation.findings import sentence
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validate_bag import validate_bag
 from gear_kinematics.validation.validator import Validator
@@ -93,7 +94,9 @@ def test_the_range_of_the_output_decides_which_turn_is_right(config):
     report = judge(recorded(limited, start=start), limited)
     assert (report.verdict, texts(report)) == (Verdict.PASS, [AGREES])
     report = judge(recorded(config, start=start), limited)
-    assert [f.text for f in report.findings if f.fails] == [DISAGREES('250.00', '-110.00')]
+    assert [f.values['disagreement'] for f in report.findings if f.fails] == [
+        DISAGREES('250.00', '-110.00')
+    ]
 
 
 @BOTH
@@ -156,7 +159,8 @@ wrong_turn, wrong_zero = partial(recorded, error=STEP), partial(recorded, error=
 def test_what_the_recorded_encoder_contradicts_fails(config, make, begin, faults):
     report = judge(part(make(config), begin), config)
     assert report.verdict == Verdict.FAIL
-    assert [finding.text for finding in report.findings if finding.fails] == faults
+    failing = [found for found in report.findings if found.fails]
+    assert [f.values.get('disagreement') or sentence(f) for f in failing] == faults
 
 
 @pytest.mark.parametrize('seed', range(8))

@@ -1,0 +1,115 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Everything that a validation can find, each with the sentence about it.
+
+A sentence is formatted with the values of a `Finding`; `{messages}` and `{items}` are its count
+with a noun, and `{moment}` is its time. What is in brackets is written only if the time is known.
+"""
+
+from enum import Enum
+
+_FIRST = '[, the first at {moment}]'
+_REMEDY = 'validate with the parameters of the recorded node'
+
+
+class FindingCause(Enum):
+    """What was found in a recording."""
+
+    # The messages of an output topic, and their fields
+    NOTHING_COMPARED = 'no message could be compared'
+    MISSING = '{messages} missing' + _FIRST
+    EXTRA = '{messages} too many' + _FIRST
+    OUT_OF_ORDER = '{messages} out of order' + _FIRST
+    MALFORMED = 'malformed: {messages}, the first received at {received}'
+    NO_JOINT = 'no joint {name!r}: {messages}' + _FIRST
+    ANOTHER_FRAME = 'frame {name!r}, not {expected!r}: {messages}' + _FIRST
+    BEYOND_TOLERANCE = (
+        'error {error} {unit}{where} exceeds the tolerance{quantity}, {tolerance} {unit}'
+        '[, at {moment}]'
+    )
+    NOT_FINITE = '{items} not finite' + _FIRST
+    ABSENT = '{items} without a counterpart' + _FIRST
+    # What explains their errors
+    OFFSET = 'the recorded output angle is off by a constant {offset:.12g} rad'
+    MEAN_OFFSET = (
+        'the recorded output angle is off by {mean} rad on average, and scatters from '
+        '{lowest:.3g} to {highest:.3g} rad'
+    )
+    SIGN_FLIPPED = (
+        'the sign is flipped: the recorded output turns the other way (rotor_direction?), with a '
+        'ratio of {ratio}'
+    )
+    ANOTHER_RATIO = 'the recorded ratio is {ratio}, not {expected}: ' + _REMEDY
+    ANOTHER_TOOTH_PAIR = (
+        'the recorded ratio is {ratio}, not {expected}, as that of ring_teeth {ring}, '
+        'satellite_teeth {satellite}{flipped}: ' + _REMEDY
+    )
+    ANOTHER_UNIT = 'the recorded {field} is {factor:.6g} times the expected one'
+    OTHER_JOINT = (
+        'the outputs are not those of {joint}: they are those of {other}; repeat with '
+        '--joint {other}'
+    )
+    # The rotor's count, from where the outputs take it
+    ALL_MOVED_BY_ENCODER = 'all output angles are moved by {angle:.12g} rad, by the output encoder'
+    ALL_MOVED_BY_HOMING = 'all output angles are moved by {angle:.12g} rad, as after homing'
+    HOMED = 'compared as after homing[, from {moment}]'
+    LAST_ALONE = 'the last output alone is off'
+    TURNS_TAKEN = 'the turns of the single-turn encoder are taken from the outputs'
+    ENCODER_AGREES = 'the outputs agree with output_encoder'
+    ENCODER_DISAGREES = '{disagreement}[, at {moment}]'
+    ENCODER_UNKNOWN = 'the reference is not judged: no recorded output_encoder tells the turns'
+    # The rotor's topic
+    JUMPS = (
+        '{rotor.jumps} gaps of {rotor.topic} could hide a turn of the rotor: after each, its '
+        'turns are taken from the outputs'
+    )
+    JUMPED = '{rotor.jumped}: what follows has another zero'
+    VELOCITY_IS = '{rotor.velocity_is}'
+    BEYOND_LIMITS = '{rotor.beyond_limits}'
+    OVERSPEED = (
+        '{rotor.overspeed} steps of {rotor.topic} are faster than max_rotor_speed, at most '
+        '{rotor.max_speed:.4g} rad/s'
+    )
+    OF_OTHERS = '{rotor.of_others} messages of {rotor.topic} are of other joints: no fault'
+    ZERO_STAMPS = (
+        '{rotor.zero_stamps} messages of {rotor.topic} have no stamp: their outputs have the '
+        "node's time, and are matched in their order"
+    )
+    REPEATED_STAMPS = (
+        '{rotor.duplicates} of {rotor.valid} stamps of {rotor.topic} repeat the one before, as if '
+        'their nanoseconds were lost: where messages are missing, outputs are compared with other '
+        'inputs than theirs; record the stamps with their nanoseconds'
+    )
+    MOSTLY_REJECTED = (
+        '{rejected} of {rotor.messages} messages of {rotor.topic} were rejected ({causes}): too '
+        'few are left to pass'
+    )
+    JOINT_MISSING = '{topic}: {detail}'
+    ONLY_JOINT = '{joint}, the only joint on {topic}, is taken'
+    # The recorder
+    RECORDER_LOST = 'the recorder says that it lost {messages}'
+    ENDED_EARLY = '{output} ends {seconds:.3f} s before {topic}: the node may have ended'
+    NO_OUTPUT = (
+        '{messages} of {topic} without any output: the node did not receive them, or was blocked'
+    )
+    LOST_ON_THE_WAY = (
+        '{lost} missing, but none of {complete}: the node had the inputs, and the messages were '
+        'lost on their way to the recording'
+    )
+    LEFT_OUT = '{messages} skipped: {why}'
+    # What is compared
+    PREFIX_TAKEN = 'frame_prefix {prefix!r} is taken from the outputs'
+    NO_POSES = 'no poses are recorded: {output} alone is compared'
+    CORRECTION_UNJUDGED = 'the corrected output is not judged: {why}'
+    INDEPENDENT = '{independent.text}'
+
+
+LESS_GRAVE = {
+    FindingCause.NOTHING_COMPARED,
+    FindingCause.MISSING,
+    FindingCause.EXTRA,
+    FindingCause.OUT_OF_ORDER,
+    FindingCause.ENDED_EARLY,
+    FindingCause.NO_OUTPUT,
+    FindingCause.LOST_ON_THE_WAY,
+}
+"""Those about missing or additional messages, which are less grave than wrong ones."""
