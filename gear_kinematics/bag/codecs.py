@@ -14,7 +14,7 @@ from typing import IO, Any, NamedTuple, Self
 from gear_kinematics.bag.errors import cause
 
 Decompressor = Callable[[bytes, int], tuple[bytes, bool]]
-"""From a frame and a limit to at most that many bytes, and whether they are all of it."""
+"""Takes a frame and a limit; returns at most that many bytes, and whether they are all."""
 
 
 @cache
@@ -30,7 +30,7 @@ def _zstd() -> Any:
 
 
 class _Zstandard:
-    """What is needed of Python's module, by zstandard, which Debian and Ubuntu have packaged."""
+    """The needed part of Python's zstd, made of zstandard, which Debian and Ubuntu package."""
 
     def __init__(self) -> None:
         import zstandard  # noqa: PLC0415
@@ -81,7 +81,7 @@ class ReadLimits:
     chunk_expansion, file_expansion = 20, 100
     """Greatest expansion of a chunk or message, and of a file."""
     spare_size, spare_total = 2**25, 2**30
-    """What small bags may have in addition: bytes of a chunk or file, bytes of all."""
+    """Allowance in addition, bytes: of a chunk or file, and of the whole bag."""
     _description = 256  # bytes that a description counts for in addition to its texts
 
     def __init__(self, size: int) -> None:
@@ -152,7 +152,7 @@ def decompressed(data: bytes, decompress: Decompressor, limits: ReadLimits, what
     """Decompress a chunk or message.
 
     Raises:
-        ValueError: if it is cut off, or expands too far; `what` it is begins the text.
+        ValueError: if it is cut off, or expands too far; the text begins with `what`.
     """
     content, whole = decompress(data, limits.expanded_chunk(len(data)))
     limits.count(len(content))

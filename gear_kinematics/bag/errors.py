@@ -12,7 +12,7 @@ _REMEDIES = {
 }
 """How to install libraries that only some recordings need."""
 _MEANINGS = {'interrupted': 'there are more rows than a file of this size can hold'}
-"""What else texts of sqlite mean: it is interrupted only then."""
+"""Meanings of error texts of sqlite, which is interrupted for this reason alone."""
 
 
 class BagError(ValueError):

@@ -23,12 +23,11 @@ _TABLES = {'.csv', '.tsv'}
 
 
 class Found(NamedTuple):
-    """What patterns name."""
+    """The bags that patterns name."""
 
     bags: list[Path]
     faults: dict[Path, str]
-    """Causes, in one line that names it, by the pattern without a match or the unreadable
-    folder."""
+    """Errors, each in one line, by the pattern without a match or the unreadable folder."""
 
 
 def find_bags(patterns: Iterable[str]) -> Found:
@@ -90,7 +89,7 @@ def _bags_below(path: Path, faults: dict[Path, str]) -> Iterator[Path]:
 
 
 def _in_order(files: list[Path]) -> list[Path]:
-    """Return the files of a split recording in their order; empty if they are several ones."""
+    """Return the files of a split recording in their order; empty if there are several."""
     found = [_STORAGE_NAME.match(file.name) for file in files]
     names = [match and (match['prefix'], match['name'], match['kind']) for match in found]
     numbers = [match and int(match['counter'] or match['number'] or -1) for match in found]

@@ -89,20 +89,20 @@ class Mcap(Storage):
 
     def _nearly_sorted(self) -> Iterator[list[Message]]:
         """Yield the messages from front to back; a piece is held back to sort them."""
-        held: list[Message] = []
+        pending: list[Message] = []
         try:
             for piece in filter(None, self._unsorted()):
                 piece.sort(key=_RECEIVED)
-                if held:
-                    if piece[0][1] < held[-1][1]:
-                        merged = sorted(held + piece, key=_RECEIVED)
-                        held, piece = merged[: len(held)], merged[len(held) :]  # noqa: PLW2901
-                    yield held
-                held = piece
+                if pending:
+                    if piece[0][1] < pending[-1][1]:
+                        merged = sorted(pending + piece, key=_RECEIVED)
+                        pending, piece = merged[: len(pending)], merged[len(pending) :]  # noqa: PLW2901
+                    yield pending
+                pending = piece
         except Exception:
-            yield held
+            yield pending
             raise
-        yield held
+        yield pending
 
     def _overlapping_chunks(self) -> list[tuple[int, int, int, int]]:
         """Return the time of the first message, position, length and size of each whole chunk.
@@ -126,7 +126,7 @@ class Mcap(Storage):
         return chunks if overlap else []
 
     def _merged(self, chunks: list[tuple[int, int, int, int]]) -> Iterator[list[Message]]:
-        """Merge chunks by time; of the same time, the message that is first in the file."""
+        """Merge chunks by time; messages of the same time stay in the order of the file."""
         opened, sizes = dict[int, list[Message]](), dict[int, int]()
         chunks.sort()
         whole = max(offset + _RECORD.size + length for _, offset, length, _ in chunks)

@@ -112,7 +112,7 @@ class Bag:
     ) -> Iterator[list[Message]]:
         """Read raw messages as `messages` does, many at a time, which is faster.
 
-        The total that `progress` is told after each batch counts all topics of the bag. With
+        The total that `progress` gets after each batch counts all topics of the bag. With
         `any_encoding`, messages that are not CDR are read, too; with `publish_times`, those of an
         mcap are `Published`.
         """
@@ -230,7 +230,7 @@ def _joined(pieces: Iterable[list[Message]]) -> Iterator[list[Message]]:
 
 @contextmanager
 def _opened(file: Path, limits: ReadLimits, read: int = 0) -> Iterator[Storage]:
-    """Open a file of a bag, after so many messages of others; if compressed, a temporary copy.
+    """Open a file of a bag after `read` messages of others; if compressed, a temporary copy.
 
     Raises:
         BagError: for any exception about the file, also from the body of the with statement.

@@ -38,7 +38,7 @@ class Topics(NamedTuple):
     poses: str = f'/{BODY_POSES}'
 
     @classmethod
-    def beside(cls, rotor: str) -> Self:
+    def in_namespace_of(cls, rotor: str) -> Self:
         """The topics of the node in the namespace of the rotor's topic."""
         namespace, _, _ = rotor.rpartition('/')
         return cls(rotor, f'{namespace}/{OUTPUT_STATE}', f'{namespace}/{BODY_POSES}')
@@ -86,11 +86,11 @@ def find_topics(
         found['rotor'] = _find_topic(bag, left, ROTOR_STATE, joint, namespace)
         del left[found['rotor']]
     chosen = found['rotor'] if namespace is None else f'{namespace}/{ROTOR_STATE}'
-    beside = Topics.beside(chosen)._asdict()
+    expected = Topics.in_namespace_of(chosen)._asdict()
     for part in parts:
         if part not in found:
-            same_node = left.get(beside[part]) == TOPICS[_PARTS[part]].type
-            found[part] = beside[part] if same_node else _find_topic(bag, left, _PARTS[part])
+            same_node = left.get(expected[part]) == TOPICS[_PARTS[part]].type
+            found[part] = expected[part] if same_node else _find_topic(bag, left, _PARTS[part])
             del left[found[part]]
     if outputs:
         found.setdefault('poses', '')
@@ -105,19 +105,19 @@ def find_rotor_topic(bag: Bag, given: str | None = None, joint: str = '') -> str
 def outputs_of(bag: Bag, rotor: str) -> Topics:
     """Return the topics of the outputs for a rotor's topic: those that a bag has, by their name.
 
-    Where it has none, or those of several nodes, they are in the namespace of the rotor's topic.
+    If it has none, or those of several nodes, the names are in the namespace of the rotor's topic.
     """
     kind = TOPICS[OUTPUT_STATE].type
-    beside = Topics.beside(rotor)
+    near = Topics.in_namespace_of(rotor)
     recorded = [
         topic
         for topic in _of_type(bag.topics, kind)
         if base_name(topic) == OUTPUT_STATE
         and f'{topic.removesuffix(OUTPUT_STATE)}{ROTOR_STATE}' not in bag.topics
     ]
-    if beside.output in bag.topics or len(recorded) != 1:
-        return beside
-    return Topics.beside(recorded[0])._replace(rotor=rotor)
+    if near.output in bag.topics or len(recorded) != 1:
+        return near
+    return Topics.in_namespace_of(recorded[0])._replace(rotor=rotor)
 
 
 def only_joint(bag: Bag, topic: str, joint: str) -> str:
@@ -160,7 +160,7 @@ def find_encoder_topic(bag: Bag, rotor: str, given: str | None = None) -> str:
     if given:
         bag.type_of(given, wanted)
         return given
-    if found := find_beside(bag, [OUTPUT_ENCODER], rotor):
+    if found := find_in_namespace(bag, [OUTPUT_ENCODER], rotor):
         return found[OUTPUT_ENCODER]
     named = [topic for topic in _of_type(bag.topics, wanted) if base_name(topic) == OUTPUT_ENCODER]
     return _only(bag.path, named, OUTPUT_ENCODER) if named else ''
@@ -173,17 +173,17 @@ def missing_encoder(bag: Bag) -> str:
     return f'no {OUTPUT_ENCODER}; name its topic with --encoder-topic{hint}'
 
 
-def beside(names: Iterable[str], output: str = Topics().output) -> dict[str, str]:
+def in_namespace(names: Iterable[str], output: str = Topics().output) -> dict[str, str]:
     """Return the names of the node's topics in the namespace of the topic of output_state."""
     namespace, _, _ = output.rpartition('/')
     return {name: f'{namespace}/{name}' for name in names}
 
 
-def find_beside(bag: Bag, names: Iterable[str], output: str) -> dict[str, str]:
-    """Return those of `beside` that a bag has."""
+def find_in_namespace(bag: Bag, names: Iterable[str], output: str) -> dict[str, str]:
+    """Return those of `in_namespace` that a bag has."""
     return {
         name: topic
-        for name, topic in beside(names, output).items()
+        for name, topic in in_namespace(names, output).items()
         if bag.topics.get(topic) == TOPICS[name].type
     }
 

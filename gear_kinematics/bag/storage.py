@@ -21,7 +21,7 @@ class Published(bytes):
 
     @classmethod
     def at(cls, time: int, data: bytes) -> Self:
-        """Make it of other bytes."""
+        """Attach a time of publication, ns, to bytes."""
         published = cls(data)
         published.time = time
         return published

@@ -34,7 +34,7 @@ _PARTS: Mapping[str, str] = {
 
 
 class TopicSummary(NamedTuple):
-    """One topic."""
+    """The contents of one topic."""
 
     name: str
     type: str
@@ -42,9 +42,9 @@ class TopicSummary(NamedTuple):
     """`rotor`, `output`, `poses` or `encoder`, or empty."""
     messages: int
     joints: tuple[str, ...]
-    """Of the first message, if they are joint states."""
+    """Joints of the first message, if the topic has joint states."""
     rate: float | None
-    """Hz, from the median period; None of a few messages."""
+    """Hz, from the median period; None for too few messages."""
     mean_rate: float | None
     """Hz, from the first to the last message; differs from `rate` where they come in bursts."""
     gaps: int
@@ -56,7 +56,7 @@ class TopicSummary(NamedTuple):
 
 
 class Summary(NamedTuple):
-    """A recording."""
+    """The contents of a recording."""
 
     duration: float
     """s, from the first to the last message."""
@@ -74,7 +74,7 @@ def summarise(
     joint: str = '',
     progress: ReportProgress | None = None,
 ) -> Summary:
-    """Read a whole recording; if the rotor's topic is not given, its joint tells it from others.
+    """Read a whole recording; without a given topic, the joint identifies that of the rotor.
 
     Raises:
         BagError: if no message can be read, or the given topic is missing.

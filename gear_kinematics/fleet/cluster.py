@@ -35,10 +35,8 @@ def on_cluster(
     logging.getLogger('distributed.client').setLevel(logging.ERROR)
     try:
         parts = urlsplit(scheduler)
-        if (
-            parts.scheme not in {'tcp', 'tls'} or not parts.port
-        ):  # of which Client makes tracebacks
-            raise ValueError
+        if parts.scheme not in {'tcp', 'tls'} or not parts.port:
+            raise ValueError  # Client would print tracebacks
         client = Client(scheduler)
     except (OSError, ValueError) as error:
         cause = f'no Dask scheduler answers at {scheduler}: it needs the form tcp://HOST:PORT'
@@ -59,7 +57,7 @@ def on_cluster(
                 yield task, future.result()
             except KilledWorker:
                 yield task, work.lost(task, 'its worker died repeatedly')
-            except Exception as error:  # noqa: BLE001, what workers lack is told by their errors
+            except Exception as error:  # noqa: BLE001, the error says what a worker lacks
                 cause = ' '.join(str(error).split())
                 yield task, work.lost(task, f'not read on the cluster: {cause}')
 

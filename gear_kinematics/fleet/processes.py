@@ -23,13 +23,13 @@ Report = TypeVar('Report')
 
 @dataclass(frozen=True, slots=True)
 class Work(Generic[Task, Report]):
-    """What is done with each of many recordings."""
+    """The work on each of many recordings."""
 
     run: Callable[..., Report]
-    """A function of a module, of a task and a `ReportProgress` or nothing. Its report contains any
-    error about the recording."""
+    """A module-level function of a task and, optionally, a `ReportProgress`. Its report contains
+    any error about the recording."""
     lost: Callable[[Task, str], Report]
-    """The report on a recording whose process died again and again, from the cause."""
+    """Makes the report on a recording whose process died repeatedly, from the cause."""
 
 
 class _Worker(NamedTuple):

@@ -20,7 +20,7 @@ and for the rotor, with φ2'' = i φ5'', O3 × F_cam = m3 e² φ2'' - x N3 - e F
 
 At rest or without mass: N3 = N5 = 0, C3 = -C5 = T, F_t = T/rs and i τ2 = Σ T. Forces and torques
 are those that the named body exerts; the other of the pair takes the opposite ones. The torque of
-the output shaft's own inertia is no part of T: the shaft gives on Σ T less J5 φ5''.
+the output shaft's own inertia is no part of T: the shaft passes on Σ T minus J5 φ5''.
 
 How the branches share the torque of the output is statically indeterminate: `TorqueSharing`.
 """
@@ -183,8 +183,8 @@ class LoadEquations:
         self, shares: Iterable[Any], output_acceleration: Any, torque: Any = 0.0
     ) -> Any:
         """Compute τ2, N·m, from O3 × F_cam of each branch's masses, rotor inertia and Σ T."""
-        own = self._bodies.rotor_inertia * self._ratio * output_acceleration
-        return sum(shares, own) + torque / self._ratio
+        inertial = self._bodies.rotor_inertia * self._ratio * output_acceleration
+        return sum(shares, inertial) + torque / self._ratio
 
 
 @np.errstate(invalid='ignore')  # values that are not finite give NaN

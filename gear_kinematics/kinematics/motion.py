@@ -145,8 +145,8 @@ class ClosedForm:
     def __init__(self, mechanism: Mechanism) -> None:
         if not isinstance(mechanism, Mechanism):
             raise TypeError(
-                f'solve needs a Mechanism, not a {type(mechanism).__name__}; of a GearRatio, call '
-                'output_angle(*split_turns(rotor_angle), numpy)'
+                f'solve needs a Mechanism, not a {type(mechanism).__name__}; for a GearRatio, '
+                'call output_angle(*split_turns(rotor_angle), numpy)'
             )
         self._eccentricity = mechanism.eccentricity
         self._cams = tuple(branch.cam_direction for branch in mechanism.branches)

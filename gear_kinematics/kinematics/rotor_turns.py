@@ -1,7 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The rotor's position as whole turns and an angle within the turn, which never loses precision.
 
-A float64 angle of 10^10 turns has a spacing of 7.6e-6 rad. An integer turn count beside an angle
+A float64 angle of 10^10 turns has a spacing of 7.6e-6 rad. An integer turn count with an angle
 within [-π, π] keeps full precision however long the motor runs, and suffices for the kinematics:
 the positions of the bodies are periodic in the turns of the rotor.
 """
@@ -28,8 +28,8 @@ _MANY_TURNS = 2**25 * TURN  # rad; products of fewer with _TURN_HIGH or _TURN_LO
 _TURN_HIGH = math.floor(TURN * 2.0**24) / 2.0**24
 _TURN_LOW = TURN - _TURN_HIGH
 _EXACT_TURN = Fraction(TURN) + Fraction(TURN_TAIL)  # 2π to 32 digits
-_WHOLE = 1e-6  # of a range, by which it may differ from whole turns that are meant
-_NOISE = 0.05  # rad, of any encoder
+_WHOLE = 1e-6  # relative difference of a period from the whole turns that are meant
+_NOISE = 0.05  # rad, greatest noise of any encoder
 _BELOW_HALF = math.nextafter(math.pi, 0.0)  # rad; any smaller angle is 0 turns, however rounded
 
 
@@ -137,7 +137,7 @@ def whole_turns(turns: 'ArrayLike') -> NDArray[np.float64]:
 def repeated(count: int, period: float) -> RotorPosition:
     """Multiply a period, rad, by a count, exactly but for one rounding of the angle.
 
-    A period that is a whole number of turns but for its digits stands for these turns.
+    A period that differs from whole turns only by its last digits stands for these turns.
     """
     turns = round(period / TURN)
     if abs(period - turns * TURN) <= _WHOLE * period:
@@ -180,7 +180,7 @@ class RotorTurns:
         self.longest_silence = longest_silence
         self._lost = False
         self.unknown_gaps = 0
-        """In which the rotor could have turned half a period or more unseen."""
+        """Number of gaps in which the rotor could have turned half a period or more unseen."""
         self.reset()
 
     def reset(self) -> None:
@@ -188,8 +188,8 @@ class RotorTurns:
         self.position: RotorPosition | None = None
         self.forget_turns()
         self.periods = 0
-        """Periods that are added to the readings."""
-        self._offset = 0, 0, 0.0  # periods, and what they come to: turns and angle, rad
+        """Number of periods that are added to the readings."""
+        self._offset = 0, 0, 0.0  # periods, and their sum as turns and angle, rad
         self._reading = 0.0
         self._stamp = 0
         self._velocity: float | None = None
@@ -197,15 +197,15 @@ class RotorTurns:
     def forget_turns(self) -> None:
         """Make the turns as unknown as at the start; counting goes on."""
         self.referenced = not (self.period or self.longest_silence or self._lost)
-        self.unseen_travel = math.inf  # rad, at most between the known and the counted turns
+        self.unseen_travel = math.inf  # rad, greatest error of the count
 
     def lose(self) -> None:
-        """Take the turns as unknown until a reference, as the encoder has jumped."""
+        """Treat the turns as unknown until the next reference, because the encoder has jumped."""
         self._lost = True
         self.forget_turns()
 
     def set_back(self, time: int) -> None:
-        """Note that the clock of the stamps was set back by so much, ns, since the last sample."""
+        """Note that the clock of the stamps was set back by a time, ns, since the last sample."""
         self._stamp -= time
 
     def update(self, position: float, stamp: int, velocity: float | None = None) -> None:
@@ -289,7 +289,7 @@ class RotorTurns:
         return zero
 
     def refer(self) -> None:
-        """Take the turns counted as known from now on."""
+        """Treat the counted turns as known from now on."""
         self.referenced, self.unseen_travel, self._lost = True, 0.0, False
 
     def zero_for(self, rotor_angle: float, direction: int) -> float:

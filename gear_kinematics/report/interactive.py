@@ -27,7 +27,7 @@ def interactive(panels: Sequence[Panel], mechanism: MovingMechanism | None) -> d
         mechanism: mechanism that moves with the plot, if any.
 
     Returns:
-        `data` and `layout` of plotly; `time`, the x of all lines without one of their own;
+        `data` and `layout` of plotly; `time`, the x of all lines that have no `x`;
         `turned`, the angles of rotor and output in degrees, if there is a mechanism; `forces` of
         its branches, if they are drawn.
     """

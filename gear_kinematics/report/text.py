@@ -76,8 +76,8 @@ def lines(document: Document, *, brief: bool = False) -> Iterator[str]:
         if brief and section.verdict is None:
             yield from (f'{name}{text}' for text in findings)
         elif brief and section.verdict == Verdict.PASS:
-            said = filter(None, [OUTCOME[section.verdict], section.answer, *findings])
-            yield f'{name}verdict: {"; ".join(said)}'
+            parts = filter(None, [OUTCOME[section.verdict], section.answer, *findings])
+            yield f'{name}verdict: {"; ".join(parts)}'
         else:
             yield from section_lines(section, brief=brief)
 

@@ -28,7 +28,7 @@ from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.bag import Bag, DamagedBagError, Message, ReportProgress
-from gear_kinematics.bag.roles import Topics, beside
+from gear_kinematics.bag.roles import Topics, in_namespace
 from gear_kinematics.bag.schedule import due_messages, throttled
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import NodeParameters
@@ -337,7 +337,7 @@ def outputs_of(parameters: NodeParameters) -> Collection[str]:
     if isinstance(parameters.gear, Mechanism):
         outputs.append(_TOPICS.poses)
     if parameters.calibration:
-        outputs += beside(CORRECTED_TOPICS).values()
+        outputs += in_namespace(CORRECTED_TOPICS).values()
     return outputs
 
 

@@ -90,7 +90,7 @@ def triangles(solid: Solid) -> Triangles:
 
     The surface is therefore closed, however the faces were divided.
     """
-    # What is divided is what is written, or rounding could turn a triangle over.
+    # Divide the points as they are written: rounding them later could turn a triangle over.
     points = np.concatenate(solid.outlines).astype(np.float32)
     face = _divided(points, solid.outlines)
     edges = np.concatenate([face[:, [0, 1]], face[:, [1, 2]], face[:, [2, 0]]])

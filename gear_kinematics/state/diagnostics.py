@@ -34,12 +34,11 @@ _DISAGREES = 'Check whether an encoder has slipped; then call ~/home, or restart
 _OUTSIDE = 'Check output_range, gear_ratio and the zeros of both encoders.'
 _NOT_COMPARED = 'Check that both drivers run and send often, and that their clocks agree.'
 _SLIPPED = 'Check the couplings and the zeros of both encoders; then call ~/home.'
-_FAR = 0.1  # rad, which no gear errs by
+_BEYOND_ANY_GEAR = 0.1  # rad
 _TOO_LARGE = 'Check the gear and its encoders, or raise transmission_error_limit.'
 
-
 _SOON = 0.1
-"""s after a report in which another one says nothing new of rates and comparisons."""
+"""Time, s, after a report, before which rates and comparisons are not determined anew."""
 
 
 class Fault(str):
@@ -87,7 +86,7 @@ class DriverMonitor:
     _rejected: Counter[str] = field(default_factory=Counter)
 
     def _new_faults(self, rejected: Counter[str]) -> list[Fault]:
-        """The messages that were rejected and lost since the last report."""
+        """Return the faults of messages that were rejected or lost since the last report."""
         newly_rejected, newly_lost = rejected - self._rejected, self.lost - self._lost
         self._rejected, self._lost = Counter(rejected), self.lost
         faults = [_rejections(newly_rejected)] if newly_rejected else []
@@ -249,7 +248,7 @@ class EncoderMonitor(DriverMonitor):
             error.peak_to_peak is not None
             and error.peak_to_peak > parameters.transmission_error_limit
         ):
-            far = max(error.peak_to_peak, abs(error.mean or 0.0)) > _FAR
+            far = max(error.peak_to_peak, abs(error.mean or 0.0)) > _BEYOND_ANY_GEAR
             advice = _NOT_REFERENCED if far else _TOO_LARGE
             warnings.append(Fault(f'peak to peak {error.peak_to_peak:.3g} rad', advice))
         if slip := encoder.slip_watch.slip:
@@ -288,7 +287,7 @@ def _outside(rotor_input: RotorInput) -> str:
 
 
 def _not_referenced(reference: TurnReference | None) -> Fault:
-    """Why nothing has told the turns."""
+    """Explain why the turns are not known."""
     if not reference:
         return Fault('not referenced', _NOT_REFERENCED)
     if not (decision := reference.decision):
@@ -315,7 +314,7 @@ def _by_cause(what: str, counts: Counter[str]) -> dict[str, str]:
 
 
 def _reversals(found: Reversals | None) -> dict[str, str]:
-    """Lost motion and delay with their uncertainties, or what cannot be told apart."""
+    """Describe lost motion and delay with their uncertainties, as far as they are known."""
     return {
         'lost motion (rad)': _estimate(found.lost_motion if found else None),
         'delay of output_encoder (s)': _estimate(found.delay if found else None),

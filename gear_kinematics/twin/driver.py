@@ -69,7 +69,7 @@ class Driver:
         """
         self.model = model
         self.torque = 0.0
-        """Of the motor, N·m, or of what locks the rotor."""
+        """Torque of the motor, or of the lock of the rotor, N·m."""
         self._max_torque = max_torque
         self._counts = rotor_counts, output_counts
         self._dropout, self._random = dropout, random.Random(_SEED)  # noqa: S311, no secret

@@ -139,7 +139,7 @@ class TwinGear:
 
     @classmethod
     def of(
-        cls, parameters: NodeParameters, own: TwinParameters, calibration: Path | None = None
+        cls, parameters: NodeParameters, twin: TwinParameters, calibration: Path | None = None
     ) -> Self:
         """Make a gear from valid parameters."""
         gear, file = parameters.gear, calibration or parameters.calibration
@@ -152,12 +152,12 @@ class TwinGear:
             parameters=parameters,
             stiffness=tuple(each or math.inf for each in (stiffness * count)[:count]),
             shaft_stiffness=parameters.shaft_stiffness or math.inf,
-            interference=-own.play,
-            play=own.play,
-            friction=own.friction,
+            interference=-twin.play,
+            play=twin.play,
+            friction=twin.friction,
             errors=Calibration.load(Path(file), gear).orders if file else (),
-            rotor_damping=own.rotor_damping,
-            output_inertia=own.output_inertia,
+            rotor_damping=twin.rotor_damping,
+            output_inertia=twin.output_inertia,
         )
         if preload:
             braced(parameters.mechanism)

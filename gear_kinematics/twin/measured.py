@@ -100,9 +100,9 @@ def _loaded(gear: TwinGear, data: Report, notes: list[str]) -> TwinGear:
     notes.append(f'play of the flanks: {gear.play:.4g} rad, as configured')
     first = data['stiffness'][0]
     notes.append(f'stiffness beyond {first["high"]:.4g} N·m: as below')  # a branch may be alone
-    own, shaft = first['value'] / count, gear.shaft_stiffness
+    branch, shaft = first['value'] / count, gear.shaft_stiffness
     if gear.has_shaft:
-        own += math.hypot(own, shaft) - shaft
+        branch += math.hypot(branch, shaft) - shaft
     friction = data['friction']['value'] or mean_friction
-    changed = replace(gear, stiffness=(own,) * count, friction=friction)
+    changed = replace(gear, stiffness=(branch,) * count, friction=friction)
     return changed.preloaded(abs(gear.preload))

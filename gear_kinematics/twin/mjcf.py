@@ -149,8 +149,8 @@ def _add_branch(gear: TwinGear, number: int, parts: dict[str, str], torquescale:
     """Add the bodies of a branch with their joints, springs and sensors.
 
     Coupling and slot are one body: each has half of its mass. They turn with the satellite: either
-    side of the weld has half of the inertia of all, with which it yields least. The site in the
-    slot of the arm is upside down, so that its sensor tells the torque on the arm.
+    side of the weld has half of the whole inertia, with which the weld yields least. The site in
+    the slot of the arm is upside down, so that its sensor gives the torque on the arm.
     """
     mechanism, loads = gear.parameters.mechanism, gear.parameters.loads
     branch, e = mechanism.branches[number], mechanism.eccentricity

@@ -26,7 +26,7 @@ class Model(Protocol):
     rotor_locked: bool
     """Whether the rotor is locked."""
     notice: str
-    """How the motion was not that of the gear since this was emptied; '' if it was."""
+    """How the motion has differed from that of the gear since this was cleared; or ''."""
 
     def advance(self, duration: float, rotor_torque: float, load_torque: float) -> None:
         """Advance the time.

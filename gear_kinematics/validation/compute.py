@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from gear_kinematics.bag import Bag, BagError, ReportProgress, TopicError
-from gear_kinematics.bag.roles import Topics, beside
+from gear_kinematics.bag.roles import Topics, in_namespace
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.gear_state import GearState
@@ -29,10 +29,10 @@ _TOPICS = Topics()
 
 @dataclass(frozen=True, slots=True)
 class ComputeResult:
-    """What was computed, from which messages."""
+    """Numbers of messages that were computed and copied."""
 
     rotor_input: RotorInput
-    """Has counted the messages on the rotor topic, and those that were rejected."""
+    """Input that has counted the messages on the rotor's topic, and the rejected ones."""
     computed: int
     """Messages written on each output topic."""
     copied: int
@@ -73,7 +73,7 @@ def compute(
         topics: names of the input and the node's outputs in the bag.
         encoder_topic: name of the output encoder in the bag, if it references the rotor; it is
             copied too.
-        calibration: of the gear, to compute CORRECTED_TOPICS beside the topic of the output.
+        calibration: of the gear, to compute CORRECTED_TOPICS in the namespace of the output.
         others: other topics to copy; None copies all.
         files: contents of further files of the target, by name.
         storage: of the target, see `BagWriter`.
@@ -91,9 +91,9 @@ def compute(
     topic_of = {OUTPUT_STATE: topics.output, BODY_POSES: topics.poses}
     topic_of = {state: topic_of[state] for state in topic_of if state in gear.topics}
     if calibration:
-        topic_of |= beside(CORRECTED_TOPICS, topics.output)
+        topic_of |= in_namespace(CORRECTED_TOPICS, topics.output)
     if parameters.preload:
-        topic_of |= beside(LOAD_TOPICS, topics.output)
+        topic_of |= in_namespace(LOAD_TOPICS, topics.output)
     gear.choose(topic_of)
     if len(set(all_names := (rotor_topic, *topic_of.values()))) < len(all_names):
         raise ValueError(f'{", ".join(all_names)}: the names must differ')

@@ -67,7 +67,7 @@ CORRECTED: Mapping[str, type[JointStateTopic]] = {
     CORRECTED_STATE: CorrectedState,
     CORRECTED_INTERVAL: CorrectedInterval,
 }
-"""What compares each of CORRECTED_TOPICS."""
+"""Class that compares each of CORRECTED_TOPICS."""
 
 
 def why_unjudged(calibration: Calibration | None, *, single_turn: bool, absolute: bool) -> str:
@@ -75,7 +75,7 @@ def why_unjudged(calibration: Calibration | None, *, single_turn: bool, absolute
     if not calibration:
         return 'no calibration is given'
     if absolute:
-        return 'a recording does not tell when the output encoder referenced the rotor'
+        return 'a recording does not show when the output encoder referenced the rotor'
     if single_turn and calibration.period > 1:
-        return 'a recording does not tell when a single-turn encoder was referenced'
+        return 'a recording does not show when a single-turn encoder was referenced'
     return ''

@@ -15,10 +15,10 @@ from gear_kinematics.validation.fields import Array, FieldSamples
 from gear_kinematics.validation.report import Finding
 
 _MAX_STEPS = 65_536
-"""Of which samples that still wait for their outputs need the last few thousand."""
+"""Changes that are kept; samples that wait for their outputs need the last few thousand."""
 
 _FEW = 64
-"""Outputs that show another zero from the first one on."""
+"""Number of outputs, from the first one on, that must all show another zero."""
 
 _STEP = np.dtype(
     [
@@ -50,7 +50,7 @@ class CountChanges:
     def __init__(self, parameters: NodeParameters, tolerance: float, *, homing: bool) -> None:
         """Start without changes; angles agree within a tolerance, rad of the output."""
         self.count = 0
-        """Of the changes so far."""
+        """Number of changes so far."""
         self.homed = False
         """Whether homing was one of them."""
         self._parameters, self._ratio = parameters, parameters.gear.gear_ratio
@@ -61,12 +61,12 @@ class CountChanges:
         self._referenced = -1  # the latest segment in which an encoder has done it
         self._latest = -1, 0.0, 0.0  # segment, angle and error of the latest output
 
-    def move(self, samples: Array, way: int = 1) -> None:
+    def move(self, samples: Array, sign: int = 1) -> None:
         """Move samples, (n,), by the changes so far, or, -1, back."""
         if len(self._steps) > 1:
             count = self._count_at(samples['number'])
-            samples['turns'] += way * count['turns']
-            samples['angle'] += way * count['angle']
+            samples['turns'] += sign * count['turns']
+            samples['angle'] += sign * count['angle']
 
     def learn(self, samples: Array, position: FieldSamples) -> bool:
         """Learn from output angles at moved samples, (n,), and move these by what is found.
@@ -120,7 +120,7 @@ class CountChanges:
         return True
 
     def notes(self) -> Iterator[Finding]:
-        """Yield with what the outputs are compared."""
+        """Yield notes on what the outputs are compared with."""
         yield from self._notes
         if self._last_alone:
             yield Finding(FindingCause.LAST_ALONE, fails=True)

@@ -20,7 +20,7 @@ _MAX_DENOMINATOR, _CHANCE = 100, 0.01
 _MIN_TURNING = 0.1  # rad of the rotor, to determine a ratio
 _BLOCKS, _MIN_BLOCKS = 32, 4
 _ROUNDING = 5.1e-10
-"""Standard uncertainty by the rounding of the sums, relative."""
+"""Relative standard uncertainty due to the rounding of the sums."""
 _CLEAR_DEVIATION = 2.0
 """In expanded uncertainties."""
 _MAX_SCATTER = 1e-5
@@ -39,7 +39,7 @@ class AngleFit:
         self.lowest_error, self.highest_error = math.inf, -math.inf
         self._origin = (0.0, 0.0)
         self._sums: list[Array] = []
-        """Of 1, x, y, x², xy and the error, of parts of the batches."""
+        """Sums of 1, x, y, x², xy and the error over parts of the batches."""
 
     def update(self, rotor_angle: Array, recorded: Array, error: Array) -> None:
         """Add samples (n,), rad; `error` is recorded minus recomputed."""
@@ -50,7 +50,7 @@ class AngleFit:
         self.count += len(recorded)
         self.lowest_error = min(self.lowest_error, float(error.min()))
         self.highest_error = max(self.highest_error, float(error.max()))
-        with np.errstate(over='ignore', invalid='ignore'):  # of garbage, which has no slope
+        with np.errstate(over='ignore', invalid='ignore'):  # garbage has no slope
             x, y = rotor_angle - self._origin[0], recorded - self._origin[1]
             self._sums.append(_in_blocks(np.stack([np.ones(len(x)), x, y, x * x, x * y, error])))
 
@@ -62,12 +62,12 @@ class AngleFit:
         return offset if abs(offset) > tolerance else None
 
     def mean_error(self) -> Estimate | None:
-        """Return the mean error, rad; None of too few samples."""
+        """Return the mean error, rad; None for too few samples."""
         count, *_, error = self._blocks()
         return _ratio_of_sums(error, count)
 
     def slope(self) -> Estimate | None:
-        """Return output angle / rotor angle; None without motion, or of garbage."""
+        """Return output angle / rotor angle; None without motion, or for garbage."""
         with np.errstate(over='ignore', invalid='ignore'):
             n, x, y, xx, xy, _ = self._blocks()
             within = xx - x * x / n
@@ -170,7 +170,7 @@ class FactorFit:
             self._sums += (x @ x, x @ y, y @ y)
 
     def factor(self) -> float | None:
-        """Return recorded / expected; None if it is not constant, or 1, or of garbage."""
+        """Return recorded / expected; None if it is 1, or not constant, or for garbage."""
         with np.errstate(all='ignore'):
             xx, xy, yy = self._sums
             factor = float(xy / xx)

@@ -142,7 +142,7 @@ def _tables(report: BagReport) -> Iterator[Table]:
 
 
 def _summary(report: BagReport) -> Row:
-    """What was compared in a bag, and its first finding."""
+    """Summarise what was compared in a bag, and its first finding."""
     field = worst_field(report)
     error, tolerance = (field.max_error, field.tolerance) if field else (None, None)
     unit = printable(field.unit) if field else ''
@@ -208,7 +208,7 @@ def _count(count: int, tone: Tone = Tone.BAD) -> Cell:
 
 
 def figure(report: BagReport) -> Figure | None:
-    """Return the errors of what failed over time, or else of the first field; None of nothing."""
+    """Plot over time the errors of what failed, or else of the first field; None without any."""
     series = {one.topic: one for one in report.series if one.time}
     compared = [
         (field, _error_panel(field_name(topic, field), field, found))
@@ -240,7 +240,7 @@ def _line(time: Sequence[float], name: str, pen: Pen, values: ArrayLike) -> Line
 
 
 def moving(report: BagReport) -> MovingMechanism | None:
-    """Return the mechanism at the moment of the gravest finding; None of a gear without bodies."""
+    """Return the mechanism at the moment of the gravest finding; None if it is unknown."""
     mechanism = report.mechanism
     if not (mechanism and report.series and report.series[0].time):
         return None

@@ -20,7 +20,7 @@ _MAX_SAMPLES = 2000
 
 
 class Occurrences:
-    """How often something happened to messages, and when first."""
+    """Number of messages to which something happened, and the stamp of the first."""
 
     def __init__(self) -> None:
         self.count = 0

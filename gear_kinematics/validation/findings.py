@@ -65,7 +65,7 @@ def _in_words(value: Any) -> Any:
 
 
 def answer(report: BagReport) -> str:
-    """Return in one line how much was compared, and the largest error beside its tolerance."""
+    """Return in one line how much was compared, and the largest error with its tolerance."""
     if not report.rotor:
         return ''
     outputs = sum(topic.compared for topic in report.topics)

@@ -38,7 +38,7 @@ class IndependentReport:
     """Messages of the output and of the poses whose input is there; the rest is not compared."""
     not_compared: int
     turns_taken: int
-    """How often turns that no reading tells, or another zero, came from the outputs."""
+    """How often the turns, or another zero, were taken from the outputs."""
     errors: dict[str, float]
     """Greatest errors by field, in rad, rad/s, N·m and m."""
     first_wrong: int | None
@@ -161,7 +161,7 @@ class Independent:
             self._compare_poses(gear, *zip(*poses, strict=True))
 
     def _angle(self, given: _State, output: _State) -> float:
-        """The rotor angle of an input, of which the output may tell the turns or the zero."""
+        """Return the rotor angle of an input, whose turns or zero may come from the output."""
         parameters, stamp, position = self._parameters, given[0], given[1]
         if (period := parameters.rotor_period) and self._last:
             elapsed, turned = stamp - self._last[0], position - self._last[1]

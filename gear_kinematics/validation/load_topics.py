@@ -16,7 +16,7 @@ _UNITS = {
     BRANCH_LOADS: {'stand-off': 'rad', 'torque': 'N·m'},
     JOINT_LOADS: {'force': 'N', 'couple': 'N·m'},
 }
-"""Of the two fields of each of LOAD_TOPICS."""
+"""Units of the two fields of each of LOAD_TOPICS."""
 
 
 class LoadTopic(OutputTopic):
@@ -46,8 +46,8 @@ class LoadTopic(OutputTopic):
         loads = self._loads.at(samples['turns'], samples['angle'], samples['effort'], motion)
         expected = np.broadcast_arrays(samples['turns'], *NUMBERS[self._topic](loads))[1:]
         error = finite_or_infinite(np.abs(self._numbers[rows] - np.stack(expected, axis=-1)))
-        error[~samples['told'] | np.isnan(samples['acceleration'])] = np.nan
-        # Of each joint the force and the couple, or of all branches the one and the other.
+        error[~samples['turns_known'] | np.isnan(samples['acceleration'])] = np.nan
+        # Force and couple of each joint, or the stand-offs and the torques of all branches.
         joints = np.resize([False, False, True], len(expected))
         branches = np.repeat([False, True], len(expected) // 2)
         second = joints if self._topic == JOINT_LOADS else branches

@@ -38,25 +38,25 @@ _AHEAD = 1000
 
 SAMPLES = [
     ('number', np.int64),
-    ('told', np.bool_),
+    ('turns_known', np.bool_),
     ('referenced', np.bool_),
     *((name, np.int64) for name in ('stamp', 'received', 'segment')),
     *((name, np.float64) for name in ('turns', 'angle', 'velocity', 'effort')),
 ]
-"""Columns of the samples with which outputs are compared: their numbers in the order of
-reception; whether their count is told, by an output if it can change unseen; and those of
+"""Columns of the samples with which outputs are compared: the number in the order of reception;
+whether the turns are known, from an output if they can change unseen; and those of
 `RotorSamples`."""
 
 
 class Expectation(NamedTuple):
-    """How the outputs are recomputed and judged."""
+    """Rules by which the outputs are recomputed and judged."""
 
     gear: Gear
     tolerances: Tolerances
     solver: Solver
     """Recomputes the motion of a mechanism."""
     changes: CountChanges
-    """What the outputs say of the rotor's count."""
+    """Changes of the rotor's count that the outputs show."""
 
     def tolerance(self, unit: str) -> float:
         """Return the tolerance of errors in a unit: a force acts at the eccentricity as lever."""
@@ -156,7 +156,7 @@ def _of_later_clock(stamp: int, received: int, row: int, window: Array, resets: 
 
 
 def in_order(messages: int, samples: int, fit: Callable[[int, slice], Array]) -> Array:
-    """Pair messages with samples in the order of both; `fit` tells which samples fit a message.
+    """Pair messages with samples in the order of both; `fit` returns which samples fit a message.
 
     Messages that fit none are paired by their place between two that do, or all by their place.
 
@@ -256,7 +256,7 @@ class OutputTopic:
         self.series.update(samples['stamp'], angle, *fields)
 
     def _adopt_stamps(self, stamps: Array, usable: Array, window: Array) -> None:
-        """Give samples without a stamp that of their output, if that can be told."""
+        """Give samples without a stamp the stamp of their output, if it can be found."""
 
     def answered(self, samples: Array) -> Array:
         """Whether each of the oldest samples of the window has its message, or needs none."""

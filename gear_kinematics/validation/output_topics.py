@@ -175,7 +175,7 @@ class BodyPoses(OutputTopic):
         position = np.hypot(np.hypot(x, y), z).max(axis=1)
         orientation = _orientation_error(poses[..., 3:], state.output_turn_angle[:, np.newaxis])
         return [
-            FieldSamples(np.where(samples['told'], finite_or_infinite(error), np.nan))
+            FieldSamples(np.where(samples['turns_known'], finite_or_infinite(error), np.nan))
             for error in (position, orientation)
         ]
 

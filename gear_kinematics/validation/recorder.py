@@ -130,9 +130,9 @@ class Completeness:
         self._settle(received[~answered.all(axis=1)])
         judged = received > self._settled
         columns = [*zip(self.topics.values(), answered.T, strict=True)]
-        for missing, own in (*columns, (self._on_all, answered.any(axis=1))):
-            missing.leave_out(own[~judged], BEFORE)
-            missing.update(received[judged], stamp[judged], own[judged])
+        for missing, has_output in (*columns, (self._on_all, answered.any(axis=1))):
+            missing.leave_out(has_output[~judged], BEFORE)
+            missing.update(received[judged], stamp[judged], has_output[judged])
 
     def _settle(self, losses: Array) -> None:
         """Take further losses into the uninterrupted series of them from the start on."""

@@ -1,7 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The result of validating a bag, as plain data without ROS, bags or numpy.
 
-Stamps are ns, times s, angles rad, lengths m. What `first_...` is the stamp of the first one.
+Stamps are ns, times s, angles rad, lengths m; a `first_...` is the stamp of the first occurrence.
 """
 
 import math
@@ -53,7 +53,7 @@ class FieldReport:
     max_error: float = 0.0
     rms_error: float = 0.0
     worst_stamp: int | None = None
-    """Of the sample with `max_error`; None without any error."""
+    """Stamp of the sample with `max_error`; None without any error."""
     worst_rotor_angle: float | None = None
     first_non_finite: int | None = None
     first_absent: int | None = None
@@ -115,7 +115,7 @@ class Gap:
     """A gap between messages of the rotor topic."""
 
     stamp: int
-    """Of the sample after the gap."""
+    """Stamp of the sample after the gap."""
     seconds: float
     turned: float
     """rad, between the samples before and after it."""
@@ -132,7 +132,7 @@ class InputReport:
     rejected: dict[str, int] = field(default_factory=dict)
     """Numbers of rejected messages by cause."""
     of_others: int = 0
-    """Messages without the joint beside others with it, which are neither valid nor rejected."""
+    """Messages of other joints on a shared topic, which are neither valid nor rejected."""
     duplicates: int = 0
     zero_stamps: int = 0
     unnormalised_stamps: int = 0
@@ -150,9 +150,9 @@ class InputReport:
     jumped: str = ''
     """The last jump of the encoder; '' if there was none."""
     velocity_is: str = ''
-    """What velocities that contradict the positions seem to be; '' if none do."""
+    """What the velocities seem to be where they contradict the positions; '' if they do not."""
     beyond_limits: str = ''
-    """What speed and acceleration exceed the limits over several samples; '' if none do."""
+    """Speed and acceleration beyond their limits over several samples, in words; or ''."""
     overspeed: int = 0
     """Steps faster than `max_rotor_speed`."""
     max_speed: float = 0.0
@@ -194,11 +194,11 @@ class BagReport:
     rotor: InputReport | None = None
     topics: tuple[TopicReport, ...] = ()
     findings: tuple[Finding, ...] = ()
-    """Of the recording as a whole; `explain` adds the faults of topics and fields."""
+    """Findings about the whole recording; `explain` adds the faults of topics and fields."""
     independent: IndependentReport | None = None
     """The comparison by code that the node does not run, if it was asked for."""
     series: tuple[Series, ...] = ()
-    """Of the output topics with anything to compare."""
+    """Records of the output topics that have anything to compare."""
     mechanism: Mechanism | None = None
     """The mechanism for which the outputs were recomputed."""
     module: float = 0.0

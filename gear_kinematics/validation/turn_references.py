@@ -26,7 +26,7 @@ class TurnReferences:
     """Decides as the node does, block by block, whether the outputs agree with the encoder."""
 
     def __init__(self, gear: GearState) -> None:
-        """Compare by the encoder of a gear, which no longer refers the turns of its own rotor."""
+        """Take the encoder of a gear, which no longer references the turns of that gear."""
         self._parameters, self._corrector = gear.parameters, gear.corrector
         self._encoder = gear.output_encoder
         self._encoder.reference = None

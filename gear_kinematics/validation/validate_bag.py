@@ -14,10 +14,10 @@ from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, in_batch
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.bag.roles import (
     Topics,
-    beside,
-    find_beside,
     find_encoder_topic,
+    find_in_namespace,
     find_topics,
+    in_namespace,
     joints_on,
     only_joint,
 )
@@ -118,12 +118,12 @@ def _judged(
             progress=lambda sent, _: progress and progress(sent, total),
         )
         batches = in_batches(messages, _BATCH)
-        further = beside(CORRECTED_TOPICS) if task.calibration else {}
+        further = in_namespace(CORRECTED_TOPICS) if task.calibration else {}
         live = replace(task, strict=True)  # nothing is lost by a recorder here
         validator = Validator(live, further=further, encoder=encoder and f'/{OUTPUT_ENCODER}')
     else:
         judged = *CORRECTED_TOPICS, *(LOAD_TOPICS if known else ())
-        further = find_beside(bag, judged, topics.output)
+        further = find_in_namespace(bag, judged, topics.output)
         names = (*topics, *further.values(), *filter(None, [encoder]))
         batches = bag.batches(names, progress)
         validator = Validator(task, topics, further, encoder=encoder)
@@ -135,10 +135,10 @@ def _judged(
         damage = str(error)
     lost = Counter[str]() if play else _recorded_losses(bag)
     report = with_proof(validator.report(damage, lost), proof)
-    said = [
+    losses = [
         Finding(FindingCause.RECORDER_LOST, name, count=lost[name]) for name in names if lost[name]
     ]
-    report = replace(report, findings=(*report.findings, *said))
+    report = replace(report, findings=(*report.findings, *losses))
     if found != joint:
         taken = Finding(FindingCause.ONLY_JOINT, values={'joint': found, 'topic': topics.rotor})
         return replace(report, findings=(taken, *report.findings))

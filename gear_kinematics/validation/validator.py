@@ -188,7 +188,7 @@ class Validator:
 
     @cached_property
     def _references(self) -> TurnReferences | None:
-        """What the encoder at the output says of the turns, if it can tell them."""
+        """Judge of the turns by the encoder at the output, if that determines them."""
         return TurnReferences(self._state) if self._parameters.absolute else None
 
     @property
@@ -208,7 +208,7 @@ class Validator:
             messages = batch[output.name]
             output.take(messages.data, messages.received, self._window, self._inputs)
             if output is self.output:
-                self._window['told'] |= output.matcher.matched
+                self._window['turns_known'] |= output.matcher.matched
                 self._correct(segments)
         done = np.all([output.answered(self._window) for output in self._outputs], axis=0)
         answered = len(done) if done.all() else int(np.argmin(done))
@@ -224,7 +224,7 @@ class Validator:
         columns['number'] = first_number(samples.segment) + self._samples
         columns['number'] += np.arange(len(samples.stamp))
         unseen = bool(self._parameters.rotor_period) or self._parameters.absolute
-        columns['told'] = np.full(len(samples.stamp), not unseen)
+        columns['turns_known'] = np.full(len(samples.stamp), not unseen)
         self._samples += len(samples.stamp)
         segments = self._unbroken.segments(samples.stamp, samples.segment)
         if self._loads:
@@ -241,7 +241,7 @@ class Validator:
         return segments
 
     def _correct(self, segments: Array) -> None:
-        """Add the correction to the latest samples, whose count the outputs have told."""
+        """Add the correction to the latest samples, whose turns are known from the outputs."""
         if self._corrector and len(segments):
             latest = self._window[-len(segments) :].copy()
             self._changes.move(latest)

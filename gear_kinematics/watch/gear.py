@@ -69,10 +69,8 @@ class GearNode:
         self.seen = False  # whether it has ever run
         self.running = False
         self.revision = next(_revisions)
-        """Number of what a command answers: no other node, start or set of parameters has it."""
-        self.parameters: NodeParameters | None = (
-            None  # None until the node has reported them since its start
-        )
+        """Number that a command repeats; each start or change of parameters has a new one."""
+        self.parameters: NodeParameters | None = None  # until it reports them after its start
         self.fault = ''  # why the reported parameters cannot be used
         self.earlier: dict[str, Any] = {}  # parameters before their last change that was seen
         self.homed_zero: float | None = None  # rotor_zero after its last change that was seen
@@ -153,8 +151,8 @@ class GearNode:
         """Call `~/home`, and answer with its response."""
 
         def take(answered: Future) -> None:
-            said = answered.result()
-            answer.set_result(Answer(f'{said.message}.', said.success))
+            response = answered.result()
+            answer.set_result(Answer(f'{response.message}.', response.success))
             self._due = 0.0
 
         self.homing.call_async(Trigger.Request()).add_done_callback(take)

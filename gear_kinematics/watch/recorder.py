@@ -69,6 +69,6 @@ class Recorder:
                 if wanted and topic not in self._open and self._node.count_publishers(topic):
                     package, _, message = kind.split('/')
                     message_type = getattr(import_module(f'{package}.msg'), message)
-                    # What all publishers offer at this moment, such as reliable and latched.
+                    # The QoS that all publishers offer now, such as reliable and latched.
                     qos = ReliabilityPolicy.BEST_AVAILABLE, DurabilityPolicy.BEST_AVAILABLE
                     self._open[topic] = kind, Polled(self._node, topic, message_type, *qos)

@@ -130,7 +130,7 @@ def _show(
     frame: Callable[[str], tuple[list[Entry], bool]],
 ) -> None:
     """Show rows, which a function gives for each key, or for none, and whether to go on."""
-    due, said, going_on = time.monotonic(), '', True
+    due, printed, going_on = time.monotonic(), '', True
     with (
         _keys(listening=console.is_terminal) as key,
         Live(console=console, auto_refresh=False, transient=True) as live,
@@ -141,10 +141,10 @@ def _show(
                 live.update(table(rows), refresh=True)
             elif time.monotonic() >= due or not going_on:
                 due = time.monotonic() + _LINES
-                if (new := line(rows)) != said:  # as long as there is no node, it is the same
+                if (new := line(rows)) != printed:  # without a node, it stays the same
                     now = datetime.now().astimezone().isoformat(timespec='seconds')
                     console.print(Text(f'{now} {new}'), soft_wrap=True)
-                said = new
+                printed = new
 
 
 def line(rows: Sequence[Entry]) -> str:

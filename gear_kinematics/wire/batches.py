@@ -38,7 +38,7 @@ class JointStates:
     unnormalised: Array
     """(n,): whether the stamp has a second or more of nanoseconds."""
     malformed: Array
-    """(n,): no such message; its other values have no meaning."""
+    """(n,): whether it is no such message, so that its other values have no meaning."""
     joint_found: Array
     """(n,): whether the joint is in the message."""
     arrays_fit: Array
@@ -48,7 +48,7 @@ class JointStates:
     values: Array
     """(n, 3), float64: position, velocity, effort; NaN where not present."""
     missing_joint: str
-    """Which joints there are in the first message without this one; '' if it is in all."""
+    """The joints of the first message without this one, in words; '' if all have it."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -58,7 +58,7 @@ class PoseArrays:
     stamp: Array
     """(n,), ns."""
     malformed: Array
-    """(n,): no such message, or another number of poses."""
+    """(n,): whether it is no such message, or has another number of poses."""
     frame_ids: tuple[bytes, ...]
     """The frames that occur."""
     frame: Array
@@ -114,10 +114,10 @@ def decode_pose_arrays(messages: Sequence[bytes], count_of_poses: int) -> PoseAr
 def decode_numbers(
     messages: Sequence[bytes], like: Template, prefix: str
 ) -> tuple[Array, Array, Array]:
-    """Decode messages that are like those of a template, but for a prefix of its texts.
+    """Decode messages that match a template, except for a prefix of its texts.
 
     Returns:
-        Stamps, (n,), ns; whether a message is another one or none of its type, (n,); and the
+        Stamps, (n,), ns; whether a message does not match, (n,); and the
         numbers that `like.encode` takes, (n, numbers).
     """
     expected, count = like.layout(bytes(like.blank)), len(messages)
@@ -141,7 +141,7 @@ def encode(template: Template, stamps: Array, numbers: Sequence[Array | float]) 
     Args:
         template: the layout and the texts of all messages.
         stamps: (n,), ns.
-        numbers: of all arrays, each as an array (n,) or a constant.
+        numbers: the numbers of all arrays, each as an array (n,) or a constant.
     """
     size = len(template.blank)
     table = np.frombuffer(len(stamps) * template.blank, np.uint8).reshape(len(stamps), size)

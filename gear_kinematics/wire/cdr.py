@@ -88,7 +88,7 @@ def header_stamp(data: bytes) -> int:
 
 
 def with_stamp(data: bytes, stamp: int) -> bytes:
-    """Return a message that begins with a std_msgs/Header with another stamp, ns."""
+    """Replace the stamp, ns, of a message that begins with a std_msgs/Header."""
     order = '<' if data[1] & 1 else '>'
     encoded = struct.pack(f'{order}iI', *divmod(stamp, SECOND))
     return data[: STAMP_BYTES.start] + encoded + data[STAMP_BYTES.stop :]
@@ -124,7 +124,7 @@ def _layout(data: bytes, arrays: Sequence[int], *, named: bool = True) -> Messag
 
 
 def messages_lost(data: bytes) -> Counter[str]:
-    """Return what a recorder lost, by topic, of a rosbag2_interfaces/MessagesLostEvent.
+    """Count the lost messages by topic, from a rosbag2_interfaces/MessagesLostEvent.
 
     Raises:
         MalformedMessageError: if it is none.
@@ -133,7 +133,7 @@ def messages_lost(data: bytes) -> Counter[str]:
     reader.string()  # the recorder
     for _ in range(reader.count(8)):
         reader.string()
-        reader.doubles(2)  # of the size of the two uint64, lost in transport and by the recorder
+        reader.doubles(2)  # as large as the two uint64: lost in transport, and by the recorder
     layout = reader.layout()
     lost: Counter[str] = Counter()
     for topic, (offset, _) in zip(layout.texts[1:], layout.arrays, strict=True):
@@ -205,7 +205,7 @@ class Template:
         self.blank = bytearray(_ENCAPSULATION + bytes(STAMP.size))
         """The message with zeros as stamp and numbers."""
         self.offsets: list[int] = []
-        """Of the numbers in it."""
+        """Positions of the numbers in it."""
         self._named, self._sizes = names is not None, [size for _, size, _ in arrays]
         self._string(frame_id)
         if names is not None:

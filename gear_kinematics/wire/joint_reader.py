@@ -49,18 +49,18 @@ class RejectedInputError(ValueError):
     """A message without an output; the text is one of the causes above, which are counted."""
 
     def __init__(self, cause: str, describe: Callable[[], str] = str) -> None:
-        """Note the cause, and a function that returns what else there is to say."""
+        """Note the cause, and a function that returns further details."""
         super().__init__(cause)
         self._describe = describe
 
     @property
     def detail(self) -> str:
-        """Which joints there are, if one is missing; '' otherwise."""
+        """The joints of the message, if the wanted one is missing; otherwise ''."""
         return self._describe()
 
 
 def describe_missing(joint: str, data: bytes) -> str:
-    """Which joints there are in a JointState without the wanted one; '' is the only one."""
+    """List the joints of a JointState without the wanted one; '' stands for the only one."""
     names = joints_of(data)
     if not joint:
         there = f'not a single joint in it; there are: {listed(names)}'
