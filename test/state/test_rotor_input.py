@@ -58,17 +58,13 @@ def rotor_input() -> RotorInput:
     return RotorInput(SETTINGS)
 
 
-def test_message_without_position_is_rejected_and_counted(rotor_input):
-    """`test_joint_reader.py` tests what has which cause."""
+def test_stamp_of_a_rejected_message_is_ignored(rotor_input):
+    """`test_faults.py` tests what is counted, and `test_joint_reader.py` what has which cause."""
     first = accept(rotor_input, START, 1.0)
-    for count in (1, 2):
-        with pytest.raises(RejectedInputError, match=r'^position not finite$'):
-            accept(rotor_input, START + 5, math.nan)
-        assert rotor_input.rejected == {'position not finite': count}
-        assert rotor_input.mostly_rejected is (count == 2)
-    assert rotor_input.received == 3
+    with pytest.raises(RejectedInputError, match=r'^position not finite$'):
+        accept(rotor_input, START + 5, math.nan)
     assert rotor_input.last is first
-    # Its stamp is ignored: the next message is not out of order.
+    assert not rotor_input.mostly_rejected
     assert accept(rotor_input, START + 1, 2.0).stamp == START + 1
 
 
@@ -98,15 +94,6 @@ def test_unnormalised_stamp_is_normalised_and_counted(rotor_input):
         rotor_input.accept(restamped(2**31 - 1, SECOND), no_clock)
     assert (rotor_input.unnormalised_stamps, rotor_input.zero_stamps) == (2, 0)
     assert rotor_input.rejected == {'out of order': 1, 'stamp out of range': 1}
-
-
-def test_duplicate_is_taken_and_counted(rotor_input):
-    accept(rotor_input, START, 1.0)
-    assert rotor_input.duplicates == 0
-    for count in (1, 2):
-        assert accept(rotor_input, START, 1.0 + count).position == (0, 1.0 + count)
-        assert rotor_input.duplicates == count
-    assert not rotor_input.rejected
 
 
 @pytest.mark.parametrize('age', [1, SECOND])

@@ -24,12 +24,13 @@ def answered(
     topics: Collection[str] = ('output_state', 'body_poses'),
     calibration: Calibration | None = None,
     home_after: int = -1,
+    gear: GearState | None = None,
 ) -> list[Message]:
     """Return messages with the outputs of a node, which is homed after a number of rotor states.
 
-    The outputs are recorded as soon as they are there.
+    The outputs are recorded as soon as they are there. `gear` is what computes them.
     """
-    gear, recorded = GearState(parameters, calibration), []
+    gear, recorded = gear or GearState(parameters, calibration), []
     gear.choose(topics)
     for topic, received, data in messages:
         recorded.append((topic, received, data))

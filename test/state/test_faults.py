@@ -1,0 +1,163 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The table of faults of a driver: what is counted, diagnosed, and found in a recording."""
+
+import math
+import struct
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import pytest
+from live import SECOND, rotor_bytes
+from node_loop import answered
+from shipped_bags import ROTOR
+from validating import texts, validate
+
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.report.document import Verdict
+from gear_kinematics.state.diagnostics import ERROR, OK, WARN, InputMonitor
+from gear_kinematics.state.gear_state import GearState
+
+MULTI = NodeParameters.load()
+SINGLE = replace(MULTI, rotor_encoder='single_turn', max_rotor_speed=100.0)
+START, PERIOD, COUNT = 100 * SECOND, SECOND // 100, 120
+SPEED, STEP = 20.0, 1e-3  # rad/s, and rad: the resolution of the encoder
+APART = 'offset', 'nanoseconds'  # of the position, and s and ns of the stamp
+
+
+class Row(NamedTuple):
+    """What a driver does, and what is said of it."""
+
+    driven: list[dict[str, Any] | bytes]
+    """What is changed of the good message of each number."""
+    counted: dict[str, Any]
+    """Of the counts that are not 0."""
+    diagnosed: tuple[int, str] = (OK, 'ok')
+    found: str = ''
+    settings: NodeParameters = MULTI
+    verdict: Verdict = Verdict.PASS
+
+
+def message(number: int, changed) -> bytes:
+    if isinstance(changed, bytes):
+        return changed
+    position = STEP * round(SPEED * number / 100 / STEP + number % 2)
+    fields = {'stamp': START + number * PERIOD, 'position': [position], **changed}
+    fields['position'] = [each + fields.get('offset', 0.0) for each in fields['position']]
+    parts = fields.get('nanoseconds') or divmod(fields['stamp'], SECOND)
+    data = rotor_bytes(**{name: fields[name] for name in fields if name not in APART})
+    return data[:4] + struct.pack('<iI', *parts) + data[12:]
+
+
+def part(changed, first=60, count=1) -> list[dict[str, Any] | bytes]:
+    """Let some messages be others."""
+    return [changed if first <= k < first + count else {} for k in range(COUNT)]
+
+
+def rejected(cause: str, changed) -> Row:
+    """Return the row of messages that are rejected, which are more than half of all."""
+    bad = COUNT // 2 + 1
+    said = f'{bad} of {COUNT} messages of /rotor_state were rejected ({cause} {bad}): too few'
+    told = WARN, f'rejected: {cause} {bad}'
+    return Row(part(changed, 20, bad), {'rejected': {cause: bad}}, told, said, MULTI, Verdict.FAIL)
+
+
+def moved(offset=0.0, stamp=0) -> list[dict[str, Any]]:
+    """Let all messages from the middle on have another position, rad, or stamp, ns."""
+    late = [{'stamp': START + k * PERIOD + stamp, 'offset': offset} for k in range(60, COUNT)]
+    return 60 * [{}] + late
+
+
+def at_speed(speed: float, **fields) -> list[dict[str, Any]]:
+    return [{'position': [speed * k / 100 + STEP * (k % 2)], **fields} for k in range(COUNT)]
+
+
+JUMPED = "the rotor's encoder jumped by 100 rad at 100.600 s"
+ROWS = {
+    'none': Row(part({}), {}),
+    'another joint beside': Row(
+        part({'names': ['wheel']}, count=3),
+        {'of_others': 3},
+        found='3 messages of /rotor_state are of other joints: no fault',
+    ),
+    'array sizes': rejected('array sizes', {'names': ['rotor', 'wheel']}),
+    'no position': rejected('position missing', {'position': []}),
+    'NaN': rejected('position not finite', {'position': [math.nan]}),
+    'far away': rejected('position too large', {'position': [1e17]}),
+    'garbage': rejected('not a JointState', b'\xde\xad\xbe\xef' * 40),
+    'impossible stamp': rejected('stamp out of range', {'nanoseconds': (2**31 - 1, SECOND)}),
+    'out of order': rejected('out of order', {'stamp': START + 18 * PERIOD}),
+    'stray reading': Row(
+        part({'position': [1e4]}),
+        {'rejected': {'implausible': 1}},
+        (WARN, 'rejected: implausible 1'),
+    ),
+    'repeated stamp': Row(part({'stamp': START + 59 * PERIOD}), {'duplicates': 1}),
+    'no stamp': Row(
+        part({'stamp': 0}),
+        {'zero_stamps': 1},
+        found='1 messages of /rotor_state have no stamp: their outputs',
+    ),
+    'no stamp, and a reading that repeats': Row(
+        part({'stamp': 0}),
+        {'zero_stamps': 1},
+        (WARN, 'zero stamps 1'),
+        '1 messages of /rotor_state have no stamp: their outputs',
+        replace(MULTI, rotor_encoder_range=1000.0),
+    ),
+    'unnormalised stamp': Row(
+        part({'nanoseconds': (99, SECOND + 60 * PERIOD)}), {'unnormalised_stamps': 1}
+    ),
+    'clock set back': Row(moved(stamp=-2 * SECOND), {'resets': 1}),
+    'turns unseen': Row(
+        moved(stamp=SECOND),
+        {'jumps': 1},
+        (ERROR, 'not referenced'),
+        '1 gaps of /rotor_state could hide a turn of the rotor: after each',
+        SINGLE,
+    ),
+    'driver restarts': Row(
+        moved(offset=100.0),
+        {'rejected': {'implausible': 2}},
+        (ERROR, f'{JUMPED}; not referenced; rejected: implausible 2'),
+        f'{JUMPED}: what follows has another zero',
+    ),
+    'rpm': Row(
+        at_speed(50.0, velocity=[1500.0 / math.pi]),
+        {},
+        (WARN, 'the velocities contradict the positions: they seem to be rpm'),
+        'the velocities contradict the positions: they seem to be rpm',
+    ),
+    'outside of the range': Row(
+        part({}),
+        {},
+        (ERROR, 'the output, at -71.77°, is outside of output_range, 0.00° to 57.30°'),
+        settings=replace(MULTI, output_range=(0.0, 1.0)),
+    ),
+}
+
+
+@pytest.mark.parametrize('fault', ROWS)
+def test_a_fault_is_counted_diagnosed_and_found(fault):
+    row = ROWS[fault]
+    driven = [message(*each) for each in enumerate(row.driven)]
+    stamps = [START + k * PERIOD + 500 for k in range(COUNT)]
+    messages = [(ROTOR, stamp, data) for stamp, data in zip(stamps, driven, strict=True)]
+    gear, monitor = GearState(row.settings), InputMonitor(started=0.0, last_input=0.0)
+    homed = 1 if row.settings.rotor_period else -1
+    recorded = answered(row.settings, messages, gear=gear, home_after=homed)
+    report = monitor.report(gear.input, 0.0)
+    assert (report.level, report.message) == row.diagnosed
+    found = validate(recorded, row.settings)
+    names = (
+        *('rejected', 'of_others', 'duplicates', 'zero_stamps', 'unnormalised_stamps'),
+        *('resets', 'jumps'),
+    )
+    counts = {name: getattr(found.rotor, name) for name in names}
+    assert {name: count for name, count in counts.items() if count} == row.counted
+    for name in set(names) - {'jumps'}:
+        assert getattr(gear.input, name) == counts[name]
+    said = [text for text in texts(found) if row.found and row.found in text]
+    others = [text for text in texts(found) if text not in said and 'faster than' not in text]
+    assert (len(said), others) == (bool(row.found), [])
+    assert found.verdict == row.verdict
+    assert all(field.passed for topic in found.topics for field in topic.fields)
