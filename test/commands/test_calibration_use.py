@@ -37,12 +37,6 @@ def topics_of(path, capsys, *options) -> dict[str, dict]:
     return {topic['topic']: topic for topic in bag['topics']}
 
 
-def test_computed_bag_has_the_corrected_output_and_passes(computed, file, capsys):
-    capsys.readouterr()
-    topics = topics_of(computed, capsys, '--calibration', file)
-    assert [topics[topic]['compared'] for topic in CORRECTED] == [3000, 3000]
-
-
 def test_calibration_beside_the_bag_is_used(computed, file, tmp_path, capsys):
     beside = computed / 'calibration.yaml'
     assert beside.read_bytes() == file.read_bytes()

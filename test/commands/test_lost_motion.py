@@ -157,6 +157,8 @@ def page_of(path):
         (['{recording}', '--rated-torque=nan'], '--rated-torque'),
         (['{recording}', '--output-counts=2.5'], '--output-counts'),
         (['{recording}', '--angle-unit=gon'], '--angle-unit'),
+        (['{recording}', '--group', 'x*'], 'group x*: there is no recording that matches'),
+        (['{recording}', '--group', '*'], 'group *: there is only the group *'),
     ],
 )
 def test_unusable_arguments_get_one_line(recording, motion, arguments, complaint):
@@ -309,17 +311,6 @@ def test_recordings_of_no_group_keep_their_own_torque(worn, capsys):
     assert [round(found['rated_torque']) for found in document['recordings']] == [40, 40, 50]
     names = [group['name'] for group in document['groups']]
     assert names == ['*_0900_new*', '*_1000_new*']
-
-
-@pytest.mark.parametrize(
-    ('pattern', 'complaint'),
-    [
-        ('x*', 'group x*: there is no recording that matches'),
-        ('*', 'group *: there is only the group *'),
-    ],
-)
-def test_what_cannot_be_compared_gets_one_line(worn, pattern, complaint):
-    assert refusal('lost-motion', *worn[:2], '--group', pattern) == complaint
 
 
 def test_recordings_of_one_name_are_told_apart(worn, tmp_path, capsys):

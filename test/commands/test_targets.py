@@ -172,12 +172,3 @@ def test_a_folder_that_must_not_be_written_is_refused_at_once(work, monkeypatch)
     """Tests may run as root, who may write everywhere."""
     monkeypatch.setattr(os, 'access', lambda path, _: path != work)
     assert refusal('validate', 'k1.mcap', '--json', 'a.json') == 'a.json: Permission denied'
-
-
-def test_a_temporary_file_of_another_is_left_alone(work, monkeypatch):
-    monkeypatch.setattr('secrets.token_hex', lambda _: 'same')
-    foreign = work / f'.gearkin.{os.getpid()}.same.tmp'
-    foreign.write_text(NOTES)
-    assert main(['describe', '--json', str(work / 'report.json')]) == 2
-    assert foreign.read_text() == NOTES
-    assert not (work / 'report.json').exists()

@@ -87,16 +87,6 @@ def test_real_recordings_need_no_renaming(shared_path, config):
     assert recording.columns[2] == 'torque at the output [N·m] from output_torque_Nm'
 
 
-@pytest.mark.parametrize(
-    ('angle', 'torque'),
-    [('angle [µrad]', 'torque'), ('angle_urad', 'torque'), ('angle', 'torque_rad')],
-)
-def test_units_that_are_not_known_are_refused_with_the_list(tmp_path, config, angle, torque):
-    path = write_csv(tmp_path / 'r.csv', **{angle: [0.1, 0.2], torque: [1.0, 2.0]})
-    with pytest.raises(RecordingError, match=r'(known|units): .*(rad|mnm)'):
-        read(path, config)
-
-
 @pytest.mark.parametrize('on_rotor', [False, True])
 def test_torque_with_both_encoders_twists_the_gear_alone(tmp_path, config, angle, on_rotor):
     bench = TORQUE / 50.0  # twists as well
@@ -158,13 +148,6 @@ def test_times_that_go_back_end_the_recording_there(tmp_path, config):
     assert np.max(np.abs(both.at_measured(both.ideal(Fraction(-19))))) <= 0.1 + 1e-12
     (remark,) = recording.remarks
     assert remark == 'the time in time goes back after 5500 rows: the others are left out'
-
-
-def test_other_delimiters_byte_order_marks_and_line_ends(tmp_path, config, angle):
-    path = write_csv(tmp_path / 'r.csv', angle=angle, torque=TORQUE)
-    text = path.read_text('utf-8').replace(',', '\t').replace('\n', '\r\n')
-    path.write_text(text, 'utf-8-sig')
-    assert len(read(path, config).locked.angle) == len(angle)
 
 
 def test_rows_that_are_not_finite_are_left_out_and_reported(tmp_path, config, angle):

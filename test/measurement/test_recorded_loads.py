@@ -199,16 +199,6 @@ def test_without_a_preload_only_the_forces_are_told(tmp_path, capsys):
     assert found['forces']['mesh_a']['greatest'] == pytest.approx(9.5 / 2 / RADIUS, rel=1e-6)
 
 
-def test_without_effort_there_is_one_clear_error(tmp_path, config, capsys):
-    bag = record(tmp_path, effort=False)
-    assert main(['loads', str(bag), '--config', str(config)]) == 2
-    captured = capsys.readouterr()
-    assert not captured.out
-    assert captured.err == (
-        f'gearkin: {bag}: the loads on /rotor_state are unknown: effort missing 20000\n'
-    )
-
-
 def test_several_recordings_are_computed_in_processes(tmp_path, config, capsys):
     folders = tmp_path / 'first', tmp_path / 'second'
     for folder in folders:

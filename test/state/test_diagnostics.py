@@ -88,14 +88,6 @@ def test_rejects_and_losses_are_a_warning_in_the_next_report_alone(bench):
     assert report.values['lost messages'] == 'unknown'
 
 
-@pytest.mark.parametrize(('drivers', 'message'), [(0, 'ok'), (1, 'ok'), (2, '2 drivers')])
-def test_more_than_one_driver_is_a_warning(bench, drivers, message):
-    bench.feed(START + 0.5, good())
-    bench.monitor.drivers = drivers
-    report = bench.report(START + 1.0)
-    assert (report.message, report.values['drivers']) == (message, str(drivers))
-
-
 def test_drivers_of_other_joints_are_no_fault(bench):
     bench.feed(START + 0.5, NO_JOINT, good(1), NO_JOINT, good(2))
     bench.monitor.drivers = 3
@@ -117,19 +109,6 @@ def test_silence_beyond_the_timeout_is_an_error(bench):
     assert bench.report(START + 70.0).message == 'no input for 60.0 s'
     bench.feed(START + 70.5, good())
     assert bench.report(START + 71.0).level == OK
-
-
-def test_unreferenced_encoder_is_an_error_until_home():
-    bench = Bench(replace(SETTINGS, rotor_encoder='single_turn'))
-    bench.feed(START + 0.5, good())
-    report = bench.report(START + 1.0)
-    assert report.level == ERROR
-    assert 'not referenced' in report.message
-    assert report.values['referenced'] == 'false'
-    bench.input.home(0.0)
-    report = bench.report(START + 1.5)
-    assert (report.level, report.message) == (OK, 'ok')
-    assert report.values['referenced'] == 'true'
 
 
 def test_time_without_a_reference_is_told_once_with_a_count(bench):

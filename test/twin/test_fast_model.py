@@ -159,32 +159,3 @@ def test_wear_takes_the_preload():
 def test_a_gear_that_is_too_stiff_for_its_inertia_is_refused():
     with pytest.raises(MechanismError, match='rad/s: give them more inertia'):
         FastModel(gear(output_inertia=1e-6))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    'changed',
-    [{}, {'interference': -1e-3}, {'friction': 0.5}],
-    ids=['preload', 'play', 'friction'],
-)
-def test_both_models_agree_on_torque_ramps(changed):
-    """Within 1 % of the greatest angle and torque, there and back, beyond both thresholds."""
-    mujoco_model = pytest.importorskip('gear_kinematics.twin.mujoco_model')
-    kinds = {'mass': 0.08, 'inertia': 1e-5}
-    bodies = {
-        f'loads.{body}_{kind}': value
-        for body in ('satellite', 'coupling')
-        for kind, value in kinds.items()
-    }
-    same = replace(gear(bodies, friction=0.02), **changed)
-    models = FastModel(same), mujoco_model.MujocoModel(same)
-    found = []
-    for model in models:
-        model.rotor_locked = True
-        rows = []
-        for begin, end in pairwise((0.0, 4.0, 9.0, 0.0, -4.0, -9.0, 0.0)):
-            ramp(model, begin, end)
-            rows.append((1e3 * model.output_angle, *model.branch_torques))
-        found.append(np.array(rows))
-    fast, other = found
-    assert (np.abs(fast - other).max(axis=0) <= 0.01 * np.abs(fast).max(axis=0)).all()
