@@ -1,7 +1,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""One actuator: the same results to the last bit from single messages and from batches."""
+"""One actuator: the same results to the last bit from single messages and from batches.
+
+It holds for all that a room below decodes, judges, counts, corrects, loads or encodes in batches.
+"""
 
 import math
+import struct
 from contextlib import suppress
 from dataclasses import replace
 from functools import cache, partial
@@ -13,7 +17,9 @@ from calibrations import calibration
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from live import SECOND, rotor_bytes
+from wire import micro_ros_bytes
 
+from gear_kinematics.kinematics import Branch
 from gear_kinematics.kinematics.loads import Bodies
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.gear_state import GearState
@@ -33,6 +39,7 @@ ABSOLUTE = {
     'transmission_error_max_gap': 0.02,
 }
 AHEAD = 20  # periods by which the clock of the output's encoder is
+BRANCHES = tuple(Branch(name, 2.1 * k, 0.01 * k) for k, name in enumerate('abc'))
 KINDS = {
     'multi-turn': MULTI,
     'with loads': replace(MULTI, **BRACED),
@@ -40,7 +47,9 @@ KINDS = {
     'single-turn': replace(MULTI, rotor_encoder='single_turn', rotor_direction=-1, rotor_zero=0.3),
     'referenced turns': replace(MULTI, rotor_encoder='single_turn', **ABSOLUTE),
     'referenced zero': replace(MULTI, **ABSOLUTE),
+    'another mechanism': replace(MULTI, branches=BRANCHES, output_joint='wrist', rotor_joint=''),
 }
+ODD = rotor_bytes(START, position=[0.3])
 CHANGES = {
     'jump': {'offset': 100.0},
     'far jump': {'offset': 6e9},
@@ -57,6 +66,11 @@ CHANGES = {
     'other joint': {'names': 'other'},
     'two names': {'names': 'rotor other'},
     'no message': {'data': b'no message'},
+    'empty': {'data': b''},
+    'too large': {'position': 1e17},
+    'big-endian': {'data': rotor_bytes(START, position=[1.0], little_endian=False)},
+    'unnormalised': {'data': ODD[:4] + struct.pack('<iI', 99, 3 * SECOND) + ODD[12:]},
+    'micro-ROS': {'data': micro_ros_bytes(START + 1, ['rotor'], [0.5], [1.0], [])},
 }
 COUNTS = (
     *('received', 'rejected', 'of_others', 'duplicates', 'zero_stamps', 'unnormalised_stamps'),

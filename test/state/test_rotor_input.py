@@ -228,29 +228,3 @@ def test_any_numbers_are_accepted_or_rejected(settings, messages):
         assert math.isfinite(sample.position.angle)
         assert all(value is None or math.isfinite(value) for value in sample[2:])
     assert rotor_input.received == len(messages) == taken + rotor_input.rejected.total()
-
-
-def test_messages_of_other_joints_are_no_fault_once_the_joint_is_known():
-    settings = replace(SETTINGS, rotor_joint='m1')
-    messages, received = [], []
-    for k in range(30):
-        stamp = START + k * SECOND // 100
-        for names in (['finger'], ['m1', 'm2'], ['wheel']):
-            messages.append(rotor_bytes(stamp, names, [0.01 * k] * len(names)))
-            received.append(stamp)
-    one_by_one, at_once = RotorInput(settings), RotorInput(settings)
-    for data in messages:
-        with suppress(RejectedInputError):
-            one_by_one.accept(data, lambda: 0)
-    samples = at_once.accept_batch(messages, received)
-    for rotor in (one_by_one, at_once):
-        assert (rotor.received, rotor.of_others, rotor.rejected) == (90, 60, {})
-        assert not rotor.mostly_rejected
-        assert rotor.missing_joint == ''
-    assert len(samples.stamp) == 30
-    assert len(samples.rejected) == 0
-    # A joint that is in no message is missing, also after another one was there.
-    for rotor in (one_by_one, at_once):
-        rotor.parameters = replace(settings, rotor_joint='m3')
-        rotor.accept_batch(messages[:6], received[:6])
-        assert (rotor.of_others, rotor.rejected) == (60, {'joint missing': 6})

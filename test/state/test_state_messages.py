@@ -2,35 +2,28 @@
 """The published messages against the motion at 50 digits, and their layout."""
 
 import math
-from contextlib import suppress
 from dataclasses import replace
 from itertools import combinations
-from operator import itemgetter
 
-import numpy as np
 import oracle
 import pytest
 from geometry_msgs.msg import PoseArray
-from hypothesis import example, given
+from hypothesis import given
 from hypothesis import strategies as st
-from live import SECOND, rotor_bytes
 from properties import mechanisms, numbers_of
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.correction.corrector import Correction
 from gear_kinematics.kinematics import (
-    Branch,
-    Mechanism,
     RotorPosition,
     RotorSample,
     solve,
     split_turns,
 )
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.state_messages import StateMessages, state_messages
-from gear_kinematics.wire.joint_reader import GREATEST, RejectedInputError
+from gear_kinematics.wire.joint_reader import GREATEST
 
 STAMP = 12_345_678_901
 NAMES = {'output_joint': 'output_shaft', 'frame_prefix': ''}
@@ -189,54 +182,6 @@ CORRECTIONS = st.tuples(
 )
 CORRECTED = ('corrected_state', 'corrected_interval')
 NONE = (0.0, 0.0, 0.0, 0.0)
-
-
-@pytest.mark.slow
-@given(
-    mechanisms(),
-    st.lists(
-        st.tuples(
-            st.integers(0, 2**31 * SECOND - 1),
-            st.floats(-LARGEST_ANGLE, LARGEST_ANGLE) | st.floats(-1e3, 1e3),
-            rates,
-            rates,
-            CORRECTIONS,
-        ),
-        max_size=20,
-    ),
-    st.sampled_from([1, -1]),
-)
-@example(Mechanism(80, 76, 0.0011, (Branch('a'),)), [(1, 0.0, 0.0, 0.0, NONE)] * 2, -1)
-@example(
-    Mechanism(2, 1, 1.0, (Branch('a'),)),
-    [(1, 0.0, None, None, NONE), (1, -0.0, None, None, NONE)],
-    -1,
-)
-def test_messages_of_many_samples_are_those_of_each(mechanism, inputs, direction):
-    """To the last bit, from samples of `RotorInput`, which have NaN instead of None."""
-    settings = replace(PARAMETERS, rotor_direction=direction)
-    inputs = sorted(inputs, key=itemgetter(0))
-    messages = [
-        rotor_bytes(stamp, ['rotor'], [angle], *([] if rate is None else [rate] for rate in both))
-        for stamp, angle, *both, _ in inputs
-    ]
-    one_by_one, at_once = RotorInput(settings), RotorInput(settings)
-    states = StateMessages(mechanism, **NAMES)
-    corrections, each = [], []
-    for data, (*_, correction) in zip(messages, inputs, strict=True):
-        with suppress(RejectedInputError):  # as no rotor moves like this
-            each.append(one_by_one.accept(data, lambda: 1))
-            corrections.append(Correction(*correction))
-    samples = at_once.accept_batch(messages, [1] * len(messages))
-    ideal = [dict(states.encode(sample, OUTPUTS)) for sample in each]
-    found = states.encode_outputs(samples)
-    assert found == {topic: [one[topic] for one in ideal] for topic in OUTPUTS}
-    corrected = [
-        dict(states.encode_corrected(*pair)) for pair in zip(each, corrections, strict=True)
-    ]
-    columns = Correction(*np.reshape(corrections, (-1, 4)).T)
-    found = states.encode_corrections(samples, columns)
-    assert found == {topic: [one[topic] for one in corrected] for topic in CORRECTED}
 
 
 @pytest.mark.parametrize(('velocity', 'effort'), [(3.0, -0.5), (None, 0.25), (2.0, None)])

@@ -3,7 +3,6 @@
 
 import math
 import struct
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,11 +12,9 @@ from hypothesis import strategies as st
 from live import rotor_bytes
 from wire import micro_ros_bytes
 
-from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.batches import decode_joint_states
 from gear_kinematics.wire.cdr import PoseArrayTemplate
-from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError
+from gear_kinematics.wire.joint_reader import JointReader
 
 SECOND = 1_000_000_000
 LARGEST = 2**51 * math.tau  # rad: beyond it a position is too large
@@ -47,15 +44,6 @@ joint_states = (
         st.sampled_from([0, SECOND - 1, SECOND, 2 * SECOND + 1, 2**32 - 1]),
     )
 )
-messages = st.lists(
-    st.one_of(joint_states, joint_states, joint_states, st.binary(max_size=60)), max_size=30
-)
-
-
-def same(left: float, right: float) -> bool:
-    return left == right or (math.isnan(left) and math.isnan(right))
-
-
 pose_arrays = st.builds(
     lambda stamp, frame, count: PoseArrayTemplate(frame, count).encode(
         stamp, [0.5 * k for k in range(7 * count)]
@@ -82,47 +70,3 @@ def test_padding_that_is_left_to_chance_makes_no_layout():
     reader = JointReader('abc')
     assert reader.read(other) == reader.read(data) == (SECOND, False, 1.0, 2.0, 3.0)
     np.testing.assert_array_equal(batch.values, [[1.0, 2.0, 3.0]] * 2)
-
-
-@pytest.mark.slow
-@given(
-    st.lists(messages, max_size=4),
-    st.sampled_from(['rotor', '1', '']),
-    st.sampled_from(['multi_turn', 'single_turn']),
-    st.sampled_from([1, -1]),
-    st.floats(-10.0, 10.0) | st.floats(-1e15, 1e15),
-)
-def test_batches_of_input_are_accepted_as_one_by_one(batches, joint, encoder, direction, zero):
-    settings = replace(
-        NodeParameters.load(),
-        rotor_joint=joint,
-        rotor_direction=direction,
-        rotor_zero=zero,
-        rotor_encoder=encoder,
-    )
-    one_by_one, at_once = RotorInput(settings), RotorInput(settings)
-    for batch in batches:
-        clock = [7 * SECOND + k for k in range(len(batch))]
-        expected, rows = [], []
-        for row, (data, now) in enumerate(zip(batch, clock, strict=True)):
-            try:
-                expected.append(one_by_one.accept(data, lambda now=now: now))
-            except RejectedInputError:
-                continue
-            rows.append(row)
-        samples = at_once.accept_batch(batch, clock)
-        assert samples.row.tolist() == rows
-        assert samples.stamp.tolist() == [sample.stamp for sample in expected]
-        for k, sample in enumerate(expected):
-            assert samples.turns[k] == float(sample.position.turns)
-            assert samples.angle[k] == sample.position.angle
-            assert same(
-                samples.velocity[k], math.nan if sample.velocity is None else sample.velocity
-            )
-            assert same(samples.effort[k], math.nan if sample.effort is None else sample.effort)
-        for account in (
-            'received', 'rejected', 'duplicates', 'zero_stamps', 'unnormalised_stamps', 'resets',
-            'last',
-        ):  # fmt: skip
-            assert getattr(at_once, account) == getattr(one_by_one, account)
-        assert at_once.referenced == one_by_one.referenced
