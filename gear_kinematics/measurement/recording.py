@@ -286,9 +286,9 @@ class ClockStep(NamedTuple):
 class RestoredClock:
     """Gives the messages of a topic the stamps of a clock that is never set back.
 
-    A step shows by messages that are all older from then on when they are received. One that is
-    late is followed by others that are not, and after a stall of a driver or a recorder there was
-    a pause.
+    A step shows by a stamp that goes back, and by messages that are all older from then on when
+    they are received. One that is late is followed by others that are not, and after a stall of a
+    driver or a recorder the stamps go on.
     """
 
     def __init__(self, of_rotor: Sequence[ClockStep] = ()) -> None:
@@ -317,8 +317,8 @@ class RestoredClock:
         for k in np.flatnonzero(np.diff(age) > _CLOCK_STEP).tolist():
             before, after = age[max(k + 1 - _STEADY, 0) : k + 1], age[k + 1 : k + 1 + _STEADY]
             size = int(np.median(after) - np.median(before))
-            pauses = np.diff(received[max(k + 1 - _STEADY, 0) : k + 2])
-            if pauses[-1] > np.median(pauses) + size / 2:
+            periods = np.diff(stamp[max(k + 1 - _STEADY, 0) : k + 2])
+            if periods[-1] > np.median(periods) - size / 2:
                 continue
             if size > _CLOCK_STEP and max(np.ptp(before), np.ptp(after)) < size / 4:
                 at = int(received[k + 1])

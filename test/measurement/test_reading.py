@@ -8,14 +8,15 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from gear_recordings import Gear, Samples, creep, quantised, ramps, write_csv, write_recording
+from live import rotor_bytes
 
-from gear_kinematics.bag import BagError
+from gear_kinematics.bag import BagError, TopicMessages
 from gear_kinematics.measurement import dialects, reading
 from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.reading import read, read_encoders
-from gear_kinematics.measurement.recording import RecordingError
+from gear_kinematics.measurement.recording import RecordingError, RestoredClock
 
 TURN = 2.0 * math.pi
 MS = 10**6
@@ -297,6 +298,19 @@ def test_a_stall_is_no_step_of_the_clock(tmp_path, config, stall):
     recording, both = read_encoders(tmp_path / 'bag', config)
     assert recording.faults == ()
     assert np.ptp(both.error(Fraction(-19))) < 1e-6
+
+
+def test_delays_of_a_busy_machine_are_no_steps_of_the_clock():
+    """In small batches, as they come to live commissioning."""
+    random, clock = np.random.default_rng(1), RestoredClock()
+    stamps = START + np.arange(4000) * MS
+    delays = np.cumsum(random.exponential(30.0, 4000) * (random.random(4000) < 0.02))
+    received = stamps + np.round(delays * MS).astype(np.int64)
+    data = [rotor_bytes(stamp, position=[0.0]) for stamp in stamps.tolist()]
+    for first in range(0, 4000, 10):
+        rows = slice(first, first + 10)
+        clock.restored(TopicMessages(data[rows], received[rows].tolist()))
+    assert clock.steps == []
 
 
 def test_one_clock_of_two_that_is_set_back_is_restored(tmp_path, config):

@@ -71,7 +71,7 @@ def messages(times, angles) -> list[bytes]:
 
 def fed(parameters, batch) -> tuple[RotorInput, list]:
     """The input after the messages, and its samples; None for one that was rejected."""
-    rotor, samples = RotorInput(settings), []
+    rotor, samples = RotorInput(parameters), []
     for data in batch:
         try:
             samples.append(rotor.accept(data, int))
