@@ -6,7 +6,6 @@ from collections.abc import Callable, Collection, Generator, Iterable, Iterator,
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass, field
 from itertools import chain
-from operator import itemgetter
 from pathlib import Path
 from types import MappingProxyType
 from typing import IO, Self
@@ -22,10 +21,10 @@ from gear_kinematics.bag.storage import (
     Topic,
     UnsortedError,
     in_batches,
+    joined,
     missing_topic,
 )
 
-_DATA = itemgetter(2)
 ReportProgress = Callable[[int, int | None], None]
 """Called repeatedly with the number of messages done, and the total if known."""
 _BATCH, _BATCH_SIZE = 16_384, 2**22
@@ -118,7 +117,7 @@ class Bag:
         """
         done = 0
         options = {'any_encoding': any_encoding, 'publish_times': publish_times}
-        for batch in _joined(self._pieces(topics, **options)):
+        for batch in joined(self._pieces(topics, **options), _BATCH, _BATCH_SIZE):
             yield batch
             done += len(batch)
             if progress:
@@ -208,24 +207,6 @@ def _plain(pieces: Iterator[list[Message]], limits: ReadLimits) -> Iterator[list
         (topic, received, decompressed(data, codec.decompress, limits, 'a compressed message'))
         for topic, received, data in chain.from_iterable(pieces)
     )
-
-
-def _joined(pieces: Iterable[list[Message]]) -> Iterator[list[Message]]:
-    """Join pieces to batches; those before an exception are yielded before it is raised."""
-    batch, size = list[Message](), 0
-    try:
-        for piece in pieces:
-            batch += piece
-            size += sum(map(len, map(_DATA, piece)))
-            if len(batch) >= _BATCH or size >= _BATCH_SIZE:
-                yield batch
-                batch, size = [], 0
-    except Exception:
-        if batch:
-            yield batch
-        raise
-    if batch:
-        yield batch
 
 
 @contextmanager

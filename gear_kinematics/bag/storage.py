@@ -2,6 +2,7 @@
 """The interface of a file of a bag, and the description of its topics."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from operator import itemgetter
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
@@ -9,6 +10,7 @@ from gear_kinematics.bag.codecs import ReadLimits
 from gear_kinematics.bag.errors import BagError
 from gear_kinematics.wire.nearest import listed, nearest
 
+_DATA = itemgetter(2)
 Message = tuple[str, int, bytes]
 """Topic, time of reception in ns, CDR. A named tuple would take 15 times as long to make."""
 
@@ -124,12 +126,20 @@ def in_batches(
 
     Messages before an exception are yielded before it is raised.
     """
+    return joined(([message] for message in messages), count, size)
+
+
+def joined(pieces: Iterable[list[Message]], count: int, size: int) -> Iterator[list[Message]]:
+    """Join pieces to batches, each until it has `count` messages or `size` bytes.
+
+    Messages before an exception are yielded before it is raised.
+    """
     batch, taken = list[Message](), 0
     try:
-        for message in messages:
-            batch.append(message)
-            taken += len(message[2])
-            if len(batch) == count or taken >= size:
+        for piece in pieces:
+            batch += piece
+            taken += sum(map(len, map(_DATA, piece)))
+            if len(batch) >= count or taken >= size:
                 yield batch
                 batch, taken = [], 0
     except Exception:

@@ -282,7 +282,9 @@ class Involute(NamedTuple):
         radius = np.concatenate([radii, radii[::-1]])
         angle = 0.5 * math.pi + np.concatenate([-half_angles, half_angles[::-1]])
         pitches = 2.0 * math.pi / self.teeth * np.arange(self.teeth)[:, np.newaxis]
-        return _points(np.tile(radius, self.teeth), (pitches + angle).ravel())
+        turned = pitches + angle
+        outline = np.stack([radius * np.cos(turned), radius * np.sin(turned)], axis=-1)
+        return outline.reshape(-1, 2)
 
 
 def _inv(angle: float) -> float:
@@ -294,7 +296,3 @@ def circle(radius: float, x: float = 0.0, y: float = 0.0) -> Array:
     """Make a circle about a point, counterclockwise, (n, 2)."""
     angle = np.linspace(0.0, TURN, _CIRCLE_POINTS, endpoint=False)
     return np.column_stack([x + radius * np.cos(angle), y + radius * np.sin(angle)])
-
-
-def _points(radius: Array | float, angle: Array) -> Array:
-    return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)

@@ -82,15 +82,20 @@ class DriverMonitor:
     """Whether they could be counted since the last report."""
     last_input: float | None = None
     """Time of the last message, valid or not."""
-    _lost: int = 0
+    _counted: Counter[str] = field(default_factory=Counter)
+    """The counts at the last report, by names."""
     _rejected: Counter[str] = field(default_factory=Counter)
+
+    def _newly(self, name: str, count: int) -> int:
+        """Return by how much a count has grown since the last report."""
+        before, self._counted[name] = self._counted[name], count
+        return max(count - before, 0)  # another input counts from 0
 
     def _new_faults(self, rejected: Counter[str]) -> list[Fault]:
         """Return the faults of messages that were rejected or lost since the last report."""
-        newly_rejected, newly_lost = rejected - self._rejected, self.lost - self._lost
-        self._rejected, self._lost = Counter(rejected), self.lost
+        newly_rejected, self._rejected = rejected - self._rejected, Counter(rejected)
         faults = [_rejections(newly_rejected)] if newly_rejected else []
-        if newly_lost:
+        if newly_lost := self._newly('lost', self.lost):
             advice = 'The middleware has not delivered these messages.'
             faults.append(Fault(f'lost {newly_lost}', advice))
         return faults
@@ -131,10 +136,6 @@ class InputMonitor(DriverMonitor):
     _reported: float = 0.0
     _rate: float = 0.0
     _received: int = 0
-    _unsent: int = 0
-    _unreferenced: int = 0
-    _of_others: int = 0
-    _zero_stamps: int = 0
 
     def report(
         self, rotor_input: RotorInput, now: float, reference: TurnReference | None = None
@@ -143,14 +144,12 @@ class InputMonitor(DriverMonitor):
         elapsed = now - max(self._reported, self.started)
         count = rotor_input.received - rotor_input.of_others
         received = max(0, count - self._received)  # at first, others may count as rejected
-        newly_unsent = self.unsent - self._unsent
-        newly_unreferenced = self.unreferenced - self._unreferenced
-        self._unreferenced = self.unreferenced
-        shared, self._of_others = rotor_input.of_others > self._of_others, rotor_input.of_others
+        newly_unreferenced = self._newly('unreferenced', self.unreferenced)
+        shared = self._newly('of others', rotor_input.of_others) > 0
+        unstamped = self._newly('zero stamps', rotor_input.zero_stamps)
         if elapsed > _SOON:
             self._rate = received / elapsed
             self._reported, self._received = now, count
-        self._unsent = self.unsent
 
         age = now - (self.started if self.last_input is None else self.last_input)
         overdue = age > rotor_input.parameters.input_timeout
@@ -171,11 +170,9 @@ class InputMonitor(DriverMonitor):
             warnings.append(Fault(rotor_input.velocity_field.meaning, _VELOCITY))
         if rotor_input.plausibility.beyond_limits:
             warnings.append(Fault(rotor_input.plausibility.beyond_limits, _BEYOND))
-        if rotor_input.parameters.rotor_period and rotor_input.zero_stamps > self._zero_stamps:
-            unstamped = rotor_input.zero_stamps - self._zero_stamps
+        if rotor_input.parameters.rotor_period and unstamped:
             warnings.append(Fault(f'zero stamps {unstamped}', _UNSTAMPED))
-        self._zero_stamps = rotor_input.zero_stamps
-        if newly_unsent:
+        if newly_unsent := self._newly('unsent', self.unsent):
             advice = 'Look for a listener that is stuck.'
             warnings.append(Fault(f'not sent {newly_unsent}', advice))
         if newly_unreferenced and rotor_input.referenced:
