@@ -22,7 +22,7 @@ from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.ros.live import Replay, running_node
 from gear_kinematics.share import share_directory
 from gear_kinematics.wire.cdr import JointStateTemplate, Template
-from gear_kinematics.wire.topics import RECORDED_TOPICS
+from gear_kinematics.wire.topics import BODY_POSES, OUTPUT_STATE, ROTOR_STATE, TOPICS
 
 _COUNTS = 2**20  # of the encoder, per turn
 _INERTIA = 2.0e-4  # kg m², of the rotor and what it moves
@@ -177,8 +177,8 @@ def record(path: Path, scenario: Scenario) -> None:
         replay.receive_until(time.monotonic() + 0.5)  # what the node still answers
         compression: Literal['zstd', 'none'] = 'zstd' if scenario.storage == 'mcap' else 'none'
         with BagWriter(path, scenario.storage, compression) as writer:
-            for topic, message_type in RECORDED_TOPICS.items():
-                writer.add_topic(topic, message_type)
+            for name in (ROTOR_STATE, OUTPUT_STATE, BODY_POSES):
+                writer.add_topic(f'/{name}', TOPICS[name].type)
             writer.write_all(replay.received)
 
 

@@ -119,14 +119,12 @@ class Storage:
         return f'after message {self.read}: ' if self.read else ''
 
 
-def in_batches(
-    messages: Iterable[Message], count: int = 256, size: int = 2**20
-) -> Iterator[list[Message]]:
-    """Group messages into batches of up to `count` messages, and of about `size` bytes at most.
+def in_batches(messages: Iterable[Message], count: int = 256) -> Iterator[list[Message]]:
+    """Group messages into batches of up to `count` messages, and of about 1 MiB at most.
 
     Messages before an exception are yielded before it is raised.
     """
-    return joined(([message] for message in messages), count, size)
+    return joined(([message] for message in messages), count, 2**20)
 
 
 def joined(pieces: Iterable[list[Message]], count: int, size: int) -> Iterator[list[Message]]:

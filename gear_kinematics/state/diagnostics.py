@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from typing import NamedTuple, Self
 
 from gear_kinematics.correction.error_window import ErrorStatistics
-from gear_kinematics.correction.reversals import Reversals
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.output_encoder import OutputEncoder
@@ -241,6 +240,7 @@ class EncoderMonitor(DriverMonitor):
         warnings += self._new_faults(encoder.rejected)
         # Without new samples, the statistics are out of date.
         error = encoder.window.statistics() if compared and not silent else ErrorStatistics()
+        found = error.reversals
         if (
             error.peak_to_peak is not None
             and error.peak_to_peak > parameters.transmission_error_limit
@@ -263,7 +263,8 @@ class EncoderMonitor(DriverMonitor):
             'samples': str(error.samples),
             'mean (rad)': _number(error.mean),
             'peak to peak (rad)': _number(error.peak_to_peak),
-            **_reversals(error.reversals),
+            'lost motion (rad)': _estimate(found.lost_motion if found else None),
+            'delay of output_encoder (s)': _estimate(found.delay if found else None),
         }
         if fit := error.calibration:
             if not fit.fits:
@@ -308,14 +309,6 @@ def _rejections(counts: Counter[str]) -> Fault:
 
 def _by_cause(what: str, counts: Counter[str]) -> dict[str, str]:
     return {f'{what}: {cause}': str(count) for cause, count in sorted(counts.items())}
-
-
-def _reversals(found: Reversals | None) -> dict[str, str]:
-    """Describe lost motion and delay with their uncertainties, as far as they are known."""
-    return {
-        'lost motion (rad)': _estimate(found.lost_motion if found else None),
-        'delay of output_encoder (s)': _estimate(found.delay if found else None),
-    }
 
 
 def _estimate(estimate: Estimate | None) -> str:

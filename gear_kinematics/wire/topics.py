@@ -59,25 +59,13 @@ TOPICS: Mapping[str, NodeTopic] = {
 }
 """All topics of gear_state_publisher by name."""
 
-STATE_TOPICS: Mapping[str, str] = {
-    name: topic.type for name, topic in TOPICS.items() if topic.part == 'state'
-}
-"""The topics of the state and their types."""
 
-LOAD_TOPICS: Mapping[str, str] = {
-    name: topic.type for name, topic in TOPICS.items() if topic.part == 'load'
-}
-"""The topics of the loads and their types."""
+def _of_part(part: str) -> Mapping[str, str]:
+    return {name: topic.type for name, topic in TOPICS.items() if topic.part == part}
 
-CORRECTED_TOPICS: Mapping[str, str] = {
-    name: topic.type for name, topic in TOPICS.items() if topic.part == 'correction'
-}
-"""The topics of the corrected output and their types."""
 
-RECORDED_TOPICS: Mapping[str, str] = {
-    f'/{name}': TOPICS[name].type for name in (ROTOR_STATE, OUTPUT_STATE, BODY_POSES)
-}
-"""The topics in the root namespace that are validated in a recording, and their types."""
+STATE_TOPICS, LOAD_TOPICS, CORRECTED_TOPICS = map(_of_part, ('state', 'load', 'correction'))
+"""The topics of the state, of the loads and of the corrected output, and their types."""
 
 
 def base_name(topic: str) -> str:
