@@ -111,11 +111,11 @@ class Contents(NamedTuple):
     """The files of a recording, and what is known without opening them."""
 
     files: list[Path]
-    """In the order of recording."""
+    """Files in the order of recording."""
     topics: dict[str, Topic]
     """Topics by name; empty without metadata.yaml."""
     message_count: int | None
-    """None without metadata.yaml."""
+    """Number of messages; None without metadata.yaml."""
 
 
 def find_contents(path: Path) -> Contents:

@@ -49,9 +49,9 @@ class TopicMessages:
     """Messages of one topic."""
 
     data: list[bytes] = field(default_factory=list)
-    """CDR."""
+    """Contents as CDR."""
     received: list[int] = field(default_factory=list)
-    """ns."""
+    """Times of reception, ns."""
 
 
 class Bag:
@@ -65,7 +65,7 @@ class Bag:
     not_cdr: frozenset[str]
     """Topics whose messages are of another encoding."""
     message_count: int | None
-    """On all topics; None without metadata.yaml."""
+    """Number of messages on all topics; None without metadata.yaml."""
 
     def __init__(self, path: Path | str) -> None:
         """Read the topics.

@@ -26,7 +26,7 @@ from gear_kinematics.wire.topics import (
 _PARTS = {'rotor': ROTOR_STATE, 'output': OUTPUT_STATE, 'poses': BODY_POSES}
 """Topics by their parts in a validation."""
 _OPTIONS = {topic: part for part, topic in _PARTS.items()} | {OUTPUT_ENCODER: 'encoder'}
-_PEEKED = 20  # topics of which the joints are looked up
+_PEEKED = 20  # topics whose joints are looked up
 _JUDGED = 1000  # messages that show whether there is only one joint
 
 
@@ -65,7 +65,7 @@ def find_topics(
             output).
 
     Returns:
-        The names; that of poses that are not recorded at all, nor given, is empty.
+        The names; the name of the poses is empty if they are neither recorded nor given.
 
     Raises:
         BagError: if a topic is missing or ambiguous.

@@ -19,7 +19,7 @@ class Published(bytes):
     """CDR that was published at another time than it was received."""
 
     time: int
-    """ns."""
+    """Time of publication, ns."""
 
     @classmethod
     def at(cls, time: int, data: bytes) -> Self:
@@ -34,7 +34,7 @@ class Topic(NamedTuple):
 
     name: str
     type: str
-    """As in ROS 2: sensor_msgs/msg/JointState."""
+    """Type as ROS 2 writes it, such as sensor_msgs/msg/JointState."""
     encoding: str
     """Encoding of the messages: cdr, or an unsupported one."""
     syntax: str = ''
@@ -153,7 +153,7 @@ def missing_topic(
 ) -> BagError:
     """Return the error for a topic that is not in a bag, or not of the wanted type ('': any).
 
-    It names what is there, and if that is to be suggested the topic whose name is nearest.
+    It lists the topics, and suggests the one whose name is nearest, if `suggest`.
     """
     of_type = {topic for topic, kind in topics.items() if kind == wanted}
     text = f'{path}: no topic {name}' + (f' of type {wanted}' if wanted else '') + ' in it'

@@ -44,13 +44,13 @@ class TopicSummary(NamedTuple):
     joints: tuple[str, ...]
     """Joints of the first message, if the topic has joint states."""
     rate: float | None
-    """Hz, from the median period; None for too few messages."""
+    """Rate from the median period, Hz; None for too few messages."""
     mean_rate: float | None
-    """Hz, from the first to the last message; differs from `rate` where they come in bursts."""
+    """Mean rate, Hz; it differs from `rate` where messages come in bursts."""
     gaps: int
     """Periods longer than five median ones."""
     longest_gap: float
-    """s."""
+    """Longest of these periods, s."""
     of_others: int = 0
     """Messages without the rotor's joint, which rate and gaps leave out."""
 
@@ -59,9 +59,9 @@ class Summary(NamedTuple):
     """The contents of a recording."""
 
     duration: float
-    """s, from the first to the last message."""
+    """Time from the first to the last message, s."""
     topics: tuple[TopicSummary, ...]
-    """Those with a part first."""
+    """All topics; those with a part come first."""
     unclear: str
     """Why the rotor's topic is not known, or empty."""
     damage: str

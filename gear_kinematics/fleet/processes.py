@@ -37,7 +37,7 @@ class _Worker(NamedTuple):
 
     process: BaseProcess
     connection: 'Connection[Any, Any]'
-    """Ends with the process, even within a report: nothing else has its other side."""
+    """Connection that ends with the process, which alone has its other side."""
 
 
 def on_this_machine(

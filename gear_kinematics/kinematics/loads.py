@@ -19,7 +19,7 @@ and for the rotor, with φ2'' = i φ5'', O3 × F_cam = m3 e² φ2'' - x N3 - e F
     τ2 = J2 φ2'' + Σ O3 × F_cam
 
 At rest or without mass: N3 = N5 = 0, C3 = -C5 = T, F_t = T/rs and i τ2 = Σ T. Forces and torques
-are those that the named body exerts; the other of the pair takes the opposite ones. The torque of
+are those that the body named first exerts; the other body exerts the opposite ones. The torque of
 the output shaft's own inertia is no part of T: the shaft passes on Σ T minus J5 φ5''.
 
 How the branches share the torque of the output is statically indeterminate: `TorqueSharing`.

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 TURN = 2.0 * math.pi
 TURN_TAIL = 2.4492935982947064e-16  # 2π - TURN: the rounding error of TURN
 LARGEST_ANGLE = 2**51 * TURN
-"""rad. Up to this angle, 2^51 turns, `split_turns` finds the right turn: the two roundings of its
+"""Angle, rad. Up to it, 2^51 turns, `split_turns` finds the right turn: the two roundings of its
 quotient add up to at most 3/8 of a turn, less than the half that rounding to the nearest allows.
 The spacing of float64 is at most 2 rad here; from 2^54 rad = 1.8e16 rad on it is 4 rad, more than
 half a turn, so that an angle within the turn has no meaning."""
@@ -38,7 +38,7 @@ class RotorPosition(NamedTuple):
 
     turns: int
     angle: float
-    """rad, within the turn."""
+    """Angle within the turn, rad."""
 
     def since(self, before: 'RotorPosition') -> float:
         """Travel from another position, rad."""
@@ -49,12 +49,12 @@ class RotorSample(NamedTuple):
     """A state of the rotor: its angle φ2, its rate and torque at a time."""
 
     stamp: int
-    """ns."""
+    """Time, ns."""
     position: RotorPosition
     velocity: float | None
-    """rad/s; None if it is not known."""
+    """Rate, rad/s; None if it is not known."""
     effort: float | None
-    """N·m; None if it is not known."""
+    """Torque, N·m; None if it is not known."""
 
 
 def lists_as_arrays(value: Any) -> Any:
@@ -135,7 +135,7 @@ def whole_turns(turns: 'ArrayLike') -> NDArray[np.float64]:
 
 
 def repeated(count: int, period: float) -> RotorPosition:
-    """Multiply a period, rad, by a count, exactly but for one rounding of the angle.
+    """Multiply a period, rad, by a count, exactly except for one rounding of the angle.
 
     A period that differs from whole turns only by its last digits stands for these turns.
     """
@@ -150,8 +150,8 @@ def repeated(count: int, period: float) -> RotorPosition:
 class RotorTurns:
     """Follows the rotor's encoder and counts its whole turns.
 
-    The position of a multi-turn encoder is used as it is. One that repeats after a period, such as
-    a turn, is unwrapped here; `referenced` is whether the number of periods is known. It is
+    The position of a multi-turn encoder is used unchanged. One that repeats after a period, such
+    as a turn, is unwrapped here; `referenced` is whether the number of periods is known. It is
     unknown at the start, and after a gap in which the rotor could have turned half a period or
     more either way from its expected angle; `home` makes it known. While it is unknown, counting
     goes on from the nearest period.
@@ -168,11 +168,11 @@ class RotorTurns:
         """Start with no position.
 
         Args:
-            period: rad after which the encoder's position repeats, TURN once a turn; 0: never.
+            period: rad after which the encoder's position repeats, TURN for once a turn; 0: never.
             max_speed: rad/s, the greatest speed of the rotor.
             max_acceleration: rad/s², the greatest acceleration of the rotor.
-            longest_silence: ns without a sample after which a multi-turn encoder may count anew,
-                so that its turns are unknown at the start, too; 0: it never does.
+            longest_silence: time without a sample, ns, after which a multi-turn encoder may have
+                restarted, so that its turns are unknown at the start, too; 0: it never does.
         """
         self.period = period
         self.max_speed = max_speed

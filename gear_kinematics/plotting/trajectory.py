@@ -28,13 +28,13 @@ class Trajectory(NamedTuple):
     """The rotor angle φ2 over time; arrays (n,)."""
 
     time: Array
-    """s from the start, ascending."""
+    """Time from the start, s, ascending."""
     turns: Array
     """Whole turns of the rotor."""
     angle: Array
-    """rad: φ2 is 2π turns + angle."""
+    """Angle beyond the turns, rad: φ2 is 2π turns + angle."""
     velocity: Array
-    """rad/s."""
+    """Rate of φ2, rad/s."""
 
     @classmethod
     def at_constant_speed(cls, speed: float, turns: int) -> Self:

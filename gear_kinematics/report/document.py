@@ -162,7 +162,7 @@ PENS = Pen.FIRST, Pen.SECOND, Pen.THIRD, Pen.FOURTH, Pen.FIFTH, Pen.SIXTH
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Line:
-    """One line of a panel."""
+    """A line of a panel."""
 
     name: str
     """Lines of the same name share an entry in the legend."""
@@ -176,7 +176,7 @@ class Line:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Panel:
-    """One plot."""
+    """A plot."""
 
     title: str
     x_label: str

@@ -43,7 +43,7 @@ def _add_suite(root: ET.Element, section: Section, package: str, number: int, st
     # A dot would split the name into package and class.
     classname = section.name.replace('.', '_')
     for k, case in enumerate(section.cases):
-        # All cases are judged in one pass, whose time is that of the first.
+        # All cases are judged in one pass; the first is given its time.
         time = f'{0.0 if k else section.elapsed:.3f}'
         element = ET.SubElement(suite, 'testcase', name=case.name, classname=classname, time=time)
         if case.faults:

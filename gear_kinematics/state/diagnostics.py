@@ -37,7 +37,7 @@ _BEYOND_ANY_GEAR = 0.1  # rad
 _TOO_LARGE = 'Check the gear and its encoders, or raise transmission_error_limit.'
 
 _SOON = 0.1
-"""Time, s, after a report, before which rates and comparisons are not determined anew."""
+"""Time, s, after a report until which the next one repeats its rates and comparisons."""
 
 
 class Fault(str):

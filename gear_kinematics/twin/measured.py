@@ -79,7 +79,7 @@ def _set(gear: TwinGear, data: Report) -> TwinGear:
 
 
 def _loaded(gear: TwinGear, data: Report, notes: list[str]) -> TwinGear:
-    """Set the curve, or friction and stiffness at no load; note what the ramps leave open."""
+    """Set the curve, or friction and stiffness at no load; note what the ramps do not show."""
     line, count = data['middle_line'], len(gear.stiffness)
     mean_friction = float(np.mean(line['friction']))
     if not gear.preload:

@@ -112,4 +112,4 @@ LESS_GRAVE = {
     FindingCause.NO_OUTPUT,
     FindingCause.LOST_ON_THE_WAY,
 }
-"""Those about missing or additional messages, which are less grave than wrong ones."""
+"""Causes about missing or additional messages, which are less grave than wrong messages."""

@@ -37,8 +37,8 @@ def first_number(segment: Any) -> Any:
 class CountChanges:
     """Learns changes of the count from jumps of the output angle's error, each with its cause.
 
-    - A gap that could hide turns of a single-turn encoder begins a segment, of which the first
-      output tells the turns. So does the first output of the recording.
+    - A gap that could hide turns of a single-turn encoder begins a segment, whose first
+      output determines the turns. So does the first output of the recording.
     - Homing before the recording gave another zero to all outputs; homing during it declares that
       the output is at `home_angle` at the latest sample, exactly.
     - An absolute encoder at the output adds whole turns, or anything to a rotor that counts from

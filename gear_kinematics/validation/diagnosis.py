@@ -22,7 +22,7 @@ _BLOCKS, _MIN_BLOCKS = 32, 4
 _ROUNDING = 5.1e-10
 """Relative standard uncertainty due to the rounding of the sums."""
 _CLEAR_DEVIATION = 2.0
-"""In expanded uncertainties."""
+"""Deviation that is clear, in expanded uncertainties."""
 _MAX_SCATTER = 1e-5
 """Greatest deviation of all values together from a constant factor, relative to them."""
 

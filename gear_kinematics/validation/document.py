@@ -50,7 +50,7 @@ _SCHEMA = 'gear_kinematics/report'
 _VERSION = 1
 _TIME = 'time [s]'
 _LEAST_ERROR = 1e-18
-"""In any unit: smaller errors, and none, are drawn as this."""
+"""Error, in any unit, as which smaller errors and zeros are drawn."""
 
 Row = tuple[Cell, ...]
 

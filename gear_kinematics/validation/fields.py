@@ -49,9 +49,9 @@ class FieldSamples(NamedTuple):
     one_sided: Array = np.zeros(0, np.intp)
     """(m,): indices of the messages with the field in input or output only."""
     recorded: Array = np.zeros(0)
-    """(n,), where the error is that of one number; NaN where it is absent."""
+    """(n,), the recorded value, where a field is one number; NaN where it is absent."""
     expected: Array = np.zeros(0)
-    """As `recorded`."""
+    """(n,), the expected value; NaN as in `recorded`."""
 
 
 class FieldErrors:

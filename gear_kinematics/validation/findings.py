@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""All that is wrong with a recording, in sentences."""
+"""Puts into words everything that is wrong with a recording."""
 
 import math
 from collections import Counter

@@ -216,7 +216,7 @@ class OutputTopic:
         self._unrecorded = 0  # messages whose input was not recorded
         self._malformed = Occurrences()  # when they were received, as they have no stamp
         self._faults: defaultdict[tuple[FindingCause, str], Occurrences] = defaultdict(Occurrences)
-        """By what is wrong, and the name of the joint or the frame."""
+        """Faults by what is wrong, and the name of the joint or the frame."""
         self._late: tuple[list[bytes], list[int]] = [], []
         self.unstamped = False
         """Whether the node gave its own time to some inputs, which had no stamp."""

@@ -79,7 +79,7 @@ class JointStateTopic(OutputTopic):
 
 
 def finite_or_infinite(error: Array) -> Array:
-    """Return errors of which those that are not finite are infinite."""
+    """Return errors with infinity in place of values that are not finite."""
     return np.where(np.isfinite(error), error, np.inf)
 
 

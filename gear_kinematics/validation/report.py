@@ -40,7 +40,7 @@ class FieldReport:
     """Comparison of one field of an output topic with the recomputed one."""
 
     name: str
-    """Such as `position` of output_state, or `orientation` of body_poses."""
+    """Name, such as `position` of output_state, or `orientation` of body_poses."""
     unit: str
     tolerance: float
     """Greatest accepted error, in `unit`."""
@@ -85,7 +85,7 @@ class TopicReport:
     compared: int
     """Messages matched with an input."""
     missing: int
-    """Inputs without their message."""
+    """Number of inputs without their message."""
     extra: int
     """Messages without an input."""
     duplicates: int
@@ -118,7 +118,7 @@ class Gap:
     """Stamp of the sample after the gap."""
     seconds: float
     turned: float
-    """rad, between the samples before and after it."""
+    """Travel between the samples before and after it, rad."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,9 +140,9 @@ class InputReport:
     resets: int = 0
     first_stamp: int | None = None
     rate: float = 0.0
-    """Hz, from the median period."""
+    """Rate from the median period, Hz."""
     duration: float = 0.0
-    """s, from the first to the last stamp."""
+    """Time from the first to the last stamp, s."""
     gaps: int = 0
     """Gaps longer than 5 median periods."""
     jumps: int = 0
@@ -156,9 +156,9 @@ class InputReport:
     overspeed: int = 0
     """Steps faster than `max_rotor_speed`."""
     max_speed: float = 0.0
-    """rad/s, from position steps."""
+    """Greatest speed between two positions, rad/s."""
     longest_gaps: tuple[Gap, ...] = ()
-    """At most ten, longest first."""
+    """The longest gaps, at most ten, longest first."""
     referenced: bool = True
     """Whether the turns of the encoder were known throughout."""
 
@@ -169,10 +169,10 @@ class Series:
 
     topic: str
     time: list[float]
-    """s, since the first sample of the input."""
+    """Time since the first sample of the input, s."""
     rotor_angle: list[float]
     errors: dict[str, list[float]] = field(default_factory=dict)
-    """By the names of the fields, the worst of each interval: recorded minus expected, or the
+    """Worst error of each interval, by the names of the fields: recorded minus expected, or the
     magnitude of a vector."""
 
 
@@ -185,12 +185,12 @@ class BagReport:
     config: str = ''
     """The parameter file."""
     gear_ratio: str = ''
-    """Such as `-19` or `-58/3`."""
+    """Gear ratio, such as `-19` or `-58/3`."""
     error: str | None = None
     """Why the bag is unusable, or the damage at which reading ended; the rest describes the
     messages before it."""
     messages: int = 0
-    """Number on all topics."""
+    """Number of messages on all topics."""
     rotor: InputReport | None = None
     topics: tuple[TopicReport, ...] = ()
     findings: tuple[Finding, ...] = ()
@@ -208,7 +208,7 @@ class BagReport:
 
     @property
     def causes(self) -> list[Finding]:
-        """Those findings that say why the bag fails: what fails it by itself, then the causes."""
+        """Findings that explain why the bag fails; first those that fail it by themselves."""
         failing = [finding for finding in self.findings if finding.fails]
         return failing + [finding for finding in self.findings if finding.explains]
 

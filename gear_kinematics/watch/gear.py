@@ -191,7 +191,7 @@ class GearNode:
                 known = PARAMETERS.get(name) or BRANCH_PARAMETERS[name.rpartition('.')[2]]
                 if fault := known.fault(name, value):
                     raise ValueError(fault)
-            parameters = NodeParameters.of(given)  # of which an older node can lack some
+            parameters = NodeParameters.of(given)  # an older node can lack some
             _ = parameters.gear
         except ValueError as error:
             self.fault = str(error)

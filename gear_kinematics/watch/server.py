@@ -24,8 +24,8 @@ from gear_kinematics.watch.watcher import PERIOD, Watcher
 
 HOST = '127.0.0.1'
 _NAMES = (HOST, 'localhost')
-"""Host names of requests. A page elsewhere whose name is made to lead here (DNS rebinding) has
-another one; a forwarded port has another number."""
+"""Host names of requests. A page from elsewhere whose name is redirected here (DNS rebinding) has
+another host name; a forwarded port has another number."""
 _LARGEST = 4096  # bytes of a request's body, and of a command
 _ANSWER = 5.0  # s to wait for the answer of the node
 

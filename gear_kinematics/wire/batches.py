@@ -34,7 +34,7 @@ class JointStates:
     """One joint of n messages sensor_msgs/JointState."""
 
     stamp: Array
-    """(n,), ns."""
+    """(n,), time of the header, ns."""
     unnormalised: Array
     """(n,): whether the stamp has a second or more of nanoseconds."""
     malformed: Array
@@ -56,7 +56,7 @@ class PoseArrays:
     """n messages geometry_msgs/PoseArray."""
 
     stamp: Array
-    """(n,), ns."""
+    """(n,), time of the header, ns."""
     malformed: Array
     """(n,): whether it is no such message, or has another number of poses."""
     frame_ids: tuple[bytes, ...]

@@ -43,7 +43,7 @@ class MessageLayout(NamedTuple):
     order: str
     """Byte order as in `struct`: '<' or '>'."""
     size: int
-    """Bytes of the whole message."""
+    """Size of the whole message, bytes."""
     texts: tuple[bytes, ...]
     """Strings of the message: frame_id, then the names of a JointState."""
     arrays: tuple[tuple[int, int], ...]

@@ -32,12 +32,12 @@ POSITION_TOO_LARGE = 'position too large'
 OUT_OF_ORDER = 'out of order'
 IMPLAUSIBLE = 'implausible'
 CLOCK_RESET = 1_000_000_000
-"""ns: a stamp that is older than the last by more is in order; the clock has been set back."""
+"""Time, ns: a stamp that is older than the last by more shows that the clock was set back."""
 
 GREATEST = 1e280
 """Greatest velocity or effort; beyond, it counts as not finite, as results could be infinite: a
 gear ratio multiplies it by up to 2^53, and the slope of a calibration by up to 1e6."""
-_MAX_KEPT = 65_536  # bytes of a message whose layout is kept; drivers send far less
+_MAX_KEPT = 65_536  # bytes: layouts of larger messages are not kept
 
 
 JointValues = tuple[int, bool, float, float | None, float | None]
