@@ -19,6 +19,7 @@ _UNREADABLE = 0.01
 """Share of times that cannot be read, at most."""
 _LATE_ROWS = 25
 """Rows in succession that are out of order, at most; after more the clock was set back."""
+_DAY = 86_400 * SECOND
 FASTEST, MOST = 1000.0, 0.9
 """rad/s, which hardly any rotor exceeds; share of the samples in motion that are slower."""
 
@@ -86,6 +87,8 @@ def stamps(
     if lost := np.count_nonzero(~readable):
         remarks.append(f'{lost} rows without a time in {clock.name} were left out')
     rows, stamp = rows[readable], stamp[readable]
+    if stamp.min() >= 0 and stamp.max() < _DAY:  # times of the day begin again at midnight
+        stamp = stamp + _DAY * np.cumsum(np.diff(stamp, prepend=stamp[0]) < -0.5 * _DAY)
     order, end = _order(stamp)
     if late := end - len(order):
         remarks.append(f'the time in {clock.name} is out of order in {late} rows: left out')
@@ -94,7 +97,19 @@ def stamps(
         remarks.append(f'the time in {clock.name} {what}')
     if stamp[order[-1]] == stamp[order[0]] and len(order) > 1:
         raise ValueError(f'the times in {clock.name}: they stand still')
-    return stamp[order], rows[order]
+    stamp, rows = stamp[order], rows[order]
+    new = np.flatnonzero(np.diff(stamp, prepend=stamp[0] - 1))
+    if 2 * len(new) < len(stamp):
+        remarks.append(
+            f'{len(stamp)} rows have {len(new)} different times in {clock.name}: those with the '
+            'same one are taken to be evenly spaced'
+        )
+        last = stamp[-1] + np.median(np.diff(stamp[new]))
+        spread = np.interp(
+            np.arange(len(stamp)), [*new, len(stamp)], [*(stamp[new] - stamp[0]), last - stamp[0]]
+        )
+        stamp = stamp[0] + spread.astype(np.int64)
+    return stamp, rows
 
 
 def _order(stamp: Array) -> tuple[Array, int]:

@@ -10,22 +10,34 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.encoder_step import UNITS
 from gear_kinematics.wire.nearest import among
 
-_ROTOR = ('rotor', 'motor', 'mot', 'odrive')
-_OUTPUT = ('output', 'out', 'load', 'shaft', 'link', 'joint')
+_ROTOR = ('rotor', 'motor', 'mot', 'odrive', 'antrieb')
+_OUTPUT = ('output', 'out', 'load', 'shaft', 'link', 'joint', 'abtrieb')
 """Words for either side of the gear, the likeliest first."""
 _ANGLE = (
     'position', 'positions', 'pos', 'angle', 'encoder', 'enc', 'theta', 'deflection', 'twist',
+    'winkel',
 )  # fmt: skip
-_TORQUE = ('torque', 'torques', 'effort', 'efforts', 'trq')
+_TORQUE = ('torque', 'torques', 'effort', 'efforts', 'trq', 'drehmoment')
 _KNOWN_WORDS = (*_ROTOR, *_OUTPUT, *_ANGLE, *_TORQUE, 'current')
-_TIME = ('time', 't', 'stamp', 'timestamp', 'timestamps', 'today', 'datetime', 'elapsed', 'x')
+_TIME = (
+    'time',
+    't',
+    'stamp',
+    'timestamp',
+    'timestamps',
+    'today',
+    'datetime',
+    'elapsed',
+    'zeit',
+    'x',
+)
 _FILLING = {
     'header', 'receive', 'log', 'measured', 'actual', 'act', 'filtered', 'raw', 'field', 'data',
     'value', 'values', 'feedback', 'state', 'states', 'axis', 'present', 'sensor', 'abs', 'side',
-    'in',
+    'in', 'ist',
 }  # fmt: skip
 """Words that may stand beside the others; all of them exclude commands, speeds and the like."""
-_COUNTS = ('counts', 'count', 'cnt', 'inc', 'increments', 'ticks')
+_COUNTS = ('counts', 'count', 'cnt', 'inc', 'increments', 'ticks', 'pulse', 'pulses')
 _NANOSECONDS = ('ns', 'nsec', 'nsecs', 'nanosec', 'nanosecs', 'nanoseconds')
 ANGLE_UNITS = (*UNITS, 'counts')
 """Units of angle that can be given."""
@@ -50,11 +62,12 @@ _UNITS: Mapping[str, Mapping[str, float | None]] = {
 """In SI units, of each the usual word first; None: counts of an encoder."""
 TIME_UNITS: Mapping[str, Any] = _UNITS['time']
 _KNOWN = {unit for units in _UNITS.values() for unit in units}
-_NO_UNIT = {'-', 'none', 'n/a', '1'}
+_NO_UNIT = {'-', 'none', 'n/a', '1', ':'}
 _BRACKETS = re.compile(r'[\[(]\s*([^\])]*?)\s*[\])]')
 _CAMEL = re.compile(r'[A-Z]+(?![a-zµ])|[A-Z]?[^\W\d_A-Z]+|\d+|°')
 _MOTEUS = {'position', 'torque', 'q_current'}
-"""Registers of moteus motor controllers, which give positions in revolutions."""
+_REVOLUTIONS = re.compile(r'(?i)servo_stats.*position|pos_estimate|pos_rel|pos_abs')
+"""Names with which moteus and ODrive motor controllers give positions in revolutions."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,9 +162,12 @@ def find_columns(
     for name in found.values():
         if list(header).count(name) > 1:
             raise ValueError(f'more than one column {name!r}')
+    angles = [found[role] for role in _ANGULAR if role in found]
+    for name in angles:
+        if not (below.get(name) or _split(name)[1]) and _REVOLUTIONS.search(name):
+            below[name] = 'rev'
+    units = [below.get(name, '').strip('=') or _split(name)[1] for name in angles]
     moteus = {name.lower() for name in header} >= _MOTEUS
-    units = [below.get(found[role], '').strip('=') or _split(found[role])[1]
-             for role in _ANGULAR if role in found]  # fmt: skip
     common = next(filter(None, units), 'rev' if moteus else '')
     order = ('time', *_ANGULAR, 'torque')
     return {
@@ -160,9 +176,10 @@ def find_columns(
 
 
 def known_units(cells: Sequence[str]) -> list[str]:
-    """Return the units in the cells of a row, if any of them is known; otherwise nothing."""
+    """Return the units in the cells of a row, if most of them are known; otherwise nothing."""
     units = [_unit(cell) for cell in cells]
-    return units if _KNOWN.intersection(units) else []
+    known = len([unit for unit in units if unit in _KNOWN])
+    return units if 2 * known > len([*filter(None, units)]) else []
 
 
 def _column(role: str, name: str, given: Sources, common: str, below: Mapping[str, str]) -> Column:
@@ -197,7 +214,9 @@ def _roles(name: str) -> list[tuple[str, tuple[int, ...]]]:
     if not words and unit in _UNITS['time']:
         return [('time', (9,))]
     if told and set(told) <= set(_TIME) and (told != ['x'] or 'value' in words):
-        return [('time', (len(words), _TIME.index(told[0])))]
+        # The stamp of a message is when it was sampled; a log has when it was received.
+        first = 0 if told == ['stamp'] and 'header' in words and not unit else len(words)
+        return [('time', (first, _TIME.index(told[0])))]
     if not told or not set(told) <= set(_KNOWN_WORDS) or '/' in unit:
         return []
     sides = [one for one, those in (('rotor', _ROTOR), ('output', _OUTPUT)) if {*told} & {*those}]
@@ -219,22 +238,28 @@ def _unknown(role: str, words: Sequence[str]) -> str:
 
 def _unit(text: str) -> str:
     """A unit as `_UNITS` has it, if it is one of them."""
-    plain = re.sub(r'\s', '', text.lower().replace('μ', 'µ')).replace('n·m', 'nm')
-    plain = re.sub(r'n[.*⋅]m', 'nm', plain.strip('[]'))
-    outer, _, inner = plain.partition('(')
-    plain = outer if outer in _KNOWN or not inner else inner
-    plain = plain.strip('()[].')
+    plain = re.sub(r'\s', '', text.lower().replace('μ', 'µ')).strip('[]')
+    plain = re.sub(r'n(ewton)?[-_.*·⋅]?([cm]?)m(et(er|re)s?)?(?!\w)', r'n\2m', plain)
+    outer, _, inner = plain.partition('(')  # as in "° (Degree)" and "(deg)"
+    plain = (outer or inner).strip('()[].')
     return '' if plain in _NO_UNIT else plain
 
 
 def _split(name: str) -> tuple[tuple[str, ...], str]:
     """Words of a name, in lower case and without its unit, and the unit, in brackets or known."""
-    text, unit = re.sub(r'(?i)n[.*·⋅]m\b', 'Nm', name.strip().strip('%#"')), ''
-    for brackets in reversed([*_BRACKETS.finditer(text)]):
-        inner = brackets[1]
-        unit = unit if inner.isdigit() else _unit(inner) or unit
-        put = f' {inner} ' if inner.isdigit() else ' '
-        text = text[: brackets.start()] + put + text[brackets.end() :]
+    text = re.sub(
+        r'(?i)(?<![a-z])([mk]?n)[-_.*·⋅](m?m)(?![a-z])', r'\1\2', name.strip().strip('%#"')
+    )
+    bracketed = _BRACKETS.findall(text)[::-1]
+    others = [one for one in bracketed if not one.isdigit() and one.lower() not in _KNOWN_WORDS]
+    unit = next((u for u in map(_unit, bracketed) if u in _KNOWN), '')
+    unit = unit or next(filter(None, map(_unit, others)), '')
+
+    def put(found: re.Match[str]) -> str:
+        inner = found[1]
+        return ' ' if not inner.isdigit() and _unit(inner) in {unit, ''} else f' {inner} '
+
+    text = _BRACKETS.sub(put, text)
     words: list[str] = []
     for token in re.split(r'[\s_/.:,-]+', text):
         small = token.lower().replace('μ', 'µ')

@@ -2,7 +2,6 @@
 """Tables as text, in the dialects that benches write: where names, units and numbers are."""
 
 import codecs
-import csv
 import io
 import math
 import re
@@ -15,6 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from gear_kinematics.measurement.cells import Element, cells_of, elements_of, numbers, weight
 from gear_kinematics.measurement.columns import known_units, time_among
 
 _MOST_ROWS = 1_000_000
@@ -28,11 +28,11 @@ _LONG = 2**16
 _SEPARATORS = ';', '\t', ',', '|', ' '
 _COMMENT = ('#', '//', '%', 'sep=', 'SEP=')
 _BOMS = {b'\xef\xbb\xbf': 'utf-8-sig', b'\xff\xfe': 'utf-16', b'\xfe\xff': 'utf-16'}
-_MOMENT = re.compile(
-    r'(\d{4}-\d\d-\d\d[T ])?\d?\d:\d\d:\d\d([.,]\d+)?\s?(Z|UTC|[+-]\d\d:?\d\d)?', re.ASCII
+_MISSING = {'', 'nan', '-nan', 'inf', '-inf', 'null', 'none', 'n/a', 'na', '-', '[]'}
+_TOPICS, _VALUE = (
+    ('topic', 'message path', 'series', 'signal', 'channel', 'label', 'name'),
+    'value',
 )
-_MISSING = {'', 'nan', '-nan', 'inf', '-inf', 'null', 'none', 'n/a', 'na', '-'}
-_TOPICS, _VALUE = ('topic', 'series', 'signal', 'channel', 'label', 'name'), 'value'
 """Columns of a table with a row for each value."""
 
 
@@ -90,23 +90,29 @@ def open_text(path: Path) -> TableFile:
     if len(head) == _HEAD and not (lines := lines[:-1]):
         raise ValueError(f'the first row is longer than {_HEAD} characters')
     layout = _layout(lines, encoding)
-    names = layout.names
-    lower = [name.lower() for name in names]
+    lower = [name.lower() for name in layout.names]
     if _VALUE in lower and (topics := [name for name in _TOPICS if name in lower]):
-        return _long(path, layout, *(names[lower.index(name)] for name in (topics[0], _VALUE)))
+        columns = (layout.names[lower.index(name)] for name in (topics[0], _VALUE))
+        return _long(path, layout, *columns)
+    elements = elements_of(lines[layout.start :][:_ROWS], layout.names, layout.separator)
+    arrays = {element.place for element in elements.values()}
+    names = [name for k, name in enumerate(layout.names) if k not in arrays] + [*elements]
 
     def load(wanted: Sequence[str]) -> tuple[dict[str, Any], int]:
         rows = path.stat().st_size / len(head) * len(lines)
         every = 2 ** max(0, math.ceil(math.log2(rows / _MOST_ROWS)))
-        places = [names.index(name) for name in wanted]
+        sources = [elements.get(name) or layout.names.index(name) for name in wanted]
+        places = {k for one in sources for k in (one[:2] if isinstance(one, Element) else [one])}
         parts: list[list[Any]] = [[] for _ in wanted]
-        for frame in _frames(path, layout, places, every):
-            for part, place in zip(parts, places, strict=True):
-                part.append(numbers(frame[place], layout.point))
+        for frame in _frames(path, layout, sorted(places), every):
+            for part, one in zip(parts, sources, strict=True):
+                column = one.of(frame) if isinstance(one, Element) else frame[one]
+                part.append(numbers(column, layout.point))
         return {name: _joined(part) for name, part in zip(wanted, parts, strict=True)}, every
 
-    first = dict(zip(names, layout.row, strict=False))
-    return TableFile(names, layout.units, layout.clocks, first, load)
+    first = dict(zip(layout.names, layout.row, strict=False))
+    units = layout.units | {name: 'rad' for name, one in elements.items() if one.is_position}
+    return TableFile(names, units, layout.clocks, first, load)
 
 
 def _joined(parts: Sequence[Any]) -> Any:
@@ -115,34 +121,6 @@ def _joined(parts: Sequence[Any]) -> Any:
         none = np.datetime64('NaT', 'ns')
         parts = [part if part.dtype.kind == 'M' else np.full(len(part), none) for part in parts]
     return np.concatenate(parts)
-
-
-def numbers(column: Any, point: str = '.') -> Any:
-    """Return a column of pandas as numbers or datetime64[ns]; NaN or NaT where it has none."""
-    import pandas as pd  # noqa: PLC0415, of an extra
-
-    if column.dtype.kind == 'M':
-        return column.to_numpy('datetime64[ns]')
-    if column.dtype.kind in 'iufb':
-        return column.to_numpy()
-    text = column.astype(str).str.strip().str.replace('\u2212', '-')
-    text = text.str.replace(r"(?<=\d)[ '\u00a0\u202f](?=\d{3}\b)", '', regex=True)
-    other = re.escape('.' if point == ',' else ',')
-    marked = text[text.str.contains(other)]
-    grouped = rf'[-+]?[1-9]\d{{0,2}}({other}\d{{3}})+({re.escape(point)}\d*)?'
-    both = marked.str.contains(re.escape(point)) | (marked.str.count(other) > 1)
-    thousands = (both.any() or len(marked) < len(text)) and marked.str.fullmatch(grouped).all()
-    plain = text.str.replace(other, '' if thousands else '.', regex=True)
-    values = pd.to_numeric(plain.str.replace(',', '.'), errors='coerce').to_numpy(float)
-    if np.isfinite(values).any():
-        return values
-    text = text.str.replace(',', '.')
-    moments = pd.to_datetime(text, format='ISO8601', utc=True, errors='coerce')
-    moments = moments.dt.tz_localize(None)
-    if not moments.notna().any():
-        of_day = text.where(text.str.fullmatch(_MOMENT.pattern))
-        moments = pd.Timestamp(0) + pd.to_timedelta(of_day, errors='coerce')
-    return moments.to_numpy('datetime64[ns]') if moments.notna().any() else values
 
 
 def _encoding(head: bytes) -> str:
@@ -219,18 +197,20 @@ def _layout(lines: list[str], encoding: str) -> _Layout:
     last = last[len(last) // 2 :]
     choices = [(one, point) for one in _SEPARATORS for point in '.,']
     separator, point = max(choices, key=lambda choice: _score(last, *choice))
-    rows = {k: _cells(lines[k], separator) for k in filled}
+    rows = {k: cells_of(lines[k], separator) for k in filled}
     known = [rows[k] for k in filled[-len(last) :]] if filled else []
     width = max(Counter(map(len, known)).items(), key=itemgetter(1), default=(0, 0))[0]
     kinds: list[list[float]] = [[] for _ in range(width)]
     for cells in known:
         for kind, cell in zip(kinds, cells, strict=False):
-            kind.extend([_weight(cell, point)] * (cell.lower() not in _MISSING))
-    numeric = [k for k, kind in enumerate(kinds) if kind and 2 * sum(map(bool, kind)) >= len(kind)]
+            kind.extend([weight(cell, point)] * (cell.lower() not in _MISSING))
+    shares = [sum(map(bool, kind)) / len(kind) if kind else 0.0 for kind in kinds]
+    least = 1.0 if 1.0 in shares else 0.5  # texts among numbers, as of states, are no names
+    numeric = [k for k, share in enumerate(shares) if share >= least]
 
     def has_numbers(place: int) -> bool:
         cells = [rows[place][k] for k in numeric if k < len(rows[place])]
-        weights = [_weight(cell, point) for cell in cells if cell.lower() not in _MISSING]
+        weights = [weight(cell, point) for cell in cells if cell.lower() not in _MISSING]
         return bool(weights) and all(weights)
 
     begins = (k for k, place in enumerate(filled) if all(map(has_numbers, filled[k : k + _BEGIN])))
@@ -239,48 +219,53 @@ def _layout(lines: list[str], encoding: str) -> _Layout:
     start = filled[first]
     above = [line for line in lines[:start] if line.strip() and line[:4].lower() != 'sep=']
     row = rows[start]
-    found = _names(above, separator, max(width, len(row))) if above else _joint_state(row)
+    if above:
+        found = _names(above, separator, max(width, len(row)), 1 + max(numeric))
+    else:
+        found = _joint_state(row)
     return _Layout(encoding, separator, point, start, row, *found)
-
-
-def _cells(line: str, separator: str) -> list[str]:
-    if separator == ' ':
-        return line.split()
-    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
 
 
 def _score(lines: Sequence[str], separator: str, point: str) -> float:
     """How many numbers lines have if they are divided so, less what is none."""
-    cells = (cell for line in lines for cell in _cells(line, separator) if cell)
-    return sum(_weight(cell, point) or -1.0 for cell in cells)
-
-
-def _weight(cell: str, point: str) -> float:
-    """How sure it is that this is a number or a time: 0 to 1."""
-    mark, other = re.escape(point), re.escape('.' if point == ',' else ',')
-    if re.fullmatch(rf'[-+\u2212]?(\d+{mark}?\d*|{mark}\d+)([eE][-+]?\d+)?', cell):
-        return 1.0 if ',' not in cell else 0.9
-    grouped = rf"[-+\u2212]?[1-9]\d{{0,2}}(([ '\u00a0\u202f]|{other})\d{{3}})+({mark}\d*)?"
-    return 0.5 if re.fullmatch(grouped, cell) or _MOMENT.fullmatch(cell) else 0.0
+    cells = (cell for line in lines for cell in cells_of(line, separator) if cell)
+    return sum(weight(cell, point) or -1.0 for cell in cells)
 
 
 def _names(
-    above: Sequence[str], separator: str, width: int
+    above: Sequence[str], separator: str, width: int, numbers: int
 ) -> tuple[list[str], dict[str, str], dict[str, str]]:
-    """Find names of columns, units and clocks in the lines above the numbers."""
-    rows = [_cells(line.lstrip('#%/ '), separator) for line in above]
+    """Find names of columns, units and clocks in the lines above rows of a width.
+
+    Raises:
+        ValueError: if they do not name each of the numbers of a row, or more.
+    """
+    rows = [cells_of(line.lstrip('#%/ '), separator) for line in above]
     keyed = {row[0].lower(): row[1::2] for row in rows if row[2:] and len({*row[::2]}) == 1}
     if 'name' in keyed:  # TwinCAT Scope, with the times of each channel before it
         names = keyed['name']
         clocks = {name: f'time of {name} [ms]' for name in names}
-        units = dict(zip(names, known_units(keyed.get('unit', [])), strict=False))
-        return [one for name in names for one in (clocks[name], name)], units, clocks
-    below = known_units(rows[-1]) if len(rows) > 1 and len(rows[-2]) > 1 else []
-    line, names = (above[-2], rows[-2]) if below else (above[-1], rows[-1])
+        given = dict(zip(names, known_units(keyed.get('unit', [])), strict=False))
+        return [one for name in names for one in (clocks[name], name)], given, clocks
+    units: list[str] = []
+    at = -1
+    if len(rows) > 1 and len(rows[-2]) > 1:
+        units = known_units(rows[-1])
+        at = -2 if units else -1
+        units = units or known_units(rows[-2])  # they are above the names
+    line, names = above[at], rows[at]
     if len(names) != width:  # names in a comment may be separated otherwise
-        others = (_cells(line.lstrip('#%/ '), one) for one in _SEPARATORS)
+        others = [cells_of(line.lstrip('#%/ '), one) for one in _SEPARATORS]
+        others += [re.split(r'\s{2,}', line.strip('#%/ '))]
         names = next((cells for cells in others if len(cells) == width), names)
-    return [*names, *[''] * (width - len(names))], dict(zip(names, below, strict=False)), {}
+    filled, groups = [*filter(None, names)], rows[at - 1] if len(rows) >= 1 - at else []
+    if len({*filled}) < len(filled) and len(groups) == len(names):  # such as Motor,,Load,
+        for k in range(1, len(groups)):
+            groups[k] = groups[k] or groups[k - 1]
+        names = [f'{group} {name}'.strip() for group, name in zip(groups, names, strict=True)]
+    if len(names) < numbers or (separator == ' ' and len(names) > width):
+        raise ValueError(f'rows of {width} cells are below {len(names)} names: {", ".join(names)}')
+    return [*names, *[''] * (width - len(names))], dict(zip(names, units, strict=False)), {}
 
 
 def _joint_state(row: Sequence[str]) -> tuple[list[str], dict[str, str], dict[str, str]]:
@@ -289,7 +274,7 @@ def _joint_state(row: Sequence[str]) -> tuple[list[str], dict[str, str], dict[st
     Raises:
         ValueError: if these are others.
     """
-    joints = [*takewhile(lambda cell: cell and not _weight(cell, '.'), row[3:])]
+    joints = [*takewhile(lambda cell: cell and not weight(cell, '.'), row[3:])]
     fields = (len(row) - 3) / max(len(joints), 1) - 1.0
     if fields not in {1.0, 2.0, 3.0} or not all(map(str.isdecimal, row[:2])):
         raise ValueError('the first row has numbers: put a row of names above them')
@@ -312,4 +297,4 @@ def _long(path: Path, layout: _Layout, topic: str, value: str) -> TableFile:
         if clock:
             clocks[str(name)] = own = f'{clock} of {name}'
             columns[own] = numbers(series[clock], layout.point)
-    return loaded(columns, dict.fromkeys(clocks.values(), unit), clocks)
+    return loaded(columns, dict.fromkeys(clocks.values(), f'={unit}'), clocks)

@@ -1,16 +1,17 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The formats of tables, and the libraries that read those that are no text."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from gear_kinematics.bag import Bag, BagError
 from gear_kinematics.bag.finding import BAG_NAME
-from gear_kinematics.measurement.dialects import TableFile, loaded, numbers, open_text
+from gear_kinematics.measurement.cells import numbers
+from gear_kinematics.measurement.dialects import TableFile, loaded, open_text
 
 
 def _parquet(path: Path) -> TableFile:
@@ -19,10 +20,14 @@ def _parquet(path: Path) -> TableFile:
 
     columns: dict[str, Any] = {}
     for name, column in pq.read_table(path).to_pandas().items():
-        if column.dtype.kind == 'O' and len(column) and np.ndim(column.iloc[0]) == 1:
-            vectors = np.stack([np.asarray(vector, float) for vector in column])
+        filled = column.dropna()
+        if column.dtype.kind == 'O' and len(filled) and np.ndim(filled.iloc[0]) == 1:
+            vectors = np.full((len(column), filled.map(len).max()), np.nan)
+            for row, vector in zip(vectors, column, strict=True):
+                if np.ndim(vector):
+                    row[: len(vector)] = vector
             columns |= {f'{name}[{k}]': vectors[:, k] for k in range(vectors.shape[1])}
-        elif column.dtype.kind in 'iufbM':
+        else:
             columns[str(name)] = numbers(column)
     return loaded(columns)
 
@@ -54,36 +59,61 @@ def _mat(path: Path) -> TableFile:
     return loaded(columns)
 
 
+class _Channel(NamedTuple):
+    """A channel of a measuring system."""
+
+    group: Any
+    """Its name or its number."""
+    name: str
+    values: Any
+    unit: str
+    times: Any = None
+    """s, if it has its own."""
+
+
+def _of_channels(channels: Sequence[_Channel]) -> TableFile:
+    """Return a table of channels, with their groups if they share a name."""
+    columns: dict[str, Any] = {}
+    units, clocks = {}, {}
+    several = len({one.name for one in channels}) < len(channels)
+    for group, own, values, unit, times in channels:
+        name = f'{group}/{own}' if several else own
+        columns[name], units[name] = values, unit
+        if times is not None:
+            clocks[name] = clock = f'time of {name}'
+            columns[clock], units[clock] = times, '=s'
+    return loaded(columns, units, clocks)
+
+
 def _tdms(path: Path) -> TableFile:
     """Channels of LabVIEW, with their units and times."""
     from nptdms import TdmsFile  # noqa: PLC0415, of an extra
 
-    columns: dict[str, Any] = {}
-    units, clocks = {}, {}
+    found, begin = [], None
     for group in TdmsFile.read(path).groups():
         for channel in group.channels():
-            columns[channel.name], known = channel[:], channel.properties
-            units[channel.name] = str(known.get('unit_string', ''))
+            known, times = channel.properties, None
             if step := known.get('wf_increment'):
-                clocks[channel.name] = clock = f'time of {channel.name} [s]'
-                start = known.get('wf_start_offset', 0.0)
-                columns[clock] = start + step * np.arange(len(channel))
-    return loaded(columns, units, clocks)
+                times = known.get('wf_start_offset', 0.0) + step * np.arange(len(channel))
+                if start := known.get('wf_start_time'):
+                    begin = begin or start
+                    times += (start - begin) / np.timedelta64(1, 's')
+            unit = str(known.get('unit_string', ''))
+            found.append(_Channel(group.name, channel.name, channel[:], unit, times))
+    return _of_channels(found)
 
 
 def _mf4(path: Path) -> TableFile:
     """Channels of ASAM MDF, with their units and times."""
     from asammdf import MDF  # noqa: PLC0415, of an extra
 
-    columns: dict[str, Any] = {}
-    units, clocks = {}, {}
     with MDF(path) as file:
-        for signal in file.iter_channels(skip_master=True):
-            if signal.samples.dtype.kind in 'iuf' and signal.samples.ndim == 1:
-                clocks[signal.name] = clock = f'time of {signal.name} [s]'
-                columns |= {signal.name: signal.samples, clock: signal.timestamps}
-                units[signal.name] = signal.unit
-    return loaded(columns, units, clocks)
+        signals = file.iter_channels(skip_master=True)
+        return _of_channels([
+            _Channel(one.group_index, one.name, one.samples, one.unit, one.timestamps)
+            for one in signals
+            if one.samples.dtype.kind in 'iuf' and one.samples.ndim == 1
+        ])  # fmt: skip
 
 
 READERS: Mapping[str, Callable[[Path], TableFile]] = {

@@ -61,7 +61,8 @@ def read(
     """
     sources = sources or Sources()
     if is_table(path):
-        return gated(read_table(path, sources, parameters.gear.gear_ratio))
+        ratio, period = parameters.gear.gear_ratio, parameters.rotor_period
+        return gated(read_table(path, sources, ratio, period))
     return gated(_read_bag(path, parameters, sources, progress))
 
 

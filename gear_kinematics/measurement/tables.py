@@ -22,10 +22,10 @@ from gear_kinematics.measurement.columns import (
     find_columns,
     nanoseconds_beside,
 )
-from gear_kinematics.measurement.commissioning.encoder_range import unwrapped
+from gear_kinematics.measurement.commissioning.encoder_range import count_wraps, unwrapped
 from gear_kinematics.measurement.commissioning.joint import other_unit
 from gear_kinematics.measurement.dialects import TableFile
-from gear_kinematics.measurement.encoder_step import Step, step_of
+from gear_kinematics.measurement.encoder_step import Step, find_step, step_of
 from gear_kinematics.measurement.formats import open_table
 from gear_kinematics.measurement.gate import output_by_rotor
 from gear_kinematics.measurement.recording import (
@@ -60,14 +60,16 @@ _SHOWN = 800
 """Characters of an error, as those of a file can be many."""
 
 
-def read_table(path: Path, sources: Sources, ratio: Fraction) -> Recording:
+def read_table(path: Path, sources: Sources, ratio: Fraction, period: float = 0.0) -> Recording:
     """Read a table of a gear with a ratio.
+
+    Positions of the rotor repeat after a period, rad; 0: as they show.
 
     Raises:
         RecordingError: if it cannot be read, or has no such columns.
     """
     with _naming(path):
-        return _recording(path, open_table(path), sources, ratio)
+        return _recording(path, open_table(path), sources, ratio, period)
 
 
 def read_rotor(path: Path, sources: Sources, ratio: Fraction) -> tuple[Array, Array, Array, str]:
@@ -88,8 +90,7 @@ def read_rotor(path: Path, sources: Sources, ratio: Fraction) -> tuple[Array, Ar
         role = 'rotor' if 'rotor' in found else 'angle'
         one, torque = series[role], _torque(found, series, series[role], ratio) / float(ratio)
         on_rotor = role == 'rotor' or found[role].on_rotor
-        angle = one.values[role]
-        angle = unwrapped(angle)
+        angle = _unwrapped(one, role)
         angle = angle if on_rotor else angle * float(ratio)
         return one.stamp, angle, torque, ', '.join(said)
 
@@ -117,10 +118,18 @@ class _Series(NamedTuple):
     """Number that changes where rows were left out, as the motion in them is unknown."""
 
 
-def _recording(path: Path, table: TableFile, sources: Sources, ratio: Fraction) -> Recording:
+def _unwrapped(series: _Series, role: str, period: float = 0.0) -> Array:
+    """Positions without the wraps of an encoder with a period, rad, or with one that shows."""
+    values, seconds = series.values[role], (series.stamp - series.stamp[0]) / SECOND
+    return unwrapped(values, seconds, find_step(values), period)
+
+
+def _recording(
+    path: Path, table: TableFile, sources: Sources, ratio: Fraction, period: float = 0.0
+) -> Recording:
     found, series, said, remarks = _read(path, table, sources, ratio)
     timed = said[0].startswith('time')
-    encoders, locked = _measured(found, series, sources, ratio, timed=timed)
+    encoders, locked = _measured(found, series, sources, ratio, period, timed=timed)
     used = len(series['output' if 'output' in found else 'angle'].stamp)
     return Recording(path, path.name, tuple(said), used, encoders, locked, tuple(remarks))
 
@@ -147,11 +156,17 @@ def _read(
         raise ValueError(f'{dates[0]} has dates in place of numbers')
     data = {role: raw[column.name] * column.scale for role, column in found.items()}
     usable = {role: np.abs(values) <= LARGEST_ANGLE for role, values in data.items()}  # no NaN
-    fewest = min(map(np.count_nonzero, usable.values()))
-    apart = len({*clocks.values()}) > 1
+    if 'rotor' in found and 'torque' in found and not usable['torque'].any():
+        del found['torque'], data['torque'], usable['torque']
+    counts = [*map(np.count_nonzero, usable.values())]
+    fewest, apart = min(counts), len({*clocks.values()}) > 1
+    if not apart and len(lengths := {*map(len, data.values())}) > 1:
+        raise ValueError(
+            f'columns of {" and ".join(map(str, sorted(lengths)))} rows, without times'
+        )
     both = np.zeros(1, bool) if apart else np.all([*usable.values()], axis=0)
     # PlotJuggler writes each at its own times, with nothing in the columns of the others.
-    apart = apart or bool(clock and 2 * np.count_nonzero(both) < fewest)
+    apart = apart or bool(clock and 2 * np.count_nonzero(both) < max(counts))
     if not fewest or not (apart or both.any()):
         names = ', '.join(column.name for column in found.values())
         raise ValueError(f'no usable rows: none has numbers in all of {names}')
@@ -166,7 +181,8 @@ def _read(
         stamp, chosen = stamps(clock, raw.get(clocks[roles[0]]), kept, remarks)
         values = {role: data[role][chosen] for role in roles}
         values = {role: np.where(np.abs(v) < _LEAST, 0.0, v) for role, v in values.items()}
-        one = _Series(stamp, values, np.cumsum(~kept)[chosen] if not apart else 0 * stamp)
+        gaps = 0 if apart else np.cumsum(np.diff(chosen, prepend=chosen[0]) > _GAP)
+        one = _Series(stamp, values, gaps + 0 * stamp)
         series |= dict.fromkeys(roles, one)
     base = series['output' if 'output' in found else 'angle']
     said = [f'time [{clock.unit}] from {clock.name}'] if clock else []
@@ -180,6 +196,7 @@ def _measured(
     series: Mapping[str, _Series],
     sources: Sources,
     ratio: Fraction,
+    period: float,
     *,
     timed: bool,
 ) -> tuple[Encoders | None, Loading | None]:
@@ -201,7 +218,7 @@ def _measured(
     if torque is not None and 'angle' in found:
         angle = found['angle']
         locked = locked_shaft(
-            torque, values['angle'], steps['angle'],
+            torque, _unwrapped(main, 'angle', period * angle.on_rotor), steps['angle'],
             ratio if angle.on_rotor else Fraction(1), measured=angle.on_output,
         )  # fmt: skip
         if (twist := np.ptp(locked.angle)) > _MOST_TWIST:
@@ -212,12 +229,9 @@ def _measured(
         return None, locked
     rotor, output = values['rotor'], values['output']
     if not sources.as_recorded:
-        rotor, output = unwrapped(rotor), unwrapped(output)
-    before, share, inside = (
-        np.arange(len(output)),
-        np.zeros(len(output)),
-        np.ones(len(output), bool),
-    )
+        rotor, output = _unwrapped(main, 'rotor', period), _unwrapped(series['output'], 'output')
+    rows = len(output)
+    before, share, inside = np.arange(rows), np.zeros(rows), np.ones(rows, bool)
     if series['output'] is not main:
         gap = _GAP * float(np.median(np.diff(main.stamp)))
         before, share, inside = match(main.stamp, series['output'].stamp, gap)
@@ -227,7 +241,8 @@ def _measured(
         motion, timed, before, share, output[inside], steps['rotor'], steps['output'],
     )  # fmt: skip
     assumed = not (found['rotor'].unit or found['output'].unit)
-    if assumed and min(_LIKE) < _error(both.at_measured(rotor), both.measured) < max(_LIKE):
+    turned = rotor if not sources.as_recorded else _unwrapped(main, 'rotor', period)
+    if assumed and min(_LIKE) < _error(both.at_measured(turned), both.measured) < max(_LIKE):
         raise ValueError(
             f'{found["output"].name} differs from {found["rotor"].name} by more than gears do '
             'in rad, as in degrees: give the unit with --angle-unit'
@@ -247,7 +262,7 @@ def _torque(
 
 def _error(rotor: Array, output: Array) -> float:
     """By how much the output leaves the rotor within most parts of a recording, rad."""
-    rotor, output = unwrapped(rotor), unwrapped(output)
+    output = np.unwrap(output) if count_wraps(output, TURN) else output
     every = max(1, len(rotor) // _ROWS)
     rotor, output = rotor[::every], output[::every]
     ratio = output_by_rotor(rotor, output)
@@ -296,7 +311,8 @@ def _advice(path: Path, table: TableFile, sources: Sources, ratio: Fraction) -> 
     raw, _ = table.load([name for name in names if names.count(name) == 1][:_TRIED])
     pairs = {}
     for rotor, output in permutations(filterfalse(_NO_ANGLE.search, raw), 2):
-        if raw[rotor].dtype.kind + raw[output].dtype.kind != 'ff':
+        kinds = raw[rotor].dtype.kind + raw[output].dtype.kind
+        if kinds != 'ff' or len(raw[rotor]) != len(raw[output]):
             continue
         pair = np.array([raw[rotor], raw[output]])[:, :_ROWS]
         pair = np.diff(pair[:, np.isfinite(pair).all(axis=0)])
@@ -310,7 +326,7 @@ def _advice(path: Path, table: TableFile, sources: Sources, ratio: Fraction) -> 
         try:
             _recording(path, table, named, ratio)
         except ValueError as error:
-            if 'degrees' not in str(error):
+            if '--angle-unit' not in str(error):
                 continue
             words += ['--angle-unit', 'deg']
         command = shlex.join([*sources.command.split(), str(path), *words])

@@ -205,6 +205,44 @@ ENCODERS = {
         [t, (r * DEG + 180.0) % 360.0 - 180.0, (o * DEG) % 360.0], WITH_DEG.replace(';', ',')),
     'wraps at one turn': lambda t, r, o: written(
         [t, r * REV % 1.0, o * REV], 'time,rotor_rev,output_rev', 3 * ['{:.7f}']),
+    'names above names': lambda t, r, o: written(
+        [t, r * DEG, r, o * DEG], ',Motor,,Load\nt (s),Angle (deg),Speed (rad/s),Angle (deg)',
+        4 * ['{:.5f}']),
+    'units above names': lambda t, r, o: written(
+        [t * 1e3, r * DEG, o * DEG], 'ms,deg,deg\ntime,rotor,output'),
+    'meta lines of three cells above names with units': lambda t, r, o: written(
+        [t, r * DEG, o * DEG], 'bench,3,x\nTime (s),Rotor (deg),Output (deg)'),
+    'texts among the values': lambda t, r, o: 'time,topic,value\n' + ''.join(
+        f'{at:.2f},rotor,{rotor:.5f}\n{at:.2f},output,{out:.5f}\n{at:.2f},state,idle\n'
+        for at, rotor, out in zip(t, r, o, strict=True)),
+    'slices and units of Foxglove': lambda t, r, o: 'timestamp,message path,value\n' + ''.join(
+        f'{at + 1764230000:.2f},/{topic}.position[:]{{0}}@degrees,{DEG * value:.5f}\n'
+        for topic, values in (('rotor', r), ('output', o))
+        for at, value in zip(t, values, strict=True)),
+    'JSON of a topic that others share': lambda t, r, o: (
+        '_log_time_ns,_publish_time_ns,header.stamp,header.frame_id,name,position,effort\n'
+        + ''.join(
+            f'1,1,{round(at * 1e3)}000000,,"[""m1"", ""out""]","[{rotor:.5f}, {out:.5f}]",[]\n'
+            f'1,1,{round(at * 1e3)}000001,,"[""finger""]",[0.5],[]\n'
+            for at, rotor, out in zip(t + 1.79e9, r, o, strict=True))),
+    'the output at every other moment of the rotor, and later': lambda t, r, o: (
+        'time,rotor,output\n' + ''.join(
+            f'{at:.2f},{rotor:.5f},{out:.5f}\n{at + 0.01:.2f},{ahead:.5f},\n'
+            f'{at + 0.02:.2f},{0.5 * rotor + 0.5 * after:.5f},\n'
+            for at, rotor, out, ahead, after in zip(
+                t, r, o, 0.75 * r + 0.25 * np.append(r[1:], r[-1]), np.append(r[1:], r[-1]),
+                strict=True))),
+    'over midnight': lambda t, r, o: written(
+        [t, r, o], NAMES,
+        (lambda v: moment(' ')(v + 15 * 3600 - 20)[11:], *DECIMALS[1:])),
+    'whole seconds': lambda t, r, o: written(
+        [t, r, o], 'time_s,rotor,output', ('{:.0f}', *DECIMALS[1:])),
+    'German': lambda t, r, o: in_german(written(
+        [t, r * DEG, o * DEG], 'Zeit [s],Winkel Antrieb [°],Winkel Abtrieb [°]', mark=','
+        ).replace(',', ';')),
+    'counts of 16 bits': lambda t, r, o: written(
+        [t, np.round(r * REV * 4096) % 65536, o], 'time,rotor_counts,output_rad',
+        ('{:.2f}', '{:.0f}', '{:.5f}')),
     'a row from the future': lambda t, r, o: written([moved(t, (200, 40.0)), r, o], NAMES),
     'rows from past and future': lambda t, r, o: written(
         [moved(t, (200, 40.0), (201, 40.0), (700, 1.0)), r, o], NAMES),
@@ -240,7 +278,9 @@ def saved(folder, content):
 
 @pytest.mark.parametrize('dialect', ENCODERS)
 def test_encoders_are_read_in_every_dialect(tmp_path, gear, reference, dialect):
-    recording = read(saved(tmp_path, ENCODERS[dialect](*reference('encoders'))), gear)
+    counts = 4096 if 'counts' in dialect else None
+    path = saved(tmp_path, ENCODERS[dialect](*reference('encoders')))
+    recording = read(path, gear, Sources(rotor_counts=counts))
     measured = measure(recording, gear)
     assert not measured.wrong_ratio
     lost = measured.transmission.lost_motion
@@ -270,6 +310,8 @@ def test_ramps_are_read_in_every_dialect(tmp_path, gear, reference, dialect):
         (lambda t, r, o: written([25 * t, r / 3, o / 3], NAMES),
          'steps of 1 do not .* --time-column'),
         (lambda t, r, o: written([t, r, o], ''), 'the first row has numbers'),
+        (lambda t, r, o: written([t, r, o], NAMES).translate(str.maketrans('.', ',')),
+         'rows of 6 cells are below 3 names'),
         (lambda t, _, o: written([t, 0.4 * np.sin(t), o], 'time,angle,torque'),
          'turns by 45.8° under torque'),
         (lambda t, _, o: written([t, 1e-3 * o, np.round(1e3 * o)], 'time,angle,torque'),
@@ -324,9 +366,10 @@ def mat(path, time, rotor, output):
 def tdms(path, time, rotor, output):
     nptdms = pytest.importorskip('nptdms')
     with nptdms.TdmsWriter(path) as writer:
-        for name, values in (('Rotor', DEG * rotor), ('Output', DEG * output)):
-            known = {'unit_string': 'deg', 'wf_increment': float(time[1])}
-            writer.write_segment([nptdms.ChannelObject('run', name, values, properties=known)])
+        for group, values in (('Rotor', DEG * rotor), ('Output', DEG * output)):
+            known = {'wf_increment': float(time[1])}
+            channel = nptdms.ChannelObject(group, 'Angle [deg]', values, properties=known)
+            writer.write_segment([channel])
     return Sources()
 
 

@@ -38,9 +38,11 @@ def count_wraps(values: Array, turn: float, error: float = 1.0) -> int:
     return len(wraps) if same and np.ptp(values) <= _MOST_SPAN * turn else 0
 
 
-def unwrapped(values: Array) -> Array:
-    """Take the wraps of a turn, if there are any, out of positions (n,), rad."""
-    return np.unwrap(values) if count_wraps(values, TURN) else values
+def unwrapped(values: Array, seconds: Array, step: Step, period: float = 0.0) -> Array:
+    """Take the wraps out of positions; see `find_range`, unless they are within a known one."""
+    if not period or np.ptp(values) > _MOST_SPAN * period:
+        period, _ = find_range(values, seconds, step)
+    return np.unwrap(values, period=period) if period else values
 
 
 def find_range(values: Array, seconds: Array, step: Step) -> tuple[float, int]:

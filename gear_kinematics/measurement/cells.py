@@ -1,0 +1,119 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The cells of tables as text: numbers, times, and arrays of them."""
+
+import csv
+import re
+from collections.abc import Sequence
+from functools import cache
+from itertools import repeat
+from typing import Any, NamedTuple
+
+import numpy as np
+
+_MOMENT = re.compile(
+    r'(\d{4}-\d\d-\d\d[T ])?\d?\d:\d\d:\d\d([.,]\d+)?\s?(Z|UTC|[+-]\d\d:?\d\d)?', re.ASCII
+)
+
+
+def cells_of(line: str, separator: str) -> list[str]:
+    """Divide a line; a separator that is a space may be several."""
+    if separator == ' ':
+        return line.split()
+    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
+
+
+def numbers(column: Any, point: str = '.') -> Any:
+    """Return a column of pandas as numbers or datetime64[ns]; NaN or NaT where it has none."""
+    import pandas as pd  # noqa: PLC0415, of an extra
+
+    if column.dtype.kind == 'm':  # since the start
+        column = pd.Timestamp(0) + column
+    if column.dtype.kind == 'M':
+        return column.to_numpy('datetime64[ns]')
+    if column.dtype.kind in 'iufb':
+        return column.to_numpy()
+    text = column.astype(str).str.strip().str.replace('\u2212', '-')
+    text = text.str.replace(r"(?<=\d)[ '\u00a0\u202f](?=\d{3}\b)", '', regex=True)
+    other = re.escape('.' if point == ',' else ',')
+    marked = text[text.str.contains(other)]
+    grouped = rf'[-+]?[1-9]\d{{0,2}}({other}\d{{3}})+({re.escape(point)}\d*)?'
+    both = marked.str.contains(re.escape(point)) | (marked.str.count(other) > 1)
+    thousands = (both.any() or len(marked) < len(text)) and marked.str.fullmatch(grouped).all()
+    plain = text.str.replace(other, '' if thousands else '.', regex=True)
+    values = pd.to_numeric(plain.str.replace(',', '.'), errors='coerce').to_numpy(float)
+    if np.isfinite(values).any():
+        return values
+    text = text.str.replace(',', '.')
+    text = text.str.replace(r'^(\d\d)\.(\d\d)\.(\d{4}) (?=\d\d:)', r'\3-\2-\1T', regex=True)
+    moments = pd.to_datetime(text, format='ISO8601', utc=True, errors='coerce')
+    moments = moments.dt.tz_localize(None)
+    if not moments.notna().any():
+        of_day = text.where(text.str.fullmatch(_MOMENT.pattern))
+        moments = pd.Timestamp(0) + pd.to_timedelta(of_day, errors='coerce')
+    return moments.to_numpy('datetime64[ns]') if moments.notna().any() else values
+
+
+def weight(cell: str, point: str) -> float:
+    """How sure it is that this is a number or a time: 0 to 1."""
+    if elements := _array(cell):
+        return min(weight(one, '.') for one in elements)
+    mark, other = re.escape(point), re.escape('.' if point == ',' else ',')
+    if re.fullmatch(rf'[-+\u2212]?(\d+{mark}?\d*|{mark}\d+)([eE][-+]?\d+)?', cell):
+        return 1.0 if ',' not in cell else 0.9
+    grouped = rf"[-+\u2212]?[1-9]\d{{0,2}}(([ '\u00a0\u202f]|{other})\d{{3}})+({mark}\d*)?"
+    return 0.5 if re.fullmatch(grouped, cell) or _MOMENT.fullmatch(cell) else 0.0
+
+
+class Element(NamedTuple):
+    """An element of the arrays in the cells of a column, as JSON has them."""
+
+    place: int
+    beside: int
+    """The place of the column whose arrays name the elements; that of the arrays if none does."""
+    key: int | str
+    """Its number, or its name."""
+
+    @property
+    def is_position(self) -> bool:
+        """Whether it is one of sensor_msgs/JointState."""
+        return isinstance(self.key, str)
+
+    def of(self, frame: Any) -> Any:
+        """The column of it; `nan` in rows without it."""
+        import pandas as pd  # noqa: PLC0415, of an extra
+
+        @cache
+        def number(names: str) -> int | None:
+            found = _array(names)
+            return found.index(self.key) if self.key in found else None
+
+        keys = map(number, frame[self.beside]) if isinstance(self.key, str) else repeat(self.key)
+        rows = zip(map(_array, frame[self.place]), keys, strict=False)
+        cells = [row[k] if k is not None and k < len(row) else 'nan' for row, k in rows]
+        return pd.Series(cells, dtype=object)
+
+
+def _array(cell: Any) -> list[str]:
+    text = str(cell).strip()
+    inner = text[1:-1].strip(' ,') if text[:1] + text[-1:] == '[]' else ''
+    return [one.strip(' "\'') for one in inner.split(',')] if inner else []
+
+
+def elements_of(lines: Sequence[str], names: Sequence[str], separator: str) -> dict[str, Element]:
+    """Elements of arrays, by names: of sensor_msgs/JointState, with those of the joints."""
+    rows = [cells_of(line, separator) for line in lines]
+    found = {}
+    for place, column in enumerate(names):
+        arrays = [array for row in rows if place < len(row) and (array := _array(row[place]))]
+        if not arrays or not all(weight(cell, '.') for array in arrays for cell in array):
+            continue
+        named_by = column.rpartition('position')[0] + 'name'
+        if column.endswith('position') and named_by in names:
+            beside = names.index(named_by)
+            for key in dict.fromkeys(key for row in rows for key in _array(row[beside])):
+                found[f'{key} {column}'] = Element(place, beside, key)
+        else:
+            many = max(map(len, arrays))
+            keys = [f'{column}[{k}]' for k in range(many)] if many > 1 else [column]
+            found |= {key: Element(place, place, k) for k, key in enumerate(keys)}
+    return found
