@@ -6,8 +6,10 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from gear_kinematics.parameters import NODE, PARAMETERS, NodeParameters, default_config
+from gear_kinematics.parameters.arm import chosen, load_actuators
 
 
 def positive(text: str) -> float:
@@ -46,9 +48,13 @@ def group(parser: argparse.ArgumentParser, title: str) -> argparse._ArgumentGrou
 
 
 def add_config(
-    parser: argparse.ArgumentParser, node: str = NODE, default: str = 'config/actuator.yaml'
+    parser: argparse.ArgumentParser,
+    node: str = NODE,
+    default: str = 'config/actuator.yaml',
+    *,
+    actuator: str = 'in a file with several `actuators`, the one that is meant',
 ) -> None:
-    """Add the options for the parameters of a node."""
+    """Add the options for the parameters of a node; `actuator` is the help on `--actuator`."""
     gear = group(parser, 'gear')
     gear.add_argument(
         '--config',
@@ -63,6 +69,7 @@ def add_config(
         help='node in a file with several nodes, with or without namespace, such as '
         f'/left/{node} (default: %(default)s)',
     )
+    gear.add_argument('--actuator', default='', metavar='NAME', help=actuator)
 
 
 def add_mechanism(parser: argparse.ArgumentParser, *, sizes: bool = False) -> None:
@@ -112,12 +119,38 @@ _REPLACED = {
 
 
 def load_config(options: argparse.Namespace, bag: Path | None = None) -> NodeParameters:
-    """Load the parameters from `config_path`; options replace some of them.
+    """Load the parameters of one actuator from `config_path`; options replace some of them.
 
     Raises:
-        ValueError: for values that the node would refuse.
+        ValueError: for values that the node would refuse, and if it is open which actuator is
+            meant.
     """
-    config = NodeParameters.load(config_path(options, bag), options.node)
+    path = config_path(options, bag)
+    config = NodeParameters.load(path, options.node, actuator=options.actuator)
+    return replace(config, **_replacing(options))
+
+
+def load_configs(
+    options: argparse.Namespace, bag: Path | None = None
+) -> dict[str, NodeParameters]:
+    """Load the parameters of all actuators, or of the chosen one, from `config_path`, by name.
+
+    Without `actuators` in the file, the only name is ''. Options replace some of the parameters.
+
+    Raises:
+        ValueError: for values that the node would refuse, and for options that would replace a
+            parameter of several actuators.
+    """
+    found = load_actuators(config_path(options, bag), options.node)
+    found, replacing = chosen(found, options.actuator), _replacing(options)
+    if replacing and len(found) > 1:
+        names = ', '.join(replacing)
+        raise ValueError(f'{names} can be replaced for one actuator: choose it with --actuator')
+    return {name: replace(config, **replacing) for name, config in found.items()}
+
+
+def _replacing(options: argparse.Namespace) -> dict[str, Any]:
+    """The values of parameters in options."""
     given = {}
     for name, parameter in _REPLACED.items():
         if (value := getattr(options, name, None)) is None:
@@ -129,7 +162,7 @@ def load_config(options: argparse.Namespace, bag: Path | None = None) -> NodePar
                 raise ValueError(fault)
     if 'ring_teeth' in given or 'satellite_teeth' in given:
         given['gear_ratio'] = ''
-    return replace(config, **given)
+    return given
 
 
 def in_bag_folder(bag: Path, name: str) -> Path | None:

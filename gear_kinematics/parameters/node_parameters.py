@@ -13,8 +13,6 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Any, Self
 
-import yaml
-
 from gear_kinematics.kinematics import Branch, Gear, GearRatio, Mechanism, MechanismError
 from gear_kinematics.kinematics.loads import Bodies, TorqueSharing
 from gear_kinematics.kinematics.preload import Preload, Stiffness
@@ -23,13 +21,10 @@ from gear_kinematics.parameters import checks, meshes
 from gear_kinematics.parameters.body_parameters import (
     BRANCH_PARAMETERS,
     LOADS_PARAMETERS,
-    branch_parameters,
 )
-from gear_kinematics.parameters.files import FILES, ConfigError, default_values, given_parameters
-from gear_kinematics.parameters.parameter import Parameter, declared_in, faults_of, parameter
-from gear_kinematics.parameters.yaml_file import Dumper
+from gear_kinematics.parameters.files import ConfigError, default_values
+from gear_kinematics.parameters.parameter import Parameter, declared_in, parameter
 from gear_kinematics.share import share_directory
-from gear_kinematics.wire.nearest import nearest
 
 NODE = 'gear_state_publisher'
 """The default name of the node."""
@@ -46,6 +41,8 @@ class NodeParameters:
     `a.cam_phase`. Values in the bounds can still describe no mechanism: see `gear`.
     """
 
+    actuator: str = ''
+    """Which of `actuators` it is; '' without."""
     ring_teeth: int = parameter('Teeth of the ring gears, zk', 2, 100_000, read_only=True)
     satellite_teeth: int = parameter('Teeth of the satellites, zs', 1, 99_999, read_only=True)
     eccentricity: float = parameter('Eccentricity of the cams, m', 1e-6, 1.0, read_only=True)
@@ -170,11 +167,18 @@ class NodeParameters:
         read_only=True,
     )
 
-    @classmethod
-    def load(cls, path: Path | None = None, node: str = NODE, others: Iterable[str] = ()) -> Self:
-        """Read a node's parameters from a file as the node would; others have their defaults.
+    actuators: tuple[str, ...] = parameter(
+        'Names of the actuators of an arm; empty: one gear', read_only=True
+    )
 
-        A relative path in it is relative to the file.
+    @staticmethod
+    def load(
+        path: Path | None = None,
+        node: str = NODE,
+        others: Iterable[str] = (),
+        actuator: str = '',
+    ) -> 'NodeParameters':
+        """Read a node's parameters from a file as the node would; others have their defaults.
 
         Args:
             path: a parameter file of ROS: blocks of parameters below names of nodes. None: the
@@ -182,25 +186,25 @@ class NodeParameters:
             node: the node's fully qualified name. Without a namespace, it is the only node of that
                 name in the file, or one without a namespace.
             others: names of parameters that the node has besides.
+            actuator: name of the actuator, in the file of an arm of several.
 
         Raises:
-            ConfigError: if it cannot be read, has nothing for the node, leaves open which node is
-                meant, or naming every value and every name that is refused.
+            ConfigError: as `load_actuators`, and if it leaves open which actuator is meant.
         """
-        path = path or default_config()
-        given = given_parameters(path, node)
-        if not (faults := faults_of(given, PARAMETERS)):
-            branches = given.get('branches', default_value('branches'))
-            faults = faults_of(given, branch_parameters(branches))
-            faults += unknown_parameters(given, branches, others)
-        if faults:
-            raise ConfigError(f'{path}: {"; ".join(faults)}')
-        given |= {name: str(path.parent / given[name]) for name in FILES if given.get(name)}
-        return cls.of(given)
+        from gear_kinematics.parameters import arm  # noqa: PLC0415, it imports this module
+
+        found = arm.chosen(arm.load_actuators(path, node, others), actuator)
+        if len(found) > 1:
+            several = f'parameters of more than one actuator: {", ".join(found)}'
+            raise ConfigError(f'{path}: {several}; choose one with --actuator')
+        return next(iter(found.values()))
 
     @classmethod
-    def of(cls, values: Mapping[str, Any]) -> Self:
-        """Create them from valid values by names in ROS; others have their defaults."""
+    def of(cls, values: Mapping[str, Any], actuator: str = '') -> Self:
+        """Create them from valid values by names in ROS, without that of the actuator.
+
+        Other parameters have their defaults.
+        """
 
         def value(name: str) -> Any:
             return values[name] if name in values else default_value(name)
@@ -212,10 +216,10 @@ class NodeParameters:
             Branch(name, value(f'{name}.cam_phase'), value(f'{name}.axial_position'))
             for name in given['branches']
         )
-        return cls(**given)
+        return cls(actuator=actuator, **given)
 
     def values(self) -> dict[str, Any]:
-        """The values by their names in ROS."""
+        """The values by their names in ROS, without that of the actuator."""
         values = {name: attrgetter(name)(self) for name in PARAMETERS}
         values['branches'] = [branch.name for branch in self.branches]
         values |= {name: [*values[name]] for name in _LISTS}
@@ -225,8 +229,30 @@ class NodeParameters:
 
     def as_file(self) -> str:
         """Write a parameter file for every node, from which `load` reads the same parameters."""
-        document = {'/**': {'ros__parameters': self.values()}}
-        return str(yaml.dump(document, Dumper=Dumper, sort_keys=False))
+        from gear_kinematics.parameters import arm  # noqa: PLC0415
+
+        return arm.as_file([self])
+
+    @property
+    def output_name(self) -> str:
+        """Name of the output shaft's joint in messages and in the URDF.
+
+        The default prefix of an actuator of an arm, `<actuator>_`, is not before it.
+        """
+        default = self.actuator and self.frame_prefix == f'{self.actuator}_'
+        return self.output_joint if default else self.frame_prefix + self.output_joint
+
+    @property
+    def joint_names(self) -> list[str]:
+        """Names of all joints in messages and in the URDF, of which `output_name` is the last.
+
+        Raises:
+            ValueError: if there is no such gear, or a name is refused.
+        """
+        from gear_kinematics.shape.urdf import joint_names  # noqa: PLC0415, of few programs
+
+        prefix = self.frame_prefix
+        return joint_names(self.gear, output_joint=self.output_name, frame_prefix=prefix)
 
     @property
     def gear(self) -> Gear:
@@ -278,7 +304,7 @@ class NodeParameters:
         return urdf(
             mechanism,
             module=module,
-            output_joint=self.output_joint,
+            output_joint=self.output_name,
             frame_prefix=self.frame_prefix,
             meshes=meshes.folder_uri(self.meshes, mechanism, module),
         )
@@ -301,7 +327,7 @@ class NodeParameters:
 
 PARAMETERS: Mapping[str, Parameter] = declared_in(NodeParameters) | LOADS_PARAMETERS
 """All parameters but those of the branches, by name."""
-_LISTS = [name for name, each in PARAMETERS.items() if each.items is float]
+_LISTS = [name for name, each in PARAMETERS.items() if each.kind is list and name != 'branches']
 
 
 @cache
@@ -313,18 +339,3 @@ def default_config() -> Path:
 def default_value(name: str) -> Any:
     """A parameter's default, from config/actuator.yaml; 0 for a branch that is not there."""
     return default_values(default_config(), NODE).get(name, 0.0)
-
-
-def unknown_parameters(
-    names: Iterable[str], branches: Iterable[str], others: Iterable[str] = ()
-) -> list[str]:
-    """A fault for each name that no node with these branches has; then all that it has."""
-    known, faults = [*PARAMETERS, *branch_parameters(branches), *others], []
-    for name in names:
-        if name in known or _EVERY_NODE.fullmatch(name):
-            continue
-        branch, _, key = name.rpartition('.')
-        of_a_branch = branch and key in BRANCH_PARAMETERS
-        hint = f'; `{branch}` is not in `branches`' if of_a_branch else nearest(name, known)
-        faults.append(f'unknown parameter `{name}`{hint}')
-    return [*faults, f'there are: {", ".join(known)}'] if faults else []

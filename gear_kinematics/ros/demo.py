@@ -58,7 +58,7 @@ def _play(
 ) -> tuple[list[Message], float]:
     """Play the bag, and show on a terminal how far it is and where the output is."""
     received, greatest = list[Message](), 0.0
-    reader = JointReader(config.output_joint)
+    reader = JointReader(config.output_name)
     with Progress(
         TextColumn('{task.description}'),
         BarColumn(),

@@ -12,8 +12,8 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from gear_kinematics.parameters import PARAMETERS, default_value
+from gear_kinematics.parameters.arm import unknown_parameters
 from gear_kinematics.parameters.body_parameters import branch_parameters
-from gear_kinematics.parameters.node_parameters import unknown_parameters
 from gear_kinematics.parameters.parameter import Parameter as Declaration
 from gear_kinematics.ros.workarounds.private import given_parameters
 
@@ -45,7 +45,7 @@ def declared(
     branches = node.get_parameter('branches').value
     _declare(node, branch_parameters(branches), default)
     _declare(node, others, default)
-    if faults := unknown_parameters(given, branches, others):
+    if faults := unknown_parameters(given, {'': branches}, others):
         raise ValueError('; '.join(faults))
     values = {name: p.value for name, p in node.get_parameters_by_prefix('').items()}
     return {name: [] if value is None else value for name, value in values.items()}

@@ -40,7 +40,8 @@ _STEEL = 7850.0  # kg/m³
 def joint_names(gear: Gear, *, output_joint: str, frame_prefix: str) -> list[str]:
     """List the joints of the URDF: rotor, satellites, Oldham couplings, output shaft.
 
-    If only the ratio of the gear is known, the output shaft's joint is the only one.
+    If only the ratio of the gear is known, the output shaft's joint is the only one. Its name
+    `output_joint` is complete; those of the others get the prefix.
 
     Raises:
         ValueError: if `output_joint` is empty or the name of another joint, or a name is not
@@ -49,14 +50,16 @@ def joint_names(gear: Gear, *, output_joint: str, frame_prefix: str) -> list[str
     names = []
     if isinstance(gear, Mechanism):
         branches = [branch.name for branch in gear.branches]
-        names.append('rotor')
-        names += [f'{kind}_{branch}' for kind in ('satellite', 'oldham') for branch in branches]
-    if not output_joint or output_joint in names:
-        raise ValueError(f'output_joint {output_joint!r} is empty or the name of another joint')
-    for parameter, text in (('output_joint', output_joint), ('frame_prefix', frame_prefix)):
+        names.append(f'{frame_prefix}rotor')
+        for kind in ('satellite', 'oldham'):
+            names += [f'{frame_prefix}{kind}_{branch}' for branch in branches]
+    own = output_joint.removeprefix(frame_prefix)
+    if not own or output_joint in names:
+        raise ValueError(f'output_joint {own!r} is empty or the name of another joint')
+    for parameter, text in (('output_joint', own), ('frame_prefix', frame_prefix)):
         if not text.isprintable():
             raise ValueError(f'{parameter} must be printable, not {text!r}')
-    return [frame_prefix + name for name in (*names, output_joint)]
+    return [*names, output_joint]
 
 
 def urdf(
@@ -67,8 +70,8 @@ def urdf(
     Args:
         mechanism: the mechanism.
         module: module of the teeth, m; with the tooth numbers it determines the sizes.
-        output_joint: name of the output shaft's joint, without the prefix.
-        frame_prefix: prefix of every link and joint name.
+        output_joint: complete name of the output shaft's joint.
+        frame_prefix: prefix of the names of all links and of the other joints.
         meshes: the URI below which viewers find the `solids` as STL; '' shows simple shapes. The
             inertias are those of the simple shapes.
 
@@ -87,19 +90,19 @@ def urdf(
         _show(links[visual.link], visual)
 
     def joint(kind: str, name: str, parent: str, child: str) -> ET.Element:
-        element = ET.SubElement(robot, 'joint', name=frame_prefix + name, type=kind)
+        element = ET.SubElement(robot, 'joint', name=name, type=kind)
         ET.SubElement(element, 'parent', link=frame_prefix + parent)
         ET.SubElement(element, 'child', link=frame_prefix + child)
         ET.SubElement(element, 'axis', xyz='1 0 0' if kind == 'prismatic' else '0 0 1')
         return element
 
-    joint('continuous', 'rotor', 'stator', 'rotor')
+    joint('continuous', f'{frame_prefix}rotor', 'stator', 'rotor')
     joint('continuous', output_joint, 'stator', 'output_shaft')
     for branch in mechanism.branches:
         satellite, oldham = f'satellite_{branch.name}', f'oldham_{branch.name}'
-        on_cam = joint('continuous', satellite, 'rotor', satellite)
+        on_cam = joint('continuous', frame_prefix + satellite, 'rotor', satellite)
         _place(on_cam, cam_centre(branch, e))
-        slide = joint('prismatic', oldham, satellite, oldham)
+        slide = joint('prismatic', frame_prefix + oldham, satellite, oldham)
         ET.SubElement(
             slide, 'limit', lower=repr(-e), upper=repr(e), effort='1000.0', velocity='1000.0'
         )

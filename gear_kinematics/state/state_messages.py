@@ -34,12 +34,12 @@ class OutputMessages:
     topics: Collection[str] = (OUTPUT_STATE,)
     """Topics whose messages are encoded."""
 
-    def __init__(self, ratio: GearRatio, *, output_joint: str, frame_prefix: str) -> None:
+    def __init__(self, ratio: GearRatio, *, output_joint: str) -> None:
         self._ratio = ratio
         self._torque_ratio = float(ratio)
         self._output_states = {
             (velocity, effort): JointStateTemplate(
-                [frame_prefix + output_joint], velocity=velocity, effort=effort
+                [output_joint], velocity=velocity, effort=effort
             )
             for velocity in (False, True)
             for effort in (False, True)
@@ -131,9 +131,7 @@ class StateMessages(OutputMessages):
     topics = STATE_TOPICS.keys()
 
     def __init__(self, mechanism: Mechanism, *, output_joint: str, frame_prefix: str) -> None:
-        super().__init__(
-            mechanism.gear_ratio, output_joint=output_joint, frame_prefix=frame_prefix
-        )
+        super().__init__(mechanism.gear_ratio, output_joint=output_joint)
         self._form = closed_form(mechanism)
         self._axial_positions = 2 * [branch.axial_position for branch in mechanism.branches]
         self._body_poses = PoseArrayTemplate(frame_prefix + 'stator', 2 * len(mechanism.branches))
@@ -210,9 +208,8 @@ def state_messages(parameters: NodeParameters) -> OutputMessages:
         ValueError: if `output_joint` is empty or the name of another joint, or a name is not
             printable.
     """
-    gear, joint, prefix = parameters.gear, parameters.output_joint, parameters.frame_prefix
-    names = {'output_joint': joint, 'frame_prefix': prefix}
+    gear, joint, prefix = parameters.gear, parameters.output_name, parameters.frame_prefix
     if isinstance(gear, Mechanism):
-        return StateMessages(gear, **names)
-    joint_names(gear, **names)  # to check them
-    return OutputMessages(gear, **names)
+        return StateMessages(gear, output_joint=joint, frame_prefix=prefix)
+    joint_names(gear, output_joint=joint, frame_prefix=prefix)  # to check them
+    return OutputMessages(gear, output_joint=joint)

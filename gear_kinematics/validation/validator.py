@@ -90,7 +90,7 @@ class Validator:
         unseen = bool(parameters.rotor_period) or parameters.absolute
         self._given_segment = None if unseen else self._state.input.segment
         """The latest segment with an output."""
-        joint = parameters.frame_prefix + parameters.output_joint
+        joint = parameters.output_name
         self.output = OutputState(topics.output, joint, self._expectation)
         self.poses = None
         if isinstance(gear, Mechanism) and topics.poses:

@@ -139,7 +139,7 @@ class GearNode:
         if not (parameters := self.parameters):
             return True
         with suppress(MalformedMessageError):
-            return f'{parameters.frame_prefix}{parameters.output_joint}' in joints_of(data)
+            return parameters.output_name in joints_of(data)
         return False
 
     def hears(self, topic: str) -> bool:

@@ -42,6 +42,7 @@ CONTRACT = {
     'rotor_encoder_range': 0.0,
     'rotor_effort_factor': 1.0,
     'output_range': [],
+    'actuators': [],
     'max_rotor_speed': 650.0,
     'input_timeout': 1.0,
     'unreferenced_outputs': 'publish',

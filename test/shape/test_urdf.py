@@ -24,7 +24,7 @@ NAMES = {'output_joint': 'output_shaft', 'frame_prefix': ''}
 )
 def test_tree_is_as_documented(actuator, prefix, output):
     """With the prefix on every link and joint."""
-    names = {'output_joint': output, 'frame_prefix': prefix}
+    names = {'output_joint': prefix + output, 'frame_prefix': prefix}
     links, joints = read(urdf(actuator, module=MODULE, **names))
     tree = {
         ('stator', 'rotor'): 'continuous',
@@ -55,7 +55,7 @@ def test_joint_names_are_those_of_the_urdf(mechanism):
 @pytest.mark.parametrize('prefix', ['', 'left/'])
 def test_output_joint_with_the_name_of_another_joint_is_refused(actuator, name, prefix):
     with pytest.raises(ValueError, match=f'output_joint.*{name}'):
-        urdf(actuator, module=MODULE, output_joint=name, frame_prefix=prefix)
+        urdf(actuator, module=MODULE, output_joint=prefix + name, frame_prefix=prefix)
 
 
 def test_rotor_has_its_cams_and_the_output_shaft_its_arms(mechanism):

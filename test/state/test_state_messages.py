@@ -138,7 +138,7 @@ def test_only_selected_topics_are_encoded(actuator, topics):
 
 
 def test_names_and_frames_carry_the_prefix(actuator):
-    names = {'output_joint': 'shoulder', 'frame_prefix': 'left/'}
+    names = {'output_joint': 'left/shoulder', 'frame_prefix': 'left/'}
     state, poses, joints = encode(actuator, sample_at(0.0), names)
     assert list(state.name) == ['left/shoulder']
     assert poses.header.frame_id == 'left/stator'
@@ -209,7 +209,7 @@ def test_name_that_is_no_joint_is_refused_for_every_gear(name, ratio):
 def test_corrected_state_is_the_output_state_and_the_correction(
     mechanism, position, velocity, effort, correction
 ):
-    states = StateMessages(mechanism, **NAMES | {'frame_prefix': 'left/'})
+    states = StateMessages(mechanism, output_joint='left/output_shaft', frame_prefix='left/')
     sample = sample_at(position, velocity, effort)
     [(_, ideal)] = states.encode(sample, ['output_state'])
     encoded = dict(states.encode_corrected(sample, Correction(*correction)))

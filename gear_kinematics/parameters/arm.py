@@ -1,0 +1,214 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The parameters of an arm: several actuators in one node and in one parameter file.
+
+`shoulder.gear_ratio` is a parameter of the actuator `shoulder`; `gear_ratio` is the default of all
+actuators. A node without `actuators` has one actuator, whose name is ''.
+"""
+
+import re
+from collections import Counter, defaultdict
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from gear_kinematics.parameters.body_parameters import BRANCH_PARAMETERS, branch_parameters
+from gear_kinematics.parameters.files import FILES, ConfigError, given_parameters
+from gear_kinematics.parameters.node_parameters import (
+    NODE,
+    PARAMETERS,
+    NodeParameters,
+    default_config,
+    default_value,
+)
+from gear_kinematics.parameters.yaml_file import Dumper
+from gear_kinematics.wire.nearest import among, nearest
+
+COMMON = 'actuators', 'executor', 'home_file'
+"""Parameters of the node, which cannot differ between actuators."""
+
+_TOKEN = re.compile('[A-Za-z][A-Za-z0-9_]*', re.ASCII)
+"""A name that ROS allows in parameters, topics and services."""
+_EVERY_NODE = re.compile(r'use_sim_time|start_type_description_service|qos_overrides\..*')
+"""Parameters that every node has and that are ignored here."""
+_GROUPS = 'qos_overrides', 'use_sim_time', 'start_type_description_service'
+_JOINTS = 'rotor_joint', 'output_joint', 'output_encoder_joint'
+"""Their default is the name of the actuator."""
+
+
+def load_actuators(
+    path: Path | None = None, node: str = NODE, others: Iterable[str] = ()
+) -> dict[str, NodeParameters]:
+    """Read the parameters of all actuators of a node from a file, by name in their order.
+
+    A relative path in the file is relative to it. The arguments are those of
+    `NodeParameters.load`.
+
+    Raises:
+        ConfigError: if it cannot be read, has nothing for the node, leaves open which node is
+            meant, or naming every value and every name that is refused.
+    """
+    path = path or default_config()
+    given = given_parameters(path, node)
+    if faults := faults_in(given, others):
+        raise ConfigError(f'{path}: {"; ".join(faults)}')
+    for name, value in given.items():
+        if name.rpartition('.')[2] in FILES and value:
+            given[name] = str(path.parent / value)
+    return actuators_of(given)
+
+
+def actuators_of(given: Mapping[str, Any]) -> dict[str, NodeParameters]:
+    """Create the parameters of all actuators from valid values by names in ROS."""
+    return {name: NodeParameters.of(values, name) for name, values in _by_actuator(given).items()}
+
+
+def chosen(actuators: Mapping[str, NodeParameters], name: str) -> dict[str, NodeParameters]:
+    """Return the actuator of a name alone, or all for ''.
+
+    Raises:
+        ConfigError: if there is none of the name.
+    """
+    if name and name not in actuators:
+        there = among(name, [*filter(None, actuators)])
+        raise ConfigError(f'no actuator {name!r} in `actuators`{there}')
+    return {name: actuators[name]} if name else dict(actuators)
+
+
+def as_file(actuators: Iterable[NodeParameters]) -> str:
+    """Write a parameter file for every node, from which `load_actuators` reads the same."""
+    values: dict[str, Any] = {}
+    names = []
+    for each in actuators:
+        names += [each.actuator] if each.actuator else []
+        for name, value in each.values().items():
+            values[name if name in COMMON else full_name(each.actuator, name)] = value
+    document = {'/**': {'ros__parameters': values | {'actuators': names}}}
+    return str(yaml.dump(document, Dumper=Dumper, sort_keys=False))
+
+
+def full_name(actuator: str, name: str) -> str:
+    """Name in ROS of a parameter of an actuator."""
+    return f'{actuator}.{name}' if actuator else name
+
+
+def faults_in(given: Mapping[str, Any], others: Iterable[str] = ()) -> list[str]:
+    """List the faults of values by names in ROS, and of these names; the node has `others` too."""
+    names = given.get('actuators', [])
+    if fault := PARAMETERS['actuators'].fault('actuators', names):
+        return [fault]
+    actuators = _by_actuator(given)
+    branches = {name: _branches(values) for name, values in actuators.items()}
+    every = [branch for each in branches.values() for branch in each]
+    known = {**PARAMETERS} | branch_parameters(every)
+    faults = []
+    for name, value in given.items():
+        first, _, rest = name.partition('.')
+        parameter = known.get(rest if first in actuators else name)
+        if parameter and (fault := parameter.fault(name, value)):
+            faults.append(fault)
+    if names:
+        shared = [] if faults else shared_names(actuators_of(given))
+        faults = [*_name_faults(names, every, others), *faults, *shared]
+    return faults + unknown_parameters(given, branches, others)
+
+
+def shared_names(actuators: Mapping[str, NodeParameters]) -> list[str]:
+    """List the faults of names that only one actuator of an arm can have."""
+    owners = defaultdict[tuple[str, str], list[str]](list)
+    joints: Counter[str] = Counter()
+    for name, each in actuators.items():
+        owners['output_joint', each.output_name].append(name)
+        for parameter in ('rotor_joint', 'output_encoder_joint'):
+            owners[parameter, getattr(each, parameter)].append(name)
+        if not each.gear_ratio:
+            owners['frame_prefix', each.frame_prefix].append(name)
+        with suppress(ValueError):  # which the gear or its messages will raise
+            joints.update(each.joint_names)
+    faults = []
+    for (parameter, value), names in owners.items():
+        if len(actuators) > 1 and not value and parameter in _JOINTS:
+            every = ' and '.join(full_name(name, parameter) for name in names)
+            faults.append(f'{every} must name a joint, as there are several actuators')
+        elif len(names) > 1:
+            text = f'{parameter} {value!r} belongs to {" and ".join(names)}: give each its own'
+            faults.append(text)
+    twice = [name for name, count in joints.items() if count > 1]
+    if twice and not faults:
+        faults = [f'two actuators have a joint {name!r}: change an output_joint' for name in twice]
+    return faults
+
+
+def unknown_parameters(
+    names: Iterable[str], branches: Mapping[str, Iterable[str]], others: Iterable[str] = ()
+) -> list[str]:
+    """A fault for each name that no node has with these branches of its actuators.
+
+    The last text lists the names that the node has.
+    """
+    every = dict.fromkeys(branch for each in branches.values() for branch in each)
+    known = [*PARAMETERS, *branch_parameters(every), *others]
+    own = [
+        f'{actuator}.{name}'
+        for actuator, each in branches.items()
+        for name in (*PARAMETERS, *branch_parameters(each), *others)
+        if actuator and name not in COMMON
+    ]
+    faults, all_known = [], dict.fromkeys([*known, *own])
+    for name in names:
+        if name in all_known or _EVERY_NODE.fullmatch(name):
+            continue
+        group, _, key = name.rpartition('.')
+        actuator, _, branch = group.rpartition('.')
+        if branch and key in BRANCH_PARAMETERS and actuator in ('', *branches):
+            hint = f'; `{branch}` is not in `{full_name(actuator, "branches")}`'
+        elif key in COMMON and group in branches:
+            hint = f'; give `{key}` without `{group}.`, as it holds for all actuators'
+        else:
+            hint = nearest(name, all_known)
+        faults.append(f'unknown parameter `{name}`{hint}')
+    if faults:
+        single = f', and for each actuator such as `{own[0]}`' if own else ''
+        faults.append(f'there are: {", ".join(known)}{single}')
+    return faults
+
+
+def _by_actuator(given: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """The values that hold for each actuator, by names without that of the actuator."""
+    names = dict.fromkeys(given.get('actuators') or [''])
+    values = {}
+    for name in names:
+        own = {'frame_prefix': f'{name}_', **dict.fromkeys(_JOINTS, name)} if name else {}
+        own |= {key: value for key, value in given.items() if key.partition('.')[0] not in names}
+        prefix = f'{name}.'
+        own |= {
+            key.removeprefix(prefix): value
+            for key, value in given.items()
+            if name and key.startswith(prefix)
+        }
+        values[name] = own
+    return values
+
+
+def _branches(values: Mapping[str, Any]) -> list[str]:
+    """The names of the branches, or the default ones if they are refused."""
+    default: list[str] = default_value('branches')
+    names: list[str] = values.get('branches', default)
+    return default if PARAMETERS['branches'].fault('branches', names) else names
+
+
+def _name_faults(
+    names: Iterable[str], branches: Collection[str], others: Iterable[str]
+) -> Iterator[str]:
+    groups = {name.partition('.')[0] for name in (*PARAMETERS, *others, *_GROUPS)}
+    for name, count in Counter(names).items():
+        if count > 1:
+            yield f'actuators: `{name}` is there {count} times'
+        if not _TOKEN.fullmatch(name):
+            yield f'actuators: {name!r} must be letters, digits and _, and begin with a letter'
+        elif name in branches:
+            yield f'actuators: `{name}` is the name of a branch, too'
+        elif name in groups:
+            yield f'actuators: `{name}` is the name of a parameter or of a group of them, too'
