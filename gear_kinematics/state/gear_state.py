@@ -17,9 +17,9 @@ from gear_kinematics.state.loads import LoadEstimator
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.rotor_samples import RotorSamples
-from gear_kinematics.state.state_messages import OutputMessages, state_messages
+from gear_kinematics.state.state_messages import OutputMessages, Row, state_messages
 from gear_kinematics.state.turn_reference import TurnReference
-from gear_kinematics.wire.joint_reader import JointValues, RejectedInputError
+from gear_kinematics.wire.joint_reader import JointMessage, RejectedInputError
 from gear_kinematics.wire.topics import (
     CORRECTED_TOPICS,
     LOAD_TOPICS,
@@ -114,12 +114,12 @@ class GearState:
         self._states = [topic for topic in topics if topic in STATE_TOPICS]
         self._corrections = [topic for topic in topics if topic in CORRECTED_TOPICS]
         self._load_topics = [topic for topic in topics if topic in LOAD_TOPICS]
-        self._errors = TRANSMISSION_ERROR in topics
+        self.errors_chosen = TRANSMISSION_ERROR in topics
         self.messages = state_messages(self.parameters)
         if self._load_topics and not self._loads:
             self._loads = LoadEstimator(self.parameters)
 
-    def rotor(self, data: bytes | JointValues, now: Callable[[], int]) -> RotorAnswer:
+    def rotor(self, data: JointMessage, now: Callable[[], int]) -> RotorAnswer:
         """Process the next message of the rotor; see `RotorInput.accept`."""
         rotor = self.input
         sample = rotor.accept(data, now)
@@ -133,32 +133,40 @@ class GearState:
         withheld = self._withholding and not referenced
         return _answer((sample, segment, referenced, withheld, correction, errors))
 
-    def encoder(self, data: bytes, now: Callable[[], int]) -> Sequence[ErrorSample]:
+    def encoder(self, data: JointMessage, now: Callable[[], int]) -> Sequence[ErrorSample]:
         """Process the next message of the output's encoder; see `OutputEncoder.accept`."""
         return self.output_encoder.accept(data, now)
 
     def encode(self, answer: RotorAnswer) -> list[tuple[str, bytes]]:
-        """Return topic and message of what is published on the chosen topics.
-
-        They are taken in order, as accelerations, of which loads depend, follow the motion.
-        """
-        sample, segment, _, withheld, correction, errors = answer
-        encoded: list[tuple[str, bytes]] = []
-        if not withheld:
-            encoded = self.messages.encode(sample, self._states)
-            if correction:
-                encoded += self.messages.encode_corrected(sample, correction, self._corrections)
-            if self._loads and self._load_topics:
-                loads = self._loads.follow(sample, segment)
-                encoded += self._loads.encode(sample.stamp, loads, self._load_topics)
-        if errors:
-            encoded += self.encode_errors(errors)
+        """Return topic and message of what is published on the chosen topics."""
+        stamp = answer[0].stamp
+        encoded = [
+            (topic, template.encode(stamp, numbers))
+            for topic, template, numbers in self.rows(answer)
+        ]
+        if answer.errors:
+            encoded += self.encode_errors(answer.errors)
         return encoded
+
+    def rows(self, answer: RotorAnswer) -> list[Row]:
+        """Return what the messages on the chosen topics are encoded of, without errors.
+
+        Answers are taken in order, as accelerations, of which loads depend, follow the motion.
+        """
+        sample, segment, _, withheld, correction, _ = answer
+        if withheld:
+            return []
+        rows = self.messages.rows(sample, self._states)
+        if correction:
+            rows += self.messages.corrected_rows(sample, correction, self._corrections)
+        if self._loads and self._load_topics:
+            rows += self._loads.rows(self._loads.follow(sample, segment), self._load_topics)
+        return rows
 
     def encode_errors(self, errors: Iterable[ErrorSample]) -> list[tuple[str, bytes]]:
         """Return topic and message of transmission errors, if their topic is chosen."""
-        encode = self.messages.transmission_error
-        return [(TRANSMISSION_ERROR, encode(error)) for error in errors if self._errors]
+        encode, chosen = self.messages.angle.encode, self.errors_chosen
+        return [(TRANSMISSION_ERROR, encode(e.stamp, [e.error])) for e in errors if chosen]
 
     def samples(self, messages: Sequence[bytes], received: Sequence[int]) -> RotorSamples:
         """Process many messages of the rotor for their samples; see `RotorInput.accept_batch`."""

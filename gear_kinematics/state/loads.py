@@ -21,9 +21,10 @@ from gear_kinematics.kinematics.preload import Pair
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.diagnostics import OK, WARN, StatusReport
 from gear_kinematics.state.rotor_samples import RotorSamples
+from gear_kinematics.state.state_messages import Row
 from gear_kinematics.wire.batches import Array, encode
 from gear_kinematics.wire.cdr import SECOND, JointStateTemplate, Template, WrenchesTemplate
-from gear_kinematics.wire.topics import BRANCH_LOADS, JOINT_LOADS, LOAD_TOPICS
+from gear_kinematics.wire.topics import BRANCH_LOADS, JOINT_LOADS
 
 _WINDOW = 20_000_000  # ns. A velocity in steps of 0.01 rad/s gives steps of 0.5 rad/s².
 _LONGEST = 100_000_000  # ns, beyond which a mean is no acceleration of the moment
@@ -129,13 +130,11 @@ class LoadEstimator:
         torques, stand_offs = self.sharing.branches(torque)
         return SampleLoads(torque, torques, stand_offs, equations, positions, inertias)
 
-    def encode(
-        self, stamp: int, loads: SampleLoads, topics: Iterable[str] = LOAD_TOPICS
-    ) -> Iterator[tuple[str, bytes]]:
-        """Yield topic and message at a sample; none if its loads are unknown."""
+    def rows(self, loads: SampleLoads, topics: Iterable[str]) -> Iterator[Row]:
+        """Yield what the messages at a sample are encoded of; none if its loads are unknown."""
         if math.isfinite(loads.torque):
             for topic in topics:
-                yield topic, self.templates[topic].encode(stamp, NUMBERS[topic](loads))
+                yield topic, self.templates[topic], NUMBERS[topic](loads)
 
     @np.errstate(invalid='ignore', over='ignore')
     def encode_batch(self, stamps: Array, loads: SampleLoads) -> dict[str, list[bytes]]:

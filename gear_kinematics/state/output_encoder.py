@@ -15,7 +15,7 @@ from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.slip import SlipWatch
 from gear_kinematics.state.turn_reference import TurnReference
 from gear_kinematics.wire.cdr import SECOND
-from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError
+from gear_kinematics.wire.joint_reader import JointMessage, JointReader, RejectedInputError
 
 
 def measured_angle(parameters: NodeParameters, position: Any) -> Any:
@@ -57,11 +57,11 @@ class OutputEncoder:
         self.reference = self._turn_reference if parameters.absolute else None
         self._segment: int | None = None
 
-    def accept(self, data: bytes, now: Callable[[], int]) -> Sequence[ErrorSample]:
+    def accept(self, data: JointMessage, now: Callable[[], int]) -> Sequence[ErrorSample]:
         """Process the next message; returns the errors that are known now, in order.
 
         Args:
-            data: a serialised sensor_msgs/JointState.
+            data: the message, or what was read from it.
             now: the clock, ns, for messages without a stamp.
 
         Raises:
@@ -70,7 +70,7 @@ class OutputEncoder:
         self.received += 1
         self._compare_one_segment()
         try:
-            stamp, _, position, *_ = self._reader.read(data)
+            stamp, _, position, *_ = self._reader.values(data)
         except RejectedInputError as rejection:
             self.rejected[str(rejection)] += 1
             raise

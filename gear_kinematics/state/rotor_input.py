@@ -37,8 +37,8 @@ from gear_kinematics.wire.joint_reader import (
     POSITION_NOT_FINITE,
     POSITION_TOO_LARGE,
     STAMP_OUT_OF_RANGE,
+    JointMessage,
     JointReader,
-    JointValues,
     RejectedInputError,
 )
 
@@ -131,11 +131,11 @@ class RotorInput:
         """Number that rises where the turn count restarts, is uncertain or is referenced."""
         return self.turns.unknown_gaps + self.resets + self._restarts + self.plausibility.jumps
 
-    def accept(self, data: bytes | JointValues, now: Callable[[], int]) -> RotorSample:
+    def accept(self, data: JointMessage, now: Callable[[], int]) -> RotorSample:
         """Process the next message.
 
         Args:
-            data: a serialised sensor_msgs/JointState, or what `JointReader` reads from it.
+            data: the message, or what was read from it.
             now: the clock, ns, for messages without a stamp.
 
         Raises:
@@ -143,8 +143,7 @@ class RotorInput:
         """
         self.received += 1
         try:
-            values = data if isinstance(data, tuple) else self._reader.read(data)
-            stamp, unnormalised, position, velocity, effort = values
+            stamp, unnormalised, position, velocity, effort = self._reader.values(data)
             self.unnormalised_stamps += unnormalised
             return self._take(stamp or self._clock(now), position, velocity, effort)
         except RejectedInputError as rejection:

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from gear_kinematics.correction.corrector import Correction
-from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics import GearRatio, Mechanism, RotorSample
 from gear_kinematics.kinematics.motion import BranchPosition, closed_form
 from gear_kinematics.kinematics.rotor_turns import TURN
@@ -17,7 +16,7 @@ from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.shape.urdf import joint_names
 from gear_kinematics.state.rotor_samples import RotorSamples
 from gear_kinematics.wire.batches import Array, encode
-from gear_kinematics.wire.cdr import JointStateTemplate, PoseArrayTemplate
+from gear_kinematics.wire.cdr import JointStateTemplate, PoseArrayTemplate, Template
 from gear_kinematics.wire.topics import (
     BODY_POSES,
     CORRECTED_INTERVAL,
@@ -26,6 +25,9 @@ from gear_kinematics.wire.topics import (
     OUTPUT_STATE,
     STATE_TOPICS,
 )
+
+Row = tuple[str, Template, Sequence[float]]
+"""What a message is encoded of: its topic, template and numbers."""
 
 
 class OutputMessages:
@@ -44,14 +46,23 @@ class OutputMessages:
             for velocity in (False, True)
             for effort in (False, True)
         }
+        self.angle = self._output_states[False, False]
+        """Template of a message with an angle of the output joint alone."""
 
     def encode(
-        self, sample: RotorSample, topics: Iterable[str] = topics
+        self, sample: RotorSample, topics: Iterable[str] | None = None
     ) -> list[tuple[str, bytes]]:
         """Return topic and message for a sample, for all or some of `topics`."""
+        rows = self.rows(sample, self.topics if topics is None else topics)
+        return [
+            (topic, template.encode(sample.stamp, numbers)) for topic, template, numbers in rows
+        ]
+
+    def rows(self, sample: RotorSample, topics: Iterable[str]) -> list[Row]:
+        """Return what the messages for a sample are encoded of."""
         output_turns, output_rest = self._ratio.output_angle(*sample.position, math)
         angle = TURN * output_turns + output_rest
-        return [(topic, self._output_state(sample, angle)) for topic in topics]
+        return [(topic, *self._output_state(sample, angle)) for topic in topics]
 
     @np.errstate(over='ignore')  # an effort can overflow, as it does for a single sample
     def encode_outputs(self, samples: RotorSamples) -> dict[str, list[bytes]]:
@@ -59,10 +70,13 @@ class OutputMessages:
         output_turns, output_rest = self._ratio.output_angle(samples.turns, samples.angle, np)
         return {OUTPUT_STATE: self._output_states_of(samples, TURN * output_turns + output_rest)}
 
-    def encode_corrected(
+    def corrected_rows(
         self, sample: RotorSample, correction: Correction, topics: Iterable[str] = CORRECTED_TOPICS
-    ) -> Iterator[tuple[str, bytes]]:
-        """Yield topic and message for a corrected sample, for all or some of CORRECTED_TOPICS."""
+    ) -> Iterator[Row]:
+        """Yield what the messages for a corrected sample are encoded of.
+
+        They are on all or some of CORRECTED_TOPICS.
+        """
         for topic in topics:
             if topic == CORRECTED_STATE:
                 turns, rest = self._ratio.output_angle(*sample.position, math)
@@ -71,34 +85,30 @@ class OutputMessages:
                 if velocity is not None:
                     velocity *= 1.0 + correction.slope
                 corrected = RotorSample(stamp, position, velocity, effort)
-                yield topic, self._output_state(corrected, angle)
+                yield topic, *self._output_state(corrected, angle)
             else:
-                template = self._output_states[False, False]
-                yield topic, template.encode(sample.stamp, [correction.half_width])
+                yield topic, self.angle, [correction.half_width]
 
     @np.errstate(over='ignore')
     def encode_corrections(
         self, samples: RotorSamples, correction: Correction
     ) -> dict[str, list[bytes]]:
-        """Encode all CORRECTED_TOPICS for many samples, as `encode_corrected` does."""
+        """Encode all CORRECTED_TOPICS for many samples, as `corrected_rows`."""
         turns, rest = self._ratio.output_angle(samples.turns, samples.angle, np)
         angle = TURN * turns + rest + correction.deviation
         corrected = samples._replace(velocity=samples.velocity * (1.0 + correction.slope))
-        template = self._output_states[False, False]
         return {
             CORRECTED_STATE: self._output_states_of(corrected, angle),
-            CORRECTED_INTERVAL: encode(template, samples.stamp, [correction.half_width]),
+            CORRECTED_INTERVAL: encode(self.angle, samples.stamp, [correction.half_width]),
         }
 
-    def transmission_error(self, sample: ErrorSample) -> bytes:
-        """Encode a transmission error, as the position of the output joint."""
-        return self._output_states[False, False].encode(sample.stamp, [sample.error])
-
-    def _output_state(self, sample: RotorSample, output_angle: float) -> bytes:
-        stamp, _, velocity, effort = sample
+    def _output_state(
+        self, sample: RotorSample, output_angle: float
+    ) -> tuple[Template, Sequence[float]]:
+        _, _, velocity, effort = sample
         present = velocity is not None, effort is not None
         numbers = self._output_numbers(present, output_angle, velocity, effort)
-        return self._output_states[present].encode(stamp, numbers)
+        return self._output_states[present], numbers
 
     def _output_states_of(self, samples: RotorSamples, output_angle: Array) -> list[bytes]:
         output_states = len(samples.stamp) * [b'']
@@ -141,26 +151,24 @@ class StateMessages(OutputMessages):
             for velocity in (False, True)
         }
 
-    def encode(
-        self, sample: RotorSample, topics: Iterable[str] = topics
-    ) -> list[tuple[str, bytes]]:
-        """Return topic and message for a sample, for all or some of `topics`."""
+    def rows(self, sample: RotorSample, topics: Iterable[str]) -> list[Row]:
+        """Return what the messages for a sample are encoded of."""
         turns, angle = sample.position
         output_turns, output_rest = self._ratio.output_angle(turns, angle, math)
         output_angle = TURN * output_turns + output_rest
         branches: list[BranchPosition] = []
-        encoded: list[tuple[str, bytes]] = []
+        rows: list[Row] = []
         for topic in topics:
             if topic == OUTPUT_STATE:
-                encoded.append((topic, self._output_state(sample, output_angle)))
+                rows.append((topic, *self._output_state(sample, output_angle)))
                 continue
             branches = branches or self._form.branches(angle, output_rest, math)
             if topic == BODY_POSES:
                 numbers = self._pose_numbers(output_rest, branches, math)
-                encoded.append((topic, self._body_poses.encode(sample.stamp, numbers)))
+                rows.append((topic, self._body_poses, numbers))
             else:
-                encoded.append((topic, self._joint_state(sample, output_angle, branches)))
-        return encoded
+                rows.append((topic, *self._joint_state(sample, output_angle, branches)))
+        return rows
 
     def encode_outputs(self, samples: RotorSamples) -> dict[str, list[bytes]]:
         """Encode the recorded topics among `topics` for many samples, as `encode` does."""
@@ -185,8 +193,8 @@ class StateMessages(OutputMessages):
 
     def _joint_state(
         self, sample: RotorSample, output_angle: float, branches: Sequence[BranchPosition]
-    ) -> bytes:
-        """Encode the joint states, in the order of `joint_names`."""
+    ) -> tuple[Template, Sequence[float]]:
+        """Template and numbers of the joint states, in the order of `joint_names`."""
         rotor_angle = TURN * sample.position.turns + sample.position.angle
         on_cam = output_angle - rotor_angle
         numbers = [rotor_angle, *(on_cam for _ in branches)]
@@ -198,7 +206,7 @@ class StateMessages(OutputMessages):
             numbers += [velocity, *(output_velocity - velocity for _ in branches)]
             numbers += [self._form.slide_velocities(branch, velocity)[0] for branch in branches]
             numbers.append(output_velocity)
-        return self._joint_states[velocity is not None].encode(sample.stamp, numbers)
+        return self._joint_states[velocity is not None], numbers
 
 
 def state_messages(parameters: NodeParameters) -> OutputMessages:

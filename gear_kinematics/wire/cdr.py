@@ -270,6 +270,7 @@ class JointStateTemplate(Template):
 
     def __init__(self, names: Sequence[str], *, velocity: bool, effort: bool) -> None:
         """Lay the message out: positions, velocities, efforts."""
+        self.names, self.velocity, self.effort = names, velocity, effort
         present = True, velocity, effort
         super().__init__('', names, *((len(names) * there, 1, (0,)) for there in present))
 

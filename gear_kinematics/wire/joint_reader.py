@@ -3,7 +3,7 @@
 
 import math
 import struct
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from operator import itemgetter
 from typing import Any
@@ -38,11 +38,15 @@ GREATEST = 1e280
 """Greatest velocity or effort; beyond, it counts as not finite, as results could be infinite: a
 gear ratio multiplies it by up to 2^53, and the slope of a calibration by up to 1e6."""
 _MAX_KEPT = 65_536  # bytes: layouts of larger messages are not kept
+_MOST_LAYOUTS = 64  # kept; an arm has at most a driver for each joint
 
 
 JointValues = tuple[int, bool, float, float | None, float | None]
 """Stamp (ns, 0 if absent), whether it has a second or more of nanoseconds, position, velocity and
 effort; None for a value that is absent or not finite."""
+_Reads = list[Callable[[bytes], JointValues] | None]
+_JointsLayout = tuple[Callable[[bytes], tuple[Any, ...]], tuple[Any, ...], _Reads]
+"""What takes the defining bytes, those of the layout, and what reads each joint."""
 
 
 class RejectedInputError(ValueError):
@@ -57,6 +61,10 @@ class RejectedInputError(ValueError):
     def detail(self) -> str:
         """The joints of the message, if the wanted one is missing; otherwise ''."""
         return self._describe()
+
+
+JointMessage = bytes | JointValues | RejectedInputError
+"""A serialised sensor_msgs/JointState, or what a joint's reader reads from it or raises."""
 
 
 def describe_missing(joint: str, data: bytes) -> str:
@@ -87,10 +95,19 @@ class JointReader:
     message that differs is parsed again.
     """
 
+    _size = -1  # of the messages whose layout is known
+
     def __init__(self, joint: str) -> None:
         """Read the joint of a name, or an index if no joint has a name; '' for the only one."""
         self._joint = joint.encode()
-        self._size = -1  # of the messages whose layout is known
+
+    def values(self, data: JointMessage) -> JointValues:
+        """Return or raise what a message has."""
+        if isinstance(data, bytes):
+            return self.read(data)
+        if isinstance(data, tuple):
+            return data
+        raise data
 
     def read(self, data: bytes) -> JointValues:
         """Read a message.
@@ -103,6 +120,86 @@ class JointReader:
                 self._learn(data)
         except MalformedMessageError as error:
             raise RejectedInputError(MALFORMED) from error
+        return self._joint_of(data)
+
+    def _learn(self, data: bytes) -> None:
+        """Keep the layout of a message for the next ones."""
+        layout = joint_state_layout(data)
+        self._fixed_of = _definition(layout)
+        self._fixed = self._fixed_of(data)
+        self._joint_of = _Joint(layout, self._joint).read
+        self._size = layout.size if layout.size <= _MAX_KEPT else -1
+
+
+class JointsReader:
+    """Reads several joints from one message after another, as `JointReader` reads one.
+
+    The layouts of a few drivers are kept, and each message is compared with them once.
+    """
+
+    def __init__(self, joints: Iterable[str]) -> None:
+        """Read the joints of these names or indices."""
+        self._joints = [joint.encode() for joint in joints]
+        self._layouts: dict[int, list[_JointsLayout]] = {}
+
+    def read(self, data: bytes) -> Sequence[JointValues | RejectedInputError | None]:
+        """Read a message: for each joint its values, why it has none, or None if it is missing.
+
+        Raises:
+            RejectedInputError: if the message is none, or has none of the joints.
+        """
+        known = self._layouts.get(len(data), ())
+        reads = next((reads for fixed_of, fixed, reads in known if fixed_of(data) == fixed), None)
+        reads = reads or self._learn(data)
+        if not any(reads):
+            names = ' or '.join(joint.decode(errors='backslashreplace') for joint in self._joints)
+            raise RejectedInputError(JOINT_MISSING, partial(describe_missing, names, data))
+        return [read and _values_or_cause(read, data) for read in reads]
+
+    def _learn(self, data: bytes) -> _Reads:
+        """Keep the layout of a message for the next ones."""
+        try:
+            layout = joint_state_layout(data)
+        except MalformedMessageError as error:
+            raise RejectedInputError(MALFORMED) from error
+        reads: _Reads = [
+            None if joint_index(layout, joint) is None else _Joint(layout, joint).read
+            for joint in self._joints
+        ]
+        if layout.size <= _MAX_KEPT:
+            if sum(map(len, self._layouts.values())) >= _MOST_LAYOUTS:
+                self._layouts.clear()
+            definition = _definition(layout)
+            kept = self._layouts.setdefault(layout.size, [])
+            kept.append((definition, definition(data), reads))
+        return reads
+
+
+class _Joint:
+    """A joint in the messages of one layout."""
+
+    def __init__(self, layout: Layout, joint: bytes) -> None:
+        self._joint = joint
+        index = joint_index(layout, joint)
+        fit = arrays_fit(layout)
+        offsets = [
+            offset + 8 * index if fit and index is not None and count else None
+            for offset, count in layout.arrays
+        ]
+        present = [offset for offset in offsets if offset is not None]
+        numbers = [(STAMP_OFFSET, 'iI'), *((offset, 'd') for offset in present)]
+        self._numbers_of = _unpacker(layout, numbers)
+        if None in offsets:
+            # After the stamp, which is two numbers; the None behind all stands for absent ones.
+            places = [-1 if offset is None else 2 + present.index(offset) for offset in offsets]
+            unpack, pick = self._numbers_of, itemgetter(0, 1, *places)
+            self._numbers_of = lambda data: pick((*unpack(data), None))
+        self._fault = POSITION_MISSING if fit else ARRAY_SIZES
+        if index is None:
+            self._fault = JOINT_MISSING
+
+    def read(self, data: bytes) -> JointValues:
+        """Read a message; raises RejectedInputError if it has no usable position."""
         seconds, nanoseconds, position, velocity, effort = self._numbers_of(data)
         stamp = seconds * SECOND + nanoseconds
         if stamp > LATEST:
@@ -121,30 +218,19 @@ class JointReader:
             effort = None
         return stamp, nanoseconds >= SECOND, position, velocity, effort
 
-    def _learn(self, data: bytes) -> None:
-        """Keep the layout of a message for the next ones."""
-        layout = joint_state_layout(data)
-        index = joint_index(layout, self._joint)
-        fit = arrays_fit(layout)
-        offsets = [
-            offset + 8 * index if fit and index is not None and count else None
-            for offset, count in layout.arrays
-        ]
-        present = [offset for offset in offsets if offset is not None]
-        numbers = [(STAMP_OFFSET, 'iI'), *((offset, 'd') for offset in present)]
-        self._numbers_of = _unpacker(layout, numbers)
-        if None in offsets:
-            # After the stamp, which is two numbers; the None behind all stands for absent ones.
-            places = [-1 if offset is None else 2 + present.index(offset) for offset in offsets]
-            unpack, pick = self._numbers_of, itemgetter(0, 1, *places)
-            self._numbers_of = lambda data: pick((*unpack(data), None))
-        spans = [(start, f'{end - start}s') for start, end in layout.fixed]
-        self._fixed_of = _unpacker(layout, spans)
-        self._fixed = self._fixed_of(data)
-        self._fault = POSITION_MISSING if fit else ARRAY_SIZES
-        if index is None:
-            self._fault = JOINT_MISSING
-        self._size = layout.size if layout.size <= _MAX_KEPT else -1
+
+def _values_or_cause(
+    read: Callable[[bytes], JointValues], data: bytes
+) -> JointValues | RejectedInputError:
+    try:
+        return read(data)
+    except RejectedInputError as rejection:
+        return rejection
+
+
+def _definition(layout: Layout) -> Callable[[bytes], tuple[Any, ...]]:
+    """Make a function that takes the bytes that define a layout out of a message."""
+    return _unpacker(layout, [(start, f'{end - start}s') for start, end in layout.fixed])
 
 
 def _unpacker(

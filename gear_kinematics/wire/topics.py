@@ -68,6 +68,14 @@ STATE_TOPICS, LOAD_TOPICS, CORRECTED_TOPICS = map(_of_part, ('state', 'load', 'c
 """The topics of the state, of the loads and of the corrected output, and their types."""
 
 
+def topic_of(actuator: str, topic: str) -> str:
+    """Return the name of a topic of an actuator, which may be that of all of an arm.
+
+    A JointState has the joints of all; the actuator '' is the only one.
+    """
+    return f'{actuator}/{topic}' if actuator and TOPICS[topic].type != JOINT_STATE else topic
+
+
 def base_name(topic: str) -> str:
     """Return the name of a topic without its namespace."""
     return topic.rpartition('/')[2]

@@ -15,6 +15,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.diagnostics import OK, WARN
 from gear_kinematics.state.loads import Acceleration, LoadEstimator, PreloadMonitor
+from gear_kinematics.wire.topics import LOAD_TOPICS
 
 DEFAULT = NodeParameters.load()
 BRACED = replace(DEFAULT, preload=3.0, branch_stiffness=(2000.0, 1000.0), shaft_stiffness=5000.0)
@@ -51,7 +52,8 @@ def test_messages_are_those_of_the_contract():
     parameters = replace(BRACED, frame_prefix='left_')
     followed = LoadEstimator(parameters)
     sample = RotorSample(5, split_turns(0.3), 10.0, 0.5)
-    encoded = dict(followed.encode(5, followed.follow(sample, 0)))
+    rows = followed.rows(followed.follow(sample, 0), LOAD_TOPICS)
+    encoded = {topic: template.encode(5, numbers) for topic, template, numbers in rows}
     branches = deserialize_message(encoded['branch_loads'], JointState)
     assert branches.name == ['left_branch_a', 'left_branch_b']
     # i τ2 = -9.5 N·m is beyond the threshold of A, -3 (1 + kB/kAe) = -5.1: B carries all of it.
@@ -76,7 +78,7 @@ def test_messages_are_those_of_the_contract():
 def test_without_effort_there_are_no_messages():
     followed = LoadEstimator(BRACED)
     found = followed.follow(RotorSample(5, split_turns(0.3), 10.0, None), 0)
-    assert not list(followed.encode(5, found))
+    assert not list(followed.rows(found, LOAD_TOPICS))
 
 
 def test_acceleration_lags_by_half_of_its_window():

@@ -181,6 +181,13 @@ CORRECTIONS = st.tuples(
     st.floats(-0.1, 0.1), st.floats(-2.0, 2.0), st.floats(0.0, 0.1), st.just(0.0)
 )
 CORRECTED = ('corrected_state', 'corrected_interval')
+
+
+def encode_corrected(states, sample, correction, topics=CORRECTED):
+    rows = states.corrected_rows(sample, correction, topics)
+    return {topic: template.encode(sample.stamp, numbers) for topic, template, numbers in rows}
+
+
 NONE = (0.0, 0.0, 0.0, 0.0)
 
 
@@ -212,11 +219,11 @@ def test_corrected_state_is_the_output_state_and_the_correction(
     states = StateMessages(mechanism, output_joint='left/output_shaft', frame_prefix='left/')
     sample = sample_at(position, velocity, effort)
     [(_, ideal)] = states.encode(sample, ['output_state'])
-    encoded = dict(states.encode_corrected(sample, Correction(*correction)))
+    encoded = encode_corrected(states, sample, Correction(*correction))
     assert tuple(encoded) == CORRECTED
     for topic, data in encoded.items():  # or only one of them
-        [alone] = states.encode_corrected(sample, Correction(*correction), [topic])
-        assert alone == (topic, data)
+        alone = encode_corrected(states, sample, Correction(*correction), [topic])
+        assert alone == {topic: data}
     ideal, corrected, interval = (
         deserialize_message(data, JointState) for data in (ideal, *encoded.values())
     )
@@ -236,6 +243,6 @@ def test_corrected_state_is_the_output_state_and_the_correction(
 def test_corrected_state_is_finite_for_every_ratio_and_slope(ratio):
     states = state_messages(replace(PARAMETERS, gear_ratio=ratio))
     sample = sample_at(1.0, GREATEST, -GREATEST)
-    encoded = dict(states.encode_corrected(sample, Correction(0.1, 1e6, 0.1, 0.0)))
+    encoded = encode_corrected(states, sample, Correction(0.1, 1e6, 0.1, 0.0))
     corrected = deserialize_message(encoded['corrected_state'], JointState)
     assert all(map(math.isfinite, [*corrected.velocity, *corrected.effort]))
