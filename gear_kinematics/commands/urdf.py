@@ -8,15 +8,20 @@ from pathlib import Path
 from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.drawing import warn_if_teeth_cannot_mesh
 from gear_kinematics.commands.files import write_file
+from gear_kinematics.commands.output import complain
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import meshes
+from gear_kinematics.parameters.arm_urdf import arm_urdf
 from gear_kinematics.shape.solids import STL_HEADER, solids, to_stl
 from gear_kinematics.shape.urdf import MACRO_PREFIX, as_macro
+from gear_kinematics.wire.nearest import listed
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    arguments.add_config(parser)
+    arguments.add_config(
+        parser, actuator='only this one of the `actuators` of an arm (default: all of them)'
+    )
     output = arguments.group(parser, 'output')
     output.add_argument(
         '--macro',
@@ -29,23 +34,35 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         metavar='DIR',
         help='write the bodies with their teeth to this folder, as STL, and show them, by the '
-        'URI of the parameter meshes if it has one',
+        'URI of the parameter meshes if it has one; those of an arm in a folder for each actuator',
     )
 
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Write the meshes, and print the URDF."""
-    config = arguments.load_config(options)
-    mechanism, module = config.mechanism, config.module
-    if options.meshes:
-        warn_if_teeth_cannot_mesh(mechanism, module)
-        _write(mechanism, module, options.meshes)
-        if config.meshes in {meshes.AUTO, meshes.NONE}:
-            config = replace(config, meshes=options.meshes.resolve().as_uri())
+    configs = arguments.load_configs(options)
+    if options.macro and len(configs) > 1:
+        raise ValueError(
+            f'--macro prints one actuator: choose it with --actuator: {listed(configs)}'
+        )
+    for name, config in configs.items():
+        if options.meshes and not config.gear_ratio:
+            mechanism, folder = config.mechanism, options.meshes / name
+            warn_if_teeth_cannot_mesh(mechanism, config.module)
+            _write(mechanism, config.module, folder)
+            if config.meshes in {meshes.AUTO, meshes.NONE}:
+                configs[name] = replace(config, meshes=folder.resolve().as_uri())
     if options.macro:
-        print(as_macro(replace(config, frame_prefix=MACRO_PREFIX).urdf()), end='')
-    else:
-        print(config.urdf(), end='')
+        [config] = configs.values()
+        joint = (
+            repr(config.output_name) if config.actuator else f'prefix + {config.output_joint!r}'
+        )
+        print(as_macro(replace(config, frame_prefix=MACRO_PREFIX).urdf(), joint), end='')
+        return ExitCode.DONE
+    text, left_out = arm_urdf(configs)
+    if left_out:
+        complain(f'without {", ".join(left_out)}: only the ratio of such a gear is known')
+    print(text, end='')
     return ExitCode.DONE
 
 

@@ -8,6 +8,7 @@ the joint positions in mechanism_joint_states close the loops through the arms o
 
 import math
 import re
+from collections.abc import Iterable
 from xml.etree import ElementTree as ET
 
 from gear_kinematics.kinematics import Gear, Mechanism
@@ -25,9 +26,10 @@ MACRO_PREFIX = '${prefix}'
 _MACRO = """<?xml version="1.0" encoding="utf-8"?>
 <!-- Printed by gearkin urdf. The block is the origin of the stator in the parent link:
   <xacro:gear_actuator parent="base" prefix="shoulder_"><origin xyz="0 0 0"/></xacro:gear_actuator>
+output_joint names the joint of the output shaft, as messages do.
 -->
 <robot xmlns:xacro="http://www.ros.org/wiki/xacro">
-<xacro:macro name="gear_actuator" params="parent *origin prefix:=''">
+<xacro:macro name="gear_actuator" params="parent *origin prefix:='' output_joint:=''">
   <joint name="${prefix}stator" type="fixed">
     <parent link="${parent}" />
     <child link="${prefix}stator" />
@@ -106,20 +108,50 @@ def urdf(
         ET.SubElement(
             slide, 'limit', lower=repr(-e), upper=repr(e), effort='1000.0', velocity='1000.0'
         )
-    ET.indent(robot)
-    return ET.tostring(robot, encoding='unicode', xml_declaration=True) + '\n'
+    return _text_of(robot)
 
 
-def as_macro(urdf: str) -> str:
+def side_by_side(urdfs: Iterable[str], spacing: float) -> str:
+    """Join the URDFs of several actuators in one, which has the single root that a URDF needs.
+
+    Args:
+        urdfs: URDFs of mechanisms, all of whose links and joints have different names. The stator
+            of each is fixed to the link `base`.
+        spacing: distance between neighbours along x, m.
+    """
+    robot = ET.Element('robot', name='gear_kinematics')
+    ET.SubElement(robot, 'link', name='base')
+    for number, text in enumerate(urdfs):
+        elements = [*ET.fromstring(text)]  # noqa: S314, our own
+        stator = elements[0].get('name', '')
+        fixed = ET.SubElement(robot, 'joint', name=stator, type='fixed')
+        ET.SubElement(fixed, 'parent', link='base')
+        ET.SubElement(fixed, 'child', link=stator)
+        _place(fixed, (number * spacing, 0.0, 0.0))
+        robot.extend(elements)
+    return _text_of(robot)
+
+
+def as_macro(urdf: str, joint: str) -> str:
     """Wrap a URDF in the xacro macro `gear_actuator`, which fixes the stator to a link of a robot.
 
     Args:
         urdf: a URDF written with the `frame_prefix` `MACRO_PREFIX`.
+        joint: default name of the output shaft's joint, as an expression of xacro.
     """
-    _, _, *elements, end = urdf.splitlines(keepends=True)
+    robot = ET.fromstring(urdf)  # noqa: S314, our own
+    child = f'child[@link="{MACRO_PREFIX}output_shaft"]/..'
+    for element in robot.iterfind(f'joint/{child}'):
+        element.set('name', f'${{output_joint or {joint}}}')
+    _, _, *elements, end = _text_of(robot).splitlines(keepends=True)
     # Nobody edits these lines: inertials and visuals have one each.
     joined = re.sub(r'\n {6,}|\n {4}(?=</)', '', ''.join(elements))
     return f'{_MACRO}{joined}</xacro:macro>\n{end}'
+
+
+def _text_of(robot: ET.Element) -> str:
+    ET.indent(robot)
+    return ET.tostring(robot, encoding='unicode', xml_declaration=True) + '\n'
 
 
 def _link(robot: ET.Element, name: str, cylinder: Cylinder) -> ET.Element:

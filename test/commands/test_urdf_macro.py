@@ -1,12 +1,22 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """`gearkin urdf --macro`, expanded by xacro, against `gearkin urdf`."""
 
+import math
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
+import numpy as np
 import pytest
+import yaml
+from blocked_bags import refusal
+from links import pinocchio_configuration
+from rclpy.serialization import deserialize_message
+from sensor_msgs.msg import JointState
 
 from gear_kinematics.commands.cli import main
+from gear_kinematics.kinematics import RotorSample, split_turns
+from gear_kinematics.parameters.arm import load_actuators
+from gear_kinematics.state.state_messages import state_messages
 
 ROOT = Path(__file__).resolve().parents[2]
 ARM = 'examples/two_joint_arm.urdf.xacro'
@@ -41,6 +51,14 @@ def parsed(text: str) -> dict[tuple[str, str], str]:
     return elements(ET.fromstring(text))  # noqa: S314, our own
 
 
+def write_arm(folder: Path, actuators: dict) -> Path:
+    """Write the parameter file of an arm."""
+    path = folder / 'arm.yaml'
+    parameters = {'actuators': [*actuators], **actuators}
+    path.write_text(yaml.safe_dump({'/**': {'ros__parameters': parameters}}), 'utf-8')
+    return path
+
+
 def expected(capsys, tmp_path, prefix: str, parameters: str = '', *options) -> dict:
     """Give what `gearkin urdf` prints with a frame_prefix."""
     config = tmp_path / 'prefixed.yaml'
@@ -68,7 +86,63 @@ def test_arm_has_both_actuators_and_their_mounts(xacro, capsys, tmp_path):
             f'<child link="{name}"></child>{origin}</joint>'
         )
     assert arm.pop(('link', 'base'))
-    assert arm == (expected(capsys, tmp_path, 'shoulder_') | expected(capsys, tmp_path, 'elbow_'))
+    config = write_arm(tmp_path, {'shoulder': {}, 'elbow': {}})
+    of_node = parsed(printed(capsys, '--config', config))
+    assert {*of_node} - {*arm} == {('link', 'base'), *(('joint', name) for name in mounts)}
+    assert all(of_node[each] == arm[each] for each in arm)
+    for name in ('shoulder', 'elbow'):
+        one = parsed(printed(capsys, '--config', config, '--actuator', name))
+        assert one.items() < arm.items()
+
+
+def test_joints_of_an_arm_have_the_names_of_its_messages(capsys, tmp_path):
+    """A gear that is known by its ratio alone has no bodies."""
+    of_wrist = {'gear_ratio': '-101', 'output_joint': 'hand'}
+    of_elbow = {'branches': ['a'], 'output_joint': 'bend', 'ring_teeth': 61, 'satellite_teeth': 58}
+    config = write_arm(tmp_path, {'shoulder': {}, 'wrist': of_wrist, 'elbow': of_elbow})
+    assert main(['urdf', '--config', str(config)]) == 0
+    text, said = capsys.readouterr()
+    assert said == 'gearkin: without wrist: only the ratio of such a gear is known\n'
+    bodies = 'rotor', 'satellite_a', 'oldham_a', 'satellite_b', 'oldham_b'
+    names = {f'shoulder_{body}' for body in bodies} | {f'elbow_{body}' for body in bodies[:3]}
+    joints = [name for kind, name in parsed(text) if kind == 'joint']
+    assert {*joints} == {*names, 'shoulder', 'bend', 'shoulder_stator', 'elbow_stator'}
+    assert len(joints) == text.count('<joint ')
+    pin = pytest.importorskip('pinocchio', reason='Pinocchio is not installed')
+    model = pin.buildModelFromXML(text)
+    assert {*model.names[1:]} == {*names, 'shoulder', 'bend'}
+    placed = {f.name: f.placement.translation.tolist() for f in model.frames}
+    assert placed['shoulder_stator'] == [0.0, 0.0, 0.0]
+    # Beside each other: the ring gears have 80 teeth of 0.5 mm.
+    assert placed['elbow_stator'] == pytest.approx([1.5 * 0.04, 0.0, 0.0])
+    config = write_arm(tmp_path, {'wrist': of_wrist})
+    assert 'gear_ratio is -101: only the ratio' in refusal('urdf', '--config', config)
+
+
+def test_output_state_of_the_node_moves_the_arm(xacro, tmp_path):
+    """As robot_state_publisher does: a joint of the URDF moves as that of its name in messages."""
+    pin = pytest.importorskip('pinocchio', reason='Pinocchio is not installed')
+    model = pin.buildModelFromXML(xacro.process_file(str(ROOT / ARM)).toxml())
+    data = model.createData()
+    config = write_arm(tmp_path, {'shoulder': {}, 'elbow': {}})
+    rotors, outputs = {'shoulder': 19.0 * 0.3, 'elbow': -19.0 * 1.1}, {}
+    for name, parameters in load_actuators(config).items():
+        sample = RotorSample(5, split_turns(rotors[name]), None, None)
+        [(_, message)] = state_messages(parameters).encode(sample, ['output_state'])
+        state = deserialize_message(message, JointState)
+        outputs |= zip(state.name, state.position, strict=True)
+    assert outputs == pytest.approx({'shoulder': -0.3, 'elbow': 1.1}, abs=1e-12)
+    still = dict.fromkeys(model.names[1:], 0.0)
+    pin.framesForwardKinematics(model, data, pinocchio_configuration(model, still | outputs))
+    tip = data.oMf[model.getFrameId('elbow_output_shaft')]
+    cosine, sine = math.cos(-0.3), math.sin(-0.3)
+    np.testing.assert_allclose(
+        tip.translation, [0.25 * cosine, 0.25 * sine, 0.3], rtol=0.0, atol=1e-12
+    )
+    # The elbow's axis is that of the shoulder's x, within the 1.5708 rad of the example.
+    np.testing.assert_allclose(tip.rotation[:, 2], [cosine, sine, 0.0], rtol=0.0, atol=1e-5)
+    # Turned by 1.1 rad about it, x of the tip is off the downward direction by as much.
+    np.testing.assert_allclose(tip.rotation[2, 0], -math.cos(1.1), rtol=0.0, atol=1e-5)
 
 
 @pytest.mark.parametrize('prefix', ['', 'left_'])
