@@ -178,7 +178,7 @@ class JointsReader:
 class _Joint:
     """A joint in the messages of one layout."""
 
-    def __init__(self, layout: Layout, joint: bytes) -> None:
+    def __init__(self, layout: MessageLayout, joint: bytes) -> None:
         self._joint = joint
         index = joint_index(layout, joint)
         fit = arrays_fit(layout)
@@ -228,7 +228,7 @@ def _values_or_cause(
         return rejection
 
 
-def _definition(layout: Layout) -> Callable[[bytes], tuple[Any, ...]]:
+def _definition(layout: MessageLayout) -> Callable[[bytes], tuple[Any, ...]]:
     """Make a function that takes the bytes that define a layout out of a message."""
     return _unpacker(layout, [(start, f'{end - start}s') for start, end in layout.fixed])
 
