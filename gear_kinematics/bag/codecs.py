@@ -45,7 +45,7 @@ class _Zstandard:
         size = self._library.frame_content_size(data)  # -1 if its writer did not know it
         reader = self._library.ZstdDecompressor().stream_reader(data)
         content: bytes = reader.read(min(limit, size) if size >= 0 else limit)
-        self.eof = size in {-1, len(content)}  # nothing else tells a frame that is cut off
+        self.eof = size in {-1, len(content)}  # the only sign that a frame is cut off
         return content
 
 
@@ -82,7 +82,7 @@ class ReadLimits:
     """Greatest expansion of a chunk or message, and of a file."""
     spare_size, spare_total = 2**25, 2**30
     """Allowance in addition, bytes: of a chunk or file, and of the whole bag."""
-    _description = 256  # bytes that a description counts for in addition to its texts
+    _description = 256  # bytes counted for a description in addition to its texts
 
     def __init__(self, size: int) -> None:
         """Start with the size of the files on disk, bytes."""

@@ -39,7 +39,7 @@ def find_bags(patterns: Iterable[str]) -> Found:
         known = len(faults)
         try:
             found += _bags_below(path, faults) if path.exists() else _glob(pattern, faults)
-        except OSError as error:  # of a folder above
+        except OSError as error:  # it is about a folder above
             faults[path] = f'{path}: {cause(error)}'
         if not found and len(faults) == known:
             faults[path] = f'{pattern}: no bag there'

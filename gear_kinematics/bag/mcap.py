@@ -16,15 +16,18 @@ MCAP_MAGIC = b'\x89MCAP0\r\n'
 _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _DATA_END = 2, 3, 4, 5, 6, 15
 _DATA = frozenset({_SCHEMA, _CHANNEL, _MESSAGE, _CHUNK})
 _NO_SCHEMA = ('', '', '')  # type, syntax, definition
-_RECORD = struct.Struct('<BQ')  # opcode and length of the body
-_MESSAGE_START = struct.Struct('<BQH4xQ')  # and channel and time
-_PUBLISHED = struct.Struct('<Q')  # when, between that time and the data
-_CHUNK_START = struct.Struct('<BQQQQ')  # and times of its first and last message, and its size
-_PADDING = bytes(_MESSAGE_START.size)  # behind the last record, which may be shorter
+_RECORD = struct.Struct('<BQ')  # opcode, length of the body
+_MESSAGE_START = struct.Struct('<BQH4xQ')  # opcode, length, channel, time of reception
+_PUBLISHED = struct.Struct('<Q')  # time of publication, which follows
+_CHUNK_START = struct.Struct('<BQQQQ')  # opcode, length, times of the first and last message, size
+_PADDING = bytes(_MESSAGE_START.size)  # appended to the last record, which may be shorter
 _CUT_OFF = 'cut off within a record; mcap recover makes a sound file of what is before'
 _LATEST = 2**63 - 1  # ns
-_PIECE, _PIECE_SIZE = 4096, 2**22  # messages outside of chunks that are read at once, bytes
-_MAX_OPEN, _PER_CHUNK = 2**28, 2**18  # bytes of chunks that overlap in time, and for each
+_PIECE, _PIECE_SIZE = 4096, 2**22  # messages outside of chunks that are read at once; bytes
+_MAX_OPEN, _PER_CHUNK = (
+    2**28,
+    2**18,
+)  # bytes of open chunks that overlap in time; bytes added for each
 _RECEIVED = itemgetter(1)
 
 

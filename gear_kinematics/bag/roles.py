@@ -27,7 +27,7 @@ _PARTS = {'rotor': ROTOR_STATE, 'output': OUTPUT_STATE, 'poses': BODY_POSES}
 """Topics by their parts in a validation."""
 _OPTIONS = {topic: part for part, topic in _PARTS.items()} | {OUTPUT_ENCODER: 'encoder'}
 _PEEKED = 20  # topics whose joints are looked up
-_JUDGED = 1000  # messages that show whether there is only one joint
+_JUDGED = 1000  # messages that are searched for other joints
 
 
 class Topics(NamedTuple):

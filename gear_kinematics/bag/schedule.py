@@ -48,7 +48,7 @@ def count_due(source: Bag, topics: Collection[str]) -> int | None:
     That takes reading them all.
     """
     count = 0
-    with suppress(BagError):  # which playing them raises, too
+    with suppress(BagError):  # playing them raises it, too
         for _ in _one_round(source, topics):
             count += 1
     return count or None

@@ -21,7 +21,7 @@ class Sqlite(Storage):
     def __init__(self, path: Path, limits: ReadLimits) -> None:
         super().__init__(limits)
         _check_size(path)
-        # Without a journal nothing changes, so no locks are needed; read-only media have none.
+        # Without a journal nothing changes: it needs no locks, which read-only media lack.
         journal = path.with_name(f'{path.name}-wal')
         options = '?mode=ro' if journal.exists() else '?mode=ro&immutable=1'
         uri = path.absolute().as_uri() + options

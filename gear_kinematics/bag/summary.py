@@ -20,11 +20,11 @@ from gear_kinematics.wire.topics import (
     base_name,
 )
 
-_GAP = 5.0  # periods that count as a gap, in median periods
+_GAP = 5.0  # median periods; a longer period counts as a gap
 _WITH_STAMPS = {JOINT_STATE, POSE_ARRAY}
 _UNSET = {-1, 0}
 """Stamps of messages that are cut off, and of those without one."""
-_FEWEST = 10  # messages that have a rate
+_FEWEST = 10  # messages from which a rate is computed
 _PARTS: Mapping[str, str] = {
     OUTPUT_ENCODER: 'encoder',
     OUTPUT_STATE: 'output',

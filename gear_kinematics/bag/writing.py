@@ -36,8 +36,8 @@ from gear_kinematics.bag.finding import parse_yaml
 from gear_kinematics.bag.reading import Bag
 from gear_kinematics.bag.storage import Message, Published, Topic
 
-_MAX_ENTRIES = 4000  # of topics and QoS in the metadata; rosbags takes 3 ms to write one
-_PUBLISH_TIME = 23  # offset in the record of a message
+_MAX_ENTRIES = 4000  # topics and QoS in the metadata; rosbags takes 3 ms to write one
+_PUBLISH_TIME = 23  # its offset in the record of a message
 _FORMATS = {
     'ros2msg': MessageDefinitionFormat.MSG,
     'ros2idl': MessageDefinitionFormat.IDL,
@@ -117,7 +117,7 @@ class BagWriter:
             # rosbags names the file after its folder; rosbag2 finds only numbered files when it
             # reindexes a bag.
             folder = self.path.parent / f'.{self.path.name}.{secrets.token_hex(4)}'
-            # Before there is a folder, so that no interruption leaves it behind.
+            # Registered before the folder exists, so that no interruption leaves it behind.
             stack.callback(shutil.rmtree, folder, ignore_errors=True)
             folder.mkdir(mode=0o700)
             self._partial = folder / f'{self.path.name}_0'

@@ -31,7 +31,7 @@ def on_cluster(
     """
     from distributed import Client, KilledWorker, as_completed  # noqa: PLC0415, an extra
 
-    # It would warn of each recording that is begun again because a result died with its worker.
+    # Else it warns of each recording that is begun again because its worker died.
     logging.getLogger('distributed.client').setLevel(logging.ERROR)
     try:
         parts = urlsplit(scheduler)

@@ -56,7 +56,7 @@ def on_this_machine(
                 worker = idle.pop() if idle else _started(work.run)
                 task, retries = left.popleft()
                 busy[worker.connection] = worker, task, retries
-                with suppress(OSError):  # it has died, which waiting for its report shows
+                with suppress(OSError):  # it has died, as waiting for its report will show
                     worker.connection.send(task)
             for connection in wait(list(busy)):
                 worker, task, retries = busy[connection]
@@ -114,7 +114,7 @@ def _guarded() -> Iterator[None]:
     safe, blocked = os.environ.get(name, ''), signal.pthread_sigmask(signal.SIG_BLOCK, ())
     os.environ[name] = '1'
     try:
-        resource_tracker.ensure_running()  # a process too, which unblocks SIGINT when it starts
+        resource_tracker.ensure_running()  # a process too; it unblocks SIGINT as it starts
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         yield
     finally:

@@ -24,7 +24,7 @@ half a turn, so that an angle within the turn has no meaning."""
 MOST_TURNS = 2**52
 """Added to the turns of an angle up to `LARGEST_ANGLE`, these stay below 2^53, up to which a
 float64 holds every integer exactly."""
-_MANY_TURNS = 2**25 * TURN  # rad; products of fewer with _TURN_HIGH or _TURN_LOW fit into 53 bits
+_MANY_TURNS = 2**25 * TURN  # rad; fewer turns times _TURN_HIGH or _TURN_LOW fit into 53 bits
 _TURN_HIGH = math.floor(TURN * 2.0**24) / 2.0**24
 _TURN_LOW = TURN - _TURN_HIGH
 _EXACT_TURN = Fraction(TURN) + Fraction(TURN_TAIL)  # 2π to 32 digits

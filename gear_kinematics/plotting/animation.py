@@ -18,7 +18,7 @@ from gear_kinematics.report.mark import MARK
 from gear_kinematics.shape.outlines import NAMES
 
 _WIDTH, _DPI = 4.0, 105  # inches: 420 pixels
-_HEIGHT = 2 / 3  # of the width: the mechanism, and beside it the centres at half its size
+_HEIGHT = 2 / 3  # of the width: the mechanism, and to its right the centres at half its size
 _GROUND = '#ffffff'
 
 

@@ -32,9 +32,9 @@ FACES = {body: (_face(edge), edge) for body, edge in _EDGES.items()} | {'force':
 """Colours of the face of each body and of its outline."""
 _MARGIN = 1.02
 _OUTLINE = 0.45  # points
-_ARROW = 0.5  # of the radius of the stator
+_ARROW = 0.5  # length, in radii of the stator
 _DETAIL = 1.35  # eccentricities from the axis to the edge of the detail
-_LABEL = 15.0  # points from the labelled point
+_LABEL = 15.0  # distance of a label from its point, points
 _MM = 1e3  # in a metre
 _CIRCLE = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 121))
 

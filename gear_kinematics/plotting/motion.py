@@ -14,7 +14,7 @@ MOST_PETALS = 1000
 """Greatest number of petals; with more, a rose looks like a disc."""
 _PETAL_POINTS = 48
 _MM = 1e3  # in a metre
-_SAMPLES = 361  # of a turn
+_SAMPLES = 361  # per turn
 
 
 def roses(mechanism: Mechanism) -> Figure:

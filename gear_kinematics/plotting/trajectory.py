@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 MOST_TURNS = 1000
 """Rotor turns at a constant speed; animations cannot show more."""
 _PER_TURN = 360  # samples
-_ROUNDING = 1e-9  # by which intervals may miss the end
+_ROUNDING = 1e-9  # relative excess by which the last interval may pass the end
 
 
 class Trajectory(NamedTuple):

@@ -252,7 +252,7 @@ class Section:
     cases: tuple[Case, ...] = ()
     answer: str = ''
     """The result in one line."""
-    elapsed: float = 0.0  # s, of the check
+    elapsed: float = 0.0  # duration of the check, s
 
     @property
     def image(self) -> Figure | None:
@@ -300,7 +300,7 @@ class Document:
         ranks = [Verdict.FAIL, Verdict.UNUSABLE, Verdict.PASS, None]
         keys = [(not section.leads, ranks.index(section.verdict)) for section in self.sections]
         order, summary = sorted(range(len(keys)), key=keys.__getitem__), self.summary
-        if summary:  # which leaves out comparisons
+        if summary:  # it has no rows for comparisons
             rows = tuple(summary.rows[k] for k in order if k < len(summary.rows))
             summary = replace(summary, rows=rows)
         return replace(self, sections=tuple(self.sections[k] for k in order), summary=summary)

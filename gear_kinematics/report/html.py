@@ -21,8 +21,8 @@ from gear_kinematics.report.interactive import interactive
 from gear_kinematics.report.mechanism import Drawings, MovingMechanism
 from gear_kinematics.report.page import page, resource
 
-_PANEL_HEIGHT = 11.5  # rem, of stacked ones
-_HEIGHT = 34.0  # rem, of all of them at least
+_PANEL_HEIGHT = 11.5  # rem, of each of several stacked panels
+_HEIGHT = 34.0  # rem, least height of all panels together
 _FEW_SENTENCES = 6
 """Greatest number of remarks, or of findings after the first, that are not folded."""
 
@@ -66,7 +66,7 @@ def _body(document: Document) -> Iterator[str]:
 def _header(document: Document) -> Iterator[str]:
     name, verdict, about = document.title, document.verdict, document.totals
     if any(section.verdict == Verdict.FAIL for section in document.sections):
-        verdict = Verdict.FAIL  # which an unusable recording must not hide
+        verdict = Verdict.FAIL  # an unusable recording must not hide it
     if len(document.sections) == 1 and (only := document.sections[0]).name:
         name, verdict, about = only.name, only.verdict, document.title
     yield f'<header><h1>{_badge(verdict)}{escape(name)}</h1>'

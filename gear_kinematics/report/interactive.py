@@ -64,7 +64,7 @@ def interactive(panels: Sequence[Panel], mechanism: MovingMechanism | None) -> d
         plot['turned'] = {name: _rounded(angle, '.3f') for name, angle in turned.items()}
         if mechanism.forces is not None:
             plot['forces'] = [_rounded(force, '.3f') for force in mechanism.forces.T]
-        # motion.js moves this one, the last of the shapes.
+        # motion.js moves this shape, which must be the last.
         layout['shapes'].append(_line(('x', 0, 0), ('paper', 0, 1), 'text', dash='solid'))
     return plot
 

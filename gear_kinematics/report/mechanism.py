@@ -45,7 +45,7 @@ class Drawings:
     """The mechanisms of a page, which share their common shapes."""
 
     def __init__(self) -> None:
-        self._names: dict[str, str] = {}  # of the shapes, by their paths
+        self._names: dict[str, str] = {}  # names of the shapes by their paths
 
     def moving(self, moving: MovingMechanism, figure: str) -> Iterator[str]:
         """Write a mechanism with the controls of its motion along the x axis of a figure."""

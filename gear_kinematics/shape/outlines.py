@@ -35,8 +35,8 @@ NAMES = {
 BODIES = tuple(NAMES)[:-1]
 """The bodies of a branch from back to front, named as the links of the URDF."""
 
-_ARC = math.radians(3.0)  # between points of a circle, approximately
-_RING_BORDER = 1.07  # of the ring gear, in root radii
+_ARC = math.radians(3.0)  # approximate distance of points on a circle
+_RING_BORDER = 1.07  # outer radius of the ring gear, in root radii
 _LEAST_ROOM = 0.3
 """Share of the satellite's root radius that coupling and arm need in addition to their slides."""
 

@@ -41,7 +41,7 @@ PRESSURE_ANGLE = math.radians(20.0)
 """α of the basic rack, rad (ISO 53)."""
 _CLEARANCE = 0.25  # between tip and root, modules (ISO 53, type A)
 _BACKLASH = 0.02  # between the flanks, along their normal, modules; taken from the satellite
-_LEAST_TIP = 0.2  # thickness of a tip, modules: thinner ones count as pointed
+_LEAST_TIP = 0.2  # thickness, modules, below which a tip counts as pointed
 _FLANK_POINTS = 8  # with fewer, the chords of gears with few teeth come too close
 _CIRCLE_POINTS = 120
 _MOST_TEETH = 1000  # more are too fine for any picture

@@ -19,7 +19,7 @@ COLOURS = {
 """Red, green, blue and opacity of the bodies, in the format of URDF."""
 
 _BAR = 0.1  # width of the bars of the arms, in radii of the satellite
-_LEAST_BORE = 0.25  # diameter of a rotor whose cams have no bore, in radii of the cam
+_LEAST_BORE = 0.25  # radius of a rotor whose cams have no bore, in radii of the cam
 
 
 Point = tuple[float, float, float]

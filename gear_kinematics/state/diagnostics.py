@@ -177,7 +177,7 @@ class InputMonitor(DriverMonitor):
         if newly_unreferenced and rotor_input.referenced:
             text = f'turns unknown for {newly_unreferenced} inputs'
             warnings.append(Fault(text, _WAS_UNREFERENCED))
-        if self.drivers > 1 and not shared:  # with drivers of other joints
+        if self.drivers > 1 and not shared:  # the topic is not shared with drivers of other joints
             warnings.append(Fault(f'{self.drivers} drivers', 'Stop all drivers but one.'))
         warnings += self.graph.warnings
         values = {

@@ -85,8 +85,8 @@ class Driver:
 
     def _release(self) -> None:
         self._command: Command | None = None
-        self._age = 0.0  # of the command, s
-        self._integral = 0.0  # of the error in speed, rad
+        self._age = 0.0  # time since the command, s
+        self._integral = 0.0  # integral of the error in speed, rad
 
     def follow(self, command: Command) -> None:
         """Follow a command until the next one."""

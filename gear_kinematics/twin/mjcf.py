@@ -27,7 +27,9 @@ _MILLISECOND = 1e-3  # s
 _LONGEST_STEP = 1e-4  # s
 _PHASE = 0.7  # rad by which the fastest oscillation may advance in a step; beyond 2, it grows
 _UNREACHED_WIND_UP = 1e6  # rad, greater than all wind-ups
-_ARM_DAMPING = 0.05  # of critical: the arm comes to rest in ms, slower motions hardly notice
+_ARM_DAMPING = (
+    0.05  # of critical damping: the arm comes to rest in ms, and slower motions hardly change
+)
 
 
 def mjcf(
@@ -156,7 +158,7 @@ def _add_branch(gear: TwinGear, number: int, parts: dict[str, str], torquescale:
     branch, e = mechanism.branches[number], mechanism.eccentricity
     name, turn, behind_shaft = branch.name, gear.error(0.0), gear.has_shaft and not number
     if behind_shaft:
-        turn += gear.shaft_twist  # of the arm
+        turn += gear.shaft_twist  # to the angle of the arm
     across, along = e * math.sin(branch.cam_phase - turn), e * math.cos(branch.cam_phase - turn)
     x, y, z = cam_centre(branch, e)
     reach = mechanism.ring_rolling_radius / e

@@ -21,7 +21,7 @@ class MujocoModel:
     def __init__(self, gear: TwinGear) -> None:
         self.notice = ''
         self.rotor_locked = self.output_locked = False
-        self._owed = 0.0  # s that have been asked for and not simulated yet
+        self._owed = 0.0  # time that is still to be simulated, s
         self._build(gear)
 
     @property
@@ -98,7 +98,7 @@ class MujocoModel:
         self.output_angle = float(angles[self._output])
         self.output_velocity = float(velocities[self._output])
         ideal = (1.0 / gear.ratio - 1.0) * rotor + gear.error(rotor)
-        # It changes slowly, as the output moves on a spring.
+        # The torques change slowly, as the output moves on a spring.
         self.branch_torques, self.model.dof_frictionloss[self._output] = gear.torques(
             [ideal - float(angles[joint]) for joint in self._satellites]
         )

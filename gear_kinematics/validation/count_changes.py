@@ -22,7 +22,7 @@ _FEW = 64
 
 _STEP = np.dtype(
     [
-        ('number', np.int64),  # of the first sample that has it
+        ('number', np.int64),  # number of the first sample that has it
         ('turns', np.float64),  # the rotor angle is 2π turns + angle more than recomputed
         ('angle', np.float64),  # rad
     ]
@@ -58,7 +58,7 @@ class CountChanges:
         self._steps = np.array([(-1, 0.0, 0.0)], _STEP)  # ascending
         self._notes = list[Finding]()
         self._turns_taken = self._last_alone = False
-        self._referenced = -1  # the latest segment in which an encoder has done it
+        self._referenced = -1  # the latest segment that an encoder has referenced
         self._latest = -1, 0.0, 0.0  # segment, angle and error of the latest output
 
     def move(self, samples: Array, sign: int = 1) -> None:
@@ -82,7 +82,9 @@ class CountChanges:
         before, angle_before, error_before = self._latest
         jumps = np.abs(np.diff(error, prepend=error_before)) > self._tolerance
         constant = not jumps[1:_FEW].any()
-        if not self._parameters.rotor_period:  # no gap changes the count, so that it stays
+        if (
+            not self._parameters.rotor_period
+        ):  # no gap changes the count, so that a jump is lasting
             jumps[:-1] &= ~jumps[1:]
         steps, moved, turns, rest = [], 0.0, 0.0, 0.0
         self._last_alone = False

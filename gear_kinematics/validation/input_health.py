@@ -15,7 +15,9 @@ Array = NDArray[np.float64]
 
 _MIN_GAP = 5.0  # median periods
 _MAX_LISTED = 10  # listed gaps
-_MANY_REPEATED = 0.25  # of all stamps: drivers that send a state twice in a while have fewer
+_MANY_REPEATED = (
+    0.25  # share of all stamps; drivers that now and then send a state twice have fewer
+)
 
 
 class InputHealth:

@@ -214,7 +214,7 @@ class OutputTopic:
         self._gear, self._tolerances, self._solver, self._changes = expectation
         self._wrong = 0
         self._unrecorded = 0  # messages whose input was not recorded
-        self._malformed = Occurrences()  # when they were received, as they have no stamp
+        self._malformed = Occurrences()  # by times of reception, as they have no stamp
         self._faults: defaultdict[tuple[FindingCause, str], Occurrences] = defaultdict(Occurrences)
         """Faults by what is wrong, and the name of the joint or the frame."""
         self._late: tuple[list[bytes], list[int]] = [], []

@@ -92,7 +92,7 @@ class OutputState(JointStateTopic):
         super().__init__(name, joint, expectation)
         self.fit = AngleFit()
         self._factors = {'velocity': FactorFit(), 'effort': FactorFit()}
-        self._adopted = -1  # number of the latest sample that has got a stamp
+        self._adopted = -1  # number of the latest sample that was given a stamp
 
     def _expected(self, samples: Array) -> Sequence[Bounds]:
         ratio = self._gear.gear_ratio

@@ -34,7 +34,9 @@ from gear_kinematics.validation.validator import Validator, agrees
 from gear_kinematics.wire.cdr import MalformedMessageError, messages_lost
 from gear_kinematics.wire.topics import CORRECTED_TOPICS, LOAD_TOPICS, OUTPUT_ENCODER
 
-_LOSSES = 'rosbag2_interfaces/msg/MessagesLostEvent'  # of recorders since Lyrical
+_LOSSES = (
+    'rosbag2_interfaces/msg/MessagesLostEvent'  # type of the events of recorders since Lyrical
+)
 _BATCH = 8192  # messages of a live node that are validated together
 
 

@@ -146,7 +146,7 @@ class Validator:
         self._drop(len(self._window))
         for group, _ in self._groups:
             group.close(lost)
-        if self._changes.homed:  # which the correction knows nothing of
+        if self._changes.homed:  # the correction does not take it into account
             why = 'the zero of the rotor changes during the recording'
             self._corrector, self._why_unjudged = None, self._why_unjudged or why
         unjudged = () if self._corrector else self._corrected
@@ -245,7 +245,9 @@ class Validator:
         if self._corrector and len(segments):
             latest = self._window[-len(segments) :].copy()
             self._changes.move(latest)
-            latest['segment'] = segments + self._changes.count  # after a change, plays are unknown
+            latest['segment'] = (
+                segments + self._changes.count
+            )  # after a change, the state of play is unknown
             names = 'stamp', 'turns', 'angle', 'velocity', 'effort', 'segment'
             found = self._corrector.correct_batch(
                 *(latest[name] for name in names), referenced=latest['referenced']
