@@ -43,7 +43,10 @@ def test_the_recorded_outputs_are_what_the_rotor_topic_calls_for(name):
         read(name, '/rotor_state'), single_turn=single_turn
     )
     assert (len(samples), rejected) == SHIPPED[name]
-    replaying.assert_right(samples, read(name, '/output_state'), read(name, '/body_poses'))
+    outputs = samples, read(name, '/output_state'), read(name, '/body_poses')
+    assert len({*map(len, outputs)}) == 1
+    # All are recomputed by two methods in test_validator.py, which needs less time than 50 digits.
+    replaying.assert_right(*(each[::5] for each in outputs))
     # The rate is that of a real driver.
     steps = [b.stamp - a.stamp for a, b in pairwise(samples)]
     assert sorted(steps)[len(steps) // 2] <= replaying.SECOND / 500 * 1.01

@@ -7,7 +7,7 @@ from fractions import Fraction
 import pytest
 import yaml
 from calibrations import calibration
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gear_kinematics.correction.calibration_file import (
@@ -50,6 +50,7 @@ positive = st.floats(1e-12, 0.2)
 texts = st.text(st.characters(categories=['L', 'N', 'P', 'S']) | st.just(' '), max_size=10)
 
 
+@settings(max_examples=60)
 @given(
     st.lists(
         st.builds(

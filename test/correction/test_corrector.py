@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from calibrations import MP, calibration, expected_deviations
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gear_kinematics.correction.calibration_file import Order
@@ -60,6 +60,7 @@ def motions(draw, shortest=0) -> list[RotorSample]:
     return motion
 
 
+@settings(max_examples=60)
 @given(
     st.lists(
         st.tuples(st.integers(-1, 1), st.floats(-math.pi, math.pi), st.none() | st.floats(-1, 1)),
@@ -109,6 +110,7 @@ def test_plays_are_unknown_again_after_motion_was_missed(cause):
     assert again.half_width == pytest.approx(1e-4 + 0.6 * 4e-4 + 0.2 * 2e-3)
 
 
+@settings(max_examples=60)
 @given(
     st.lists(st.sampled_from((-1, 0, 1)), min_size=10, max_size=960),
     st.sampled_from((0.0, 2.0, 15.0)),
@@ -216,6 +218,7 @@ def test_calibration_without_terms_adds_its_constant():
     np.testing.assert_array_equal(np.transpose(batch), 2 * [(1e-5, 0.0, 1e-4, 0.0)])
 
 
+@settings(max_examples=60)
 @given(motions(shortest=MS), st.integers(1, 39))
 def test_history_before_the_first_sample_changes_no_more_than_is_said(motion, start):
     made = calibration()

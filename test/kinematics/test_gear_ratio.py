@@ -9,7 +9,7 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import example, given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from gear_kinematics.kinematics import GearRatio, rotor_state_for
@@ -119,6 +119,7 @@ def test_simplest_fraction_is_the_first_of_rising_denominators(low, width):
         simplest_fraction(high + 1, low)
 
 
+@settings(max_examples=40)
 @given(st.fractions(-40, -1, max_denominator=99), st.fractions(0, 1, max_denominator=999))
 def test_tooth_pairs_are_all_of_the_interval(low, width):
     high = min(low + width, Fraction(-1, 100))

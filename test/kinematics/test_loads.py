@@ -32,7 +32,7 @@ def of_oracle(find, mechanism, rotor, torques, bodies) -> load_oracles.ExpectedL
 
 
 @pytest.mark.slow
-@settings(max_examples=100)
+@settings(max_examples=40)
 @given(loaded(max_branches=3))
 def test_loads_are_the_multipliers_of_the_constraint_jacobian(case):
     """At 50 digits, over the whole range of mechanisms."""
@@ -202,6 +202,7 @@ def test_branches_without_preload_have_equal_shares(mechanism):
 
 
 @pytest.mark.slow
+@settings(max_examples=60)
 @given(loaded())
 def test_arrays_and_floats_agree_to_the_last_bit(case):
     """`solve` of one sample among others, and the equations with plain floats."""

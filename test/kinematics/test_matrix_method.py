@@ -4,7 +4,7 @@
 import math
 
 import numpy as np
-from hypothesis import given
+from hypothesis import given, settings
 from properties import (
     LENGTHS,
     assert_close,
@@ -20,6 +20,7 @@ from gear_kinematics.kinematics.transforms import rotation_z, translation
 EPS = float(np.finfo(np.float64).eps)
 
 
+@settings(max_examples=80)
 @given(mechanisms(), motions())
 def test_closed_form_and_matrix_method_agree_in_every_field(mechanism, values):
     by_matrices = matrix_method.solve(mechanism, *values)

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from properties import assert_close, mechanisms
 
@@ -134,6 +134,7 @@ def test_a_cycle_is_the_fewest_turns_after_which_positions_repeat():
             assert Mechanism(ring_teeth, satellite_teeth, 1.0, (A,)).cycle_turns == turns
 
 
+@settings(max_examples=60)
 @given(mechanisms(max_branches=1), st.floats(-10.0, 10.0), st.floats(-100.0, 100.0))
 def test_satellite_rolls_on_the_ring_gear_without_slip(mechanism, angle, velocity):
     """Where the rolling circles touch, the satellite has no velocity."""

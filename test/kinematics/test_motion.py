@@ -242,6 +242,7 @@ def test_batches_and_floats_agree_to_the_last_bit(
         np.testing.assert_array_equal(getattr(among, name)[-1], value, name)
 
 
+@settings(max_examples=80)
 @given(mechanisms(), st.floats(-1.0, 1.0))
 def test_bodies_are_in_their_places_up_to_the_largest_angle(mechanism, share):
     """The largest angle is one of the rotor, even if the output turns faster."""

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import oracle
 import pytest
-from hypothesis import example, given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from properties import assert_close, assert_within, position_errors, samples
 
@@ -69,6 +69,7 @@ SPECIAL = [
 ]
 
 
+@settings(max_examples=80)
 @given(samples(LARGEST) | samples(100.0))
 @example(np.array(SPECIAL))
 @example(LARGEST * 2.0 ** -np.random.default_rng(5).uniform(0.0, 53.0, 3000))
@@ -91,6 +92,7 @@ def test_split_of_values_that_are_not_finite_is_nan_in_arrays():
 # -- unwrapping ----------------------------------------------------------------------------------
 
 
+@settings(max_examples=80)
 @given(
     st.sampled_from(RANGES), st.floats(-10.0, 10.0), st.lists(st.floats(-3.1, 3.1), max_size=30)
 )

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gear_recordings import encoders
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gear_kinematics.measurement.calibration.terms import Samples
@@ -39,6 +39,7 @@ step = st.sampled_from([0.0, 0.01, -0.02, 0.1, -0.1, 0.3, -0.7])
 steps = st.lists(step, min_size=1, max_size=60)
 
 
+@settings(max_examples=60)
 @given(steps, st.sets(st.integers(0, 59)))
 def test_states_are_those_of_the_definition(moves, unknown):
     x = np.cumsum(moves)

@@ -39,7 +39,7 @@ def test_ci_ends_a_run_that_hangs_and_all_that_it_started(tmp_path):
         f'\t{sys.executable} -m pytest --rootdir . test_import.py\n'
     )
     environment = os.environ | {'LIMIT': '10', 'PATH': f'{tmp_path}:{os.environ["PATH"]}'}
-    done = finished([tmp_path / '.ci/run'], env=environment)
+    done = finished([tmp_path / '.ci/run'], env=environment, timeout=240.0)
     output = done.stdout + done.stderr
     assert done.returncode == 124, output
     assert re.search(r'  File ".*/test_import.py", line .* in hang\n', output), output

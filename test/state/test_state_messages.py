@@ -8,7 +8,7 @@ from itertools import combinations
 import oracle
 import pytest
 from geometry_msgs.msg import PoseArray
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from properties import mechanisms, numbers_of
 from rclpy.serialization import deserialize_message
@@ -86,6 +86,7 @@ def assert_joint_states(message, derivatives, numbers, *, velocity: bool) -> Non
 
 
 @pytest.mark.slow
+@settings(max_examples=60)
 @given(mechanisms(), st.floats(-20.0, 20.0), st.floats(-700.0, 700.0))
 def test_messages_hold_the_motion(mechanism, rotor_angle, velocity):
     # The output of 2:1 turns as fast as the rotor, that of 400:1 399 times: few turns of both.
@@ -155,6 +156,7 @@ def test_every_message_has_the_stamp_of_the_sample(actuator, stamp):
         assert (header.sec, header.nanosec) == divmod(stamp, 10**9)
 
 
+@settings(max_examples=80)
 @given(mechanisms(), st.floats(-LARGEST_ANGLE, LARGEST_ANGLE), st.floats(-1e4, 1e4))
 def test_messages_have_the_bits_of_a_batch(mechanism, position, velocity):
     sample = sample_at(position, velocity)

@@ -7,7 +7,7 @@ import struct
 import numpy as np
 import pytest
 from harnesses import harness
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from live import rotor_bytes
 from wire import micro_ros_bytes
@@ -55,6 +55,7 @@ pose_arrays = st.builds(
 
 
 @pytest.mark.slow
+@settings(max_examples=80)
 @given(st.lists(joint_states | pose_arrays | st.binary(max_size=40), max_size=20))
 def test_batches_are_read_as_rclpy_reads_one_by_one(batch):
     harness('messages').check(harness('messages').SEPARATOR.join(batch))

@@ -8,7 +8,7 @@ from itertools import chain
 import pytest
 from geometry_msgs.msg import Point, Pose, PoseArray, Quaternion
 from harnesses import harness
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from live import SECOND, rotor_bytes, rotor_state
 from rclpy.serialization import deserialize_message
@@ -42,6 +42,7 @@ def template_values(count):
     return st.lists(st.floats(width=64), min_size=count, max_size=count)
 
 
+@settings(max_examples=80)
 @given(stamps, st.lists(texts, max_size=5), st.booleans(), st.booleans(), st.data())
 def test_joint_state_template_gives_what_others_read_and_write(
     stamp, names, velocity, effort, data
@@ -81,6 +82,7 @@ pose_arrays = st.integers(0, 5).flatmap(lambda count: template_values(7 * count)
 
 
 @pytest.mark.slow
+@settings(max_examples=80)
 @given(stamps, texts, pose_arrays)
 def test_pose_array_template_gives_what_others_read_and_write(stamp, frame_id, numbers):
     template = PoseArrayTemplate(frame_id, len(numbers) // 7)
@@ -151,6 +153,7 @@ def whole(text: bytes) -> str:
 
 
 @pytest.mark.slow
+@settings(max_examples=80)
 @given(
     st.sampled_from(ENCAPSULATIONS), headers, st.lists(raw_strings, max_size=4), doubles, doubles,
     doubles, st.binary(max_size=40), st.integers(0, 40),
@@ -172,6 +175,7 @@ def test_joint_state_is_whatever_rclpy_takes(
 
 
 @pytest.mark.slow
+@settings(max_examples=80)
 @given(
     st.sampled_from(ENCAPSULATIONS), headers, pose_arrays, st.binary(max_size=40),
     st.integers(0, 40),

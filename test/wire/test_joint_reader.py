@@ -6,7 +6,7 @@ import struct
 
 import pytest
 from harnesses import harness
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from live import SECOND, rotor_bytes
 from wire import micro_ros_bytes
@@ -77,6 +77,7 @@ def expected(data, joint):
 
 
 @pytest.mark.slow
+@settings(max_examples=80)
 @given(st.lists(st.tuples(messages, st.booleans()), max_size=8), names)
 def test_any_layout_is_read_after_any_other(sequence, joint):
     reader = JointReader(joint)
