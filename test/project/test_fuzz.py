@@ -9,7 +9,7 @@ import time
 from contextlib import closing
 from dataclasses import replace
 from functools import partial
-from itertools import pairwise, starmap
+from itertools import starmap
 from pathlib import Path
 
 import pytest
@@ -266,4 +266,4 @@ def test_hostile_bytes_change_nothing(tmp_path):
     assert growth <= 10e6
     assert len(lines) == len(live.text().splitlines())
     warned = [line.time for line in lines if 'rejected' in line.text]
-    assert min(after - before for before, after in pairwise(warned)) > 0.95
+    assert len(warned) - 1 <= warned[-1] - warned[0] + 0.5  # one a second
