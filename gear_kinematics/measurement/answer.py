@@ -28,9 +28,6 @@ def answer(report: LostMotion) -> str:
     if found is None or not (accuracy := found.forward or found.backward):
         return 'The output does not move far enough in one direction to tell its errors.'
     error = f'In one direction the output deviates by {arc_minutes(accuracy)}′ peak to peak'
-    lost = found.lost_motion
-    if lost and math.inf > lost.expanded > max(abs(lost.value), accuracy.value):
-        return f'{error}; what it loses on reversals cannot be told.'
     if found.lost_motion:
         return f'{error}; on reversals it loses {arc_minutes(found.lost_motion)}′.'
     if found.reversals:
@@ -38,7 +35,10 @@ def answer(report: LostMotion) -> str:
             f'{error}; backward it lags by {arc_minutes(found.reversals)}′, by lost motion or by '
             'a delay between the encoders.'
         )
-    return f'{error}.'
+    both = (
+        '; what it loses on reversals cannot be told' if found.forward and found.backward else ''
+    )
+    return f'{error}{both}.'
 
 
 def _of_ramps(figures: GearFigures) -> str:

@@ -19,6 +19,8 @@ UNITS = {'rad': 1.0, 'mrad': 1e-3, 'deg': math.radians(1.0), 'rev': TURN}
 """Units of angle in which readings may have been recorded, rad."""
 _DIGITS = 12
 """Most decimals that are recognised."""
+_USUAL = 0.95
+"""Share of levels that are no stray ones."""
 _ROUNDING = 8.0
 """Rounding errors of a reading, in its spacing: of a few conversions between units."""
 _LEAST = 4
@@ -35,8 +37,9 @@ _CHANCE = 1e-3
 _EXACT, _BETTER = 1e-3, 0.3
 """Distance, in steps, below which no finer step is sought; share of the distance within which a
 finer one has to fit: by chance, half a step fits twice as badly."""
-_EVEN = 0.98
-"""From this share of equal changes on, levels are those of an even motion, not of an encoder."""
+_EVEN = 0.9
+"""From this share of changes on that are as the one before, levels are those of an even motion,
+not of an encoder."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,8 +90,7 @@ def find_step(readings: Array) -> Step:
 
 def _recording_resolution(levels: Array) -> float:
     """Distance of the recorded numbers, where decimals or single precision show; else 0."""
-    # Distances of floating-point numbers are those of the greatest.
-    large = levels[2.0 * np.abs(levels) > np.max(np.abs(levels))]
+    large = levels[_large(levels)]
     found = [0.0]
     for unit in UNITS.values():
         values = large / unit
@@ -136,9 +138,18 @@ def _fitted(levels: Array, readings: Array, step: float) -> tuple[float, float]:
     free = len(np.unique(numbers)) - 3  # the zero, the step, and the choice of it
     if distance > _FITS or (math.sqrt(12.0) * distance) ** free > _CHANCE:
         return none
-    # Floating-point numbers are twice as far apart where they are twice as large.
-    large = levels[2.0 * np.abs(levels) > np.max(np.abs(levels))] / (2.0 * step)
-    changes = np.abs(np.diff(np.round((readings - zero) / step)))
-    usual = np.median(changes)
-    even = usual and np.mean(changes == usual) >= _EVEN
+    large = levels[_large(levels)] / (2.0 * step)
+    changes = np.diff(np.round((readings - zero) / step))
+    moving = changes[1:] != 0.0
+    even = moving.any() and np.mean(changes[1:][moving] == changes[:-1][moving]) >= _EVEN
     return none if even or np.std(large - np.round(large)) < _FITS else (step, distance)
+
+
+def _large(levels: Array) -> NDArray[np.bool_]:
+    """Find the levels whose floating-point numbers are the farthest apart: those of the greatest.
+
+    A single corrupt reading, which may be greater by far, is not all of them.
+    """
+    sizes = np.abs(levels)
+    large: NDArray[np.bool_] = 2.0 * sizes > np.quantile(sizes, _USUAL)
+    return large

@@ -11,6 +11,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from gear_kinematics.kinematics.rotor_turns import TURN
@@ -19,13 +20,14 @@ from gear_kinematics.report.document import number
 
 _FEWEST = 50  # samples
 _LEAST_TRAVEL = math.radians(10.0)  # of the output: without it, the ratio does not show
-_STEPS = 12.0  # times the step that 98 % of the samples have: no gear's error
+_WINDOW = 5  # samples in whose median a stray reading, or two, do not show
+_STEPS = 12.0  # times the step that 98 % of such medians have: no gear's error
 _LEAST_STEP = math.radians(0.25)
 _STAYS = 4  # samples in a row: no stray reading
 _REVERSAL = 4  # samples around it in which the output may lag
 _FROZEN = math.radians(3.0)  # of the output, that one shaft does while the other stands
 _LEAST_SHARE = 0.25  # of samples that are used: else it is the ratio that is not understood
-_MOST_FAULTS = 0.02  # of samples: more are a unit or a range that is not understood
+_MOST_FAULTS = 0.02  # of such medians: more are a unit or a range that is not understood
 _RANGE = 0.9  # of the rotor's travel, by which it steps where it wraps
 _NAMED = 3  # faults of a kind that are named with their moments
 
@@ -56,10 +58,15 @@ def gated(recording: Recording) -> Recording:
     for period in periods:
         steps = np.diff(error[rows], prepend=error[rows[0]])
         error[rows] -= period * np.cumsum(np.round(steps / period))
-    steps, ideal = np.diff(error[rows]), slope * np.diff(rotor[rows])
-    limit = max(_STEPS * float(np.quantile(np.abs(steps), 0.98)), _LEAST_STEP)
-    impossible = (np.abs(steps) > limit) & ~_lost_motion(steps, ideal)
-    if np.mean(impossible) > _MOST_FAULTS:
+    ideal = slope * np.diff(rotor[rows])
+    calm, moved = _usual_steps(error[rows]), slope * _usual_steps(rotor[rows])
+    fastest = float(np.quantile(np.abs(moved), 0.98))
+    limit = max(_STEPS * float(np.quantile(np.abs(calm), 0.98)), _LEAST_STEP)
+    faults, impossible = (
+        (np.abs(steps) > limit) & ~_lost_motion(steps, ideal, fastest)
+        for steps in (calm, np.diff(error[rows]))
+    )
+    if np.mean(faults) > _MOST_FAULTS:
         return recording
     kept, jumps = _followed(error[rows], rows, limit, impossible, periods[-1])
     kept = rows[kept]
@@ -72,30 +79,30 @@ def gated(recording: Recording) -> Recording:
     stray = np.setdiff1d(np.arange(first, last + 1), kept)
     unit, time = (' s', both.seconds) if both.timed else ('', both.seconds + 1.0)
     at = 'at' if both.timed else 'at sample'
-    faults = []
+    found = []
     isolated = stray[~frozen[stray]]
     if len(isolated):
         named = ', '.join(number(time[k], 6) for k in isolated[:_NAMED])
         more = f' and {len(isolated) - _NAMED} more' if len(isolated) > _NAMED else ''
         what = 'reading that contradicts' if len(isolated) == 1 else 'readings that contradict'
-        faults.append(f'{len(isolated)} {what} both neighbours left out, {at} {named}{unit}{more}')
+        found.append(f'{len(isolated)} {what} both neighbours left out, {at} {named}{unit}{more}')
     if len(still := np.flatnonzero(frozen)):
         span = f'{number(time[still[0]], 6)} to {number(time[still[-1]], 6)}{unit}'
-        faults.append(
+        found.append(
             f'an encoder stood still while the other moved, from {span}: '
             f'{len(still)} readings left out'
         )
     for before, after in ((rows[k - 1], rows[k]) for k in jumps):
         size = number(math.degrees(error[after] - error[before]))
-        faults.append(
+        found.append(
             f'the output jumps by {size}° against the rotor {at} {number(time[after], 6)}{unit} '
             '(a slip, or an encoder that jumped)'
         )
     if first or last + 1 < len(error):
         span = f'{number(time[first], 6)} to {number(time[last], 6)}{unit}'
-        faults.append(f'only the longest part without a fault is used, {span}')
+        found.append(f'only the longest part without a fault is used, {span}')
     encoders = _without(both, slope * turned, kept, stray)
-    return replace(recording, encoders=encoders, faults=(*recording.faults, *faults))
+    return replace(recording, encoders=encoders, faults=(*recording.faults, *found))
 
 
 def output_by_rotor(rotor: Array, measured: Array) -> float | None:
@@ -116,12 +123,19 @@ def _frozen(still: Array, other: Array) -> NDArray[np.bool_]:
     return found
 
 
-def _lost_motion(steps: Array, ideal: Array) -> NDArray[np.bool_]:
+def _usual_steps(values: Array) -> Array:
+    """Steps (n - 1,) of values (n,) without stray ones."""
+    windows = sliding_window_view(np.pad(values, _WINDOW // 2, 'edge'), _WINDOW)
+    steps: Array = np.diff(np.median(windows, axis=1))
+    return steps
+
+
+def _lost_motion(steps: Array, ideal: Array, fastest: float) -> NDArray[np.bool_]:
     """Find steps of the error, rad, by which the output lags at a reversal of the rotor."""
     ways = np.concatenate([np.zeros(_REVERSAL), np.sign(ideal), np.zeros(_REVERSAL)])
     sums = np.convolve(ways, np.ones(_REVERSAL), 'valid')
     before, after = sums[: len(ideal)], sums[_REVERSAL : _REVERSAL + len(ideal)]
-    most = np.minimum(np.abs(ideal), np.quantile(np.abs(ideal), 0.98))
+    most = np.minimum(np.abs(ideal), fastest)
     lag = -steps * np.sign(ideal)
     late = before * after <= 0.0
     lost: NDArray[np.bool_] = late & (lag > 0.0) & (lag <= 1.1 * most)

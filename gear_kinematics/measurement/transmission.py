@@ -37,7 +37,8 @@ class TransmissionFigures:
     reversals: Estimate | None
     """Error of the backward minus the forward run at the same angles; None without any."""
     lost_motion: Estimate | None
-    """The same at no speed; None where it cannot be told from a delay."""
+    """The same at no speed; None where it cannot be told from a delay. Neither is told whose ±
+    exceeds itself and the whole error in one direction."""
     delay: Estimate | None
     """s, or rows of a file without times, by which the stamps of the output are late; None if it
     cannot be told. The other figures are without it."""
@@ -121,19 +122,26 @@ def transmission_figures(
         if (rest := _reversals(motion, both)) and rest.delay:
             late = replace(rest.delay, value=shift + rest.delay.value)
             found = replace(found, lost_motion=rest.lost_motion, delay=late)
-    forward, backward = motion.long_runs(1), motion.long_runs(-1)
+    forward, backward = (_accuracy(motion.long_runs(way), both) for way in (1, -1))
+    error = max(one.value if one else 0.0 for one in (forward, backward))
     return TransmissionFigures(
         float(np.ptp(motion.angle)),
         float(np.mean(motion.error)),
-        _accuracy(forward, both),
-        _accuracy(backward, both),
-        found.difference if found else None,
-        found.lost_motion if found else None,
+        forward,
+        backward,
+        _told(found.difference, error) if found else None,
+        _told(found.lost_motion, error) if found else None,
         found.delay if found else None,
         motion.error,
         motion.angle,
         motion.direction,
     )
+
+
+def _told(lost: Estimate | None, error: float) -> Estimate | None:
+    """A difference between directions, unless its ± exceeds it and the error in either."""
+    beyond = lost and math.inf > lost.expanded > max(abs(lost.value), error)
+    return None if beyond else lost
 
 
 def _accuracy(runs: Sequence[_Run], reading: Component) -> Estimate | None:

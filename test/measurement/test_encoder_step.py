@@ -100,6 +100,19 @@ def test_even_motion_without_steps_has_none():
     assert find_step(stepped(1e-3 * np.arange(2000), STEP)).size == pytest.approx(STEP)
 
 
+def test_even_motions_at_several_speeds_have_no_step_of_their_own():
+    # All speeds are multiples of 0.36 rad a sample, but for the steps of an encoder.
+    speeds = np.repeat([0.7205, 1.0805, 1.4403, -0.7205], 200)
+    assert find_step(np.round(stepped(np.cumsum(speeds), TURN / 4096), 5)).size < 0.01
+
+
+@pytest.mark.parametrize('stray', [9.3, -9999.0])
+def test_a_stray_reading_does_not_coarsen_the_step(stray):
+    values = stepped(readings(1.0, 0.0), STEP)
+    values[300] = stray
+    assert 0.0 < find_step(values).size < 1.001 * STEP
+
+
 @pytest.mark.parametrize('step', [TURN / 65536, TURN / 2**20 / 19, 360 / 4096])
 @pytest.mark.parametrize('jump', [1, 7, 90])
 def test_levels_may_be_missing(step, jump):

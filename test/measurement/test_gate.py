@@ -59,6 +59,16 @@ def test_stray_readings_are_left_out_and_named(clean, gate, wrong):
     assert f'{0.04 * min(wrong)[0]:g}' in remark
 
 
+@pytest.mark.parametrize(('column', 'value'), [(1, -9999.0), (2, 0.0)], ids=['rotor', 'output'])
+@pytest.mark.parametrize('every', [97, 25])
+def test_many_stray_readings_are_left_out(clean, gate, column, value, every):
+    clean[100::every, column] = value
+    _, found = gate(clean)
+    assert np.ptp(found.encoders.error(RATIO)) < np.radians(0.5)
+    assert len(found.encoders.measured) >= len(clean) * (1.0 - 3.0 / every)
+    assert found.encoders.rotor_step.size < 0.01
+
+
 @pytest.mark.parametrize('column', [1, 2], ids=['rotor', 'output'])
 def test_a_frozen_encoder_is_named_and_its_readings_are_left_out(clean, gate, column):
     clean[700:760, column] = clean[700, column]
