@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gear_kinematics.correction.calibration_fit import CalibrationFit
-from gear_kinematics.correction.reversals import Array, Pair, Reversals, separate
+from gear_kinematics.correction.reversals import Array, Reversals, separate
 from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
 
@@ -78,7 +78,7 @@ class ErrorWindow:
             len(error),
             float(error.mean()),
             float(np.ptp(error)),
-            separate([Pair(difference, -speed_difference)]),
+            separate(difference, -speed_difference),
             fit,
         )
 

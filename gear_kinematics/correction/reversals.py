@@ -10,21 +10,18 @@ late by τ lags by its speed times τ. So over the common angles
 which is a straight line over the difference of the signed speeds.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.statistics.uncertainty import Component, Estimate, jackknife
+from gear_kinematics.statistics.normal_equations import NormalEquations
+from gear_kinematics.statistics.uncertainty import Estimate, jackknife
 
 Array = NDArray[np.float64]
 
 _BLOCKS = 20
-"""Blocks of a pair of runs. Errors within a block may be correlated, those of blocks are not."""
-_PAIRS = 4
-"""Least number of pairs of runs that serve as the repeats instead of blocks of angles."""
+"""Blocks of angles. Errors within a block may be correlated, those of blocks are not."""
 _LEAST = 3
 """Least number of blocks that a straight line and its scatter need."""
 _SPREAD = 0.01
@@ -45,74 +42,36 @@ class Reversals:
     """Delay of the stamps of the measured angles, s; None in the same case."""
 
 
-class Pair(NamedTuple):
-    """A run and the next one back, at angles that both cover, in the order of the angles."""
+def separate(difference: Array, speed: Array) -> Reversals | None:
+    """Separate lost motion from a delay, at angles that both directions cover, in their order.
 
-    difference: Array
-    """Error of backward minus forward motion, (n,), rad."""
-    speed: Array
-    """Speed of forward minus that of backward motion, (n,), rad/s."""
-
-
-def separate(pairs: Sequence[Pair], *others: Component) -> Reversals | None:
-    """Separate lost motion from a delay.
-
-    Uncertainties are those of the jackknife, which leaves out a pair at a time, or a block of
-    angles where there are few pairs.
+    Uncertainties are those of the jackknife, which leaves out a block of angles at a time.
 
     Args:
-        pairs: pairs of runs; those without angles are ignored.
-        others: components of the uncertainty that all pairs have in common, rad.
+        difference: error of backward minus forward motion, (n,), rad.
+        speed: speed of forward minus that of backward motion, (n,), rad/s.
 
     Returns:
         None without common angles.
     """
-    pairs = [pair for pair in pairs if len(pair.difference)]
-    if not pairs:
+    if not len(speed):
         return None
-    blocks = [_blocks(pair) for pair in pairs]
-    groups = blocks if len(blocks) >= _PAIRS else [row[None] for rows in blocks for row in rows]
-    rows = np.concatenate(groups)
-    centre = np.average(rows[:, 1:], axis=0, weights=rows[:, 0])
-    sums = np.array([_moments(rows, centre) for rows in groups])
-    whole = sums.sum(axis=0, keepdims=True)
-    sums = np.concatenate([whole, whole - sums]) if len(groups) > 1 else whole
-    # Without each group: means of difference and speed, variance of the speed, slope.
-    difference, speed, square, product = sums.T[1:] / sums.T[0]
-    variance = square - speed * speed
-    covariance = product - speed * difference
-    difference, speed = difference + centre[0], speed + centre[1]
-
-    def estimate(fits: Array, *others: Component) -> Estimate:
-        return replace(jackknife(fits, *others, corrected=True), repeats=len(pairs))
-
-    mean = estimate(difference, *others)
-    noise = float(np.mean([_noise(pair) for pair in pairs]))
-    # Whether the speed varies, and not only by noise.
-    varies = (variance > (_SPREAD * speed) ** 2) & (noise <= _STEADY * variance)
-    if len(groups) <= _LEAST or not varies.all():
+    columns = np.stack([np.ones(len(speed)), speed, difference], axis=1)
+    parts = np.array_split(columns, min(_BLOCKS, len(columns)))
+    rows = np.array([np.sqrt(len(part)) * part.mean(axis=0) for part in parts])
+    equations = NormalEquations(rows[:, :, None] * rows[:, None, :])
+    mean = jackknife(equations.solve([0])[:, 0])
+    if len(parts) <= _LEAST or not tells_delay(speed, rows[:, 1] / rows[:, 0]):
         return Reversals(mean, None, None)
-    slope = covariance / variance
-    return Reversals(mean, estimate(difference - slope * speed, *others), estimate(slope))
+    return Reversals(mean, *(jackknife(fits) for fits in equations.solve([0, 1]).T))
 
 
-def _blocks(pair: Pair) -> Array:
-    """Number of angles, and means of difference and speed, in blocks of neighbouring angles."""
-    values = np.stack([np.ones(len(pair.speed)), pair.difference, pair.speed], axis=1)
-    rows = np.array_split(values, min(_BLOCKS, len(values)))
-    return np.array([[len(row), *row[:, 1:].mean(axis=0)] for row in rows])
+def tells_delay(speed: Array, means: Array) -> bool:
+    """Whether speeds, (n,), and their means in blocks, vary by more than noise.
 
-
-def _moments(rows: Array, centre: Array) -> Array:
-    """Sums over blocks, from a centre: of 1, difference, speed, its square, their product."""
-    difference, speed = (rows[:, 1:] - centre).T
-    terms = np.stack([np.ones(len(rows)), difference, speed, speed * speed, speed * difference])
-    return np.asarray(terms @ rows[:, 0])
-
-
-def _noise(pair: Pair) -> float:
-    """Variance of the noise in the mean speed of a block, from its second differences."""
-    if len(pair.speed) <= _LEAST:
-        return 0.0
-    in_block = max(1.0, len(pair.speed) / _BLOCKS)
-    return float(np.mean(np.diff(pair.speed, 2) ** 2)) / 6.0 / in_block
+    Otherwise a delay cannot be told from lost motion.
+    """
+    # In second differences, hardly anything of a motion is left.
+    noise = np.var(np.diff(speed, 2)) / 6.0 * len(means) / len(speed)
+    variance = np.var(means)
+    return bool(variance > (_SPREAD * np.mean(means)) ** 2 and noise <= _STEADY * variance)

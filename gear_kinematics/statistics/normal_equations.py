@@ -15,6 +15,8 @@ Array = NDArray[Any]
 
 _BLOCKS = 24  # blocks of all recordings together
 _RIDGE = 1e-9  # share of a column's sum of squares that keeps equations solvable
+_ROUNDING = 1e-13  # the least such share where something is expected of the coefficients
+_ALL, _WHOLE = slice(None), slice(1)  # fits: all of them, and that to all blocks
 
 
 def block_bounds(counts: Sequence[int]) -> list[list[int]]:
@@ -36,6 +38,10 @@ class NormalEquations:
     Arrays (fits, ...) are of the fit to all blocks, and then of those without each fold.
     """
 
+    noise: float | None = None
+    """Variance of a sample where coefficients are expected to be about 1 in size, as if each had
+    been measured to be 0 ± 1; None: nothing is expected of them."""
+
     def __init__(self, products: Array, folds: Array | None = None) -> None:
         """Take products (blocks, size, size) of the columns and the error in each block.
 
@@ -50,21 +56,29 @@ class NormalEquations:
         self.products = sums / np.outer(self._scale, self._scale)
         """Normal matrices of the columns and the error, each over its size, (fits, size, size)."""
 
-    def regular(self, chosen: Sequence[int]) -> Array:
+    def regular(self, chosen: Sequence[int], fits: slice = _ALL) -> Array:
         """Products of the chosen columns that can be solved, (fits, chosen, chosen).
 
         They can also where a fold lacks what tells two columns apart.
         """
-        places = list(chosen)
-        matrices: Array = self.products[:, places][:, :, places] + _RIDGE * np.eye(len(places))
+        places, ridge = list(chosen), np.array(_RIDGE)
+        if self.noise is not None:
+            ridge = np.maximum(self.noise / self._scale[places] ** 2, _ROUNDING)
+        matrices: Array = self.products[fits, places][:, :, places] + ridge * np.eye(len(places))
         return matrices
 
-    def solve(self, chosen: Sequence[int]) -> Array:
+    def solve(self, chosen: Sequence[int], fits: slice = _ALL) -> Array:
         """Coefficients of the chosen columns, (fits, chosen)."""
         places = list(chosen)
-        solution = np.linalg.solve(self.regular(places), self.products[:, places, -1:])
+        solution = np.linalg.solve(self.regular(places, fits), self.products[fits, places, -1:])
         coefficients: Array = solution[:, :, 0] * self._scale[-1] / self._scale[places]
         return coefficients
+
+    def spreads(self, chosen: Sequence[int]) -> Array:
+        """Standard uncertainties of the chosen coefficients by noise that is white, (chosen,)."""
+        variances = np.diagonal(np.linalg.inv(self.regular(chosen, _WHOLE)[0]))
+        spreads: Array = np.sqrt((self.noise or 0.0) * variances) / self._scale[list(chosen)]
+        return spreads
 
     def errors(self, chosen: Sequence[int]) -> Array:
         """Sum of the squared residuals of each block, predicted without its fold, rad²."""

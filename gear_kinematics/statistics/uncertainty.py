@@ -138,7 +138,6 @@ def jackknife(
     fits: Sequence[float] | NDArray[np.float64],
     *others: Component,
     together: Sequence[int] = (1,),
-    corrected: bool = False,
 ) -> Estimate:
     """Estimate a quantity from the scatter of Tukey's pseudo-values.
 
@@ -148,15 +147,13 @@ def jackknife(
         fits: to all blocks, which gives the value, and then without each block, (1 + blocks,).
         others: further components of the uncertainty.
         together: numbers of neighbouring blocks that `standard_error` takes as one.
-        corrected: whether the value is the mean of the pseudo-values, which has less bias.
     """
     whole, without = float(fits[0]), np.asarray(fits[1:])
     if not len(without):
         return Estimate(whole, None, 0.0, 1)
     pseudo_values = len(without) * whole - (len(without) - 1) * without
     scatter = Component(*standard_error(pseudo_values, together))
-    value = float(np.mean(pseudo_values)) if corrected else whole
-    return Estimate(value, *combined((scatter, *others)), len(without))
+    return Estimate(whole, *combined((scatter, *others)), len(without))
 
 
 def resolution(step: float) -> float:

@@ -22,7 +22,7 @@ from simulated_gear import GearSet, gears, simulate, strokes, wandering
 from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.measurement.calibration import fit, judge
-from gear_kinematics.measurement.calibration.selection import widening
+from gear_kinematics.measurement.calibration.model import widening
 from gear_kinematics.measurement.recording import RecordingError
 
 RATIO = Fraction(-19)

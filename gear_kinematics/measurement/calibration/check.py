@@ -10,18 +10,16 @@ import numpy as np
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.calibration_fit import CalibrationFit
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.measurement.calibration.selection import TOGETHER
+from gear_kinematics.measurement.calibration.model import Model, without_delays
 from gear_kinematics.measurement.calibration.terms import Samples
 from gear_kinematics.measurement.ratio import wrong_ratio
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RecordingError
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.gear_state import GearState
-from gear_kinematics.statistics.normal_equations import NormalEquations, block_bounds
-from gear_kinematics.statistics.uncertainty import Estimate, jackknife
+from gear_kinematics.statistics.uncertainty import Estimate
 from gear_kinematics.wire.cdr import SECOND
 
 _STEP = 0.01  # s before and after a sample, for its speed
-_ROUNDS = 4  # estimates of the delay, each of what the ones before left
 _PER_TURN = 'once', 'twice', '3 times', '4 times'  # the orders of output and rotor that are told
 _MOST = 0.5  # share of the variance that makes an order what is left of the error
 
@@ -90,30 +88,23 @@ def judge(recording: Recording, encoders: Encoders, calibration: Calibration) ->
         stamp, rotor.turns, rotor.angle, velocity, effort, segment
     )
 
-    def errors(of: Encoders) -> tuple[Samples, Array, Array]:
-        samples = Samples(recording, of, ratio)
-        left = samples.error - of.at_measured(correction.deviation)
-        return samples, samples.error - samples.error.mean(), left - left.mean()
+    def samples_of(shift: float) -> Samples:
+        return Samples(recording, encoders, ratio, shift, correction.deviation)
 
-    samples, before, after = errors(encoders)
-    with_delay = float(np.std(before)), float(np.std(after))
-    delay = None
-    for _ in range(_ROUNDS if samples.tells_delay else 0):
-        delay = _delay(samples, after, delay.value if delay else 0.0)
-        if not delay.clear:
-            samples, before, after = errors(encoders)
-            break
-        samples, before, after = errors(encoders.earlier(delay.value))
+    model, (delay,) = without_delays(lambda shifts: Model([samples_of(*shifts)], []), 1)
+    delayed, (samples,) = samples_of(0.0), model.samples
+    both = samples.error + samples.known, samples.error
+    before, after = (error - error.mean() for error in both)
     half_width = samples.encoders.at_measured(correction.half_width)
     found = CalibrationFit.of(before, after, half_width, once=True)
-    rms_before, rms_after = float(np.std(before)), float(np.std(after))
+    rms = float(np.std(before)), float(np.std(after))
     return Judgement(
         recording.name,
-        rms_after < rms_before and found.fits,
+        rms[1] < rms[0] and found.fits,
         found.fits,
-        rms_before,
-        rms_after,
-        *with_delay,
+        *rms,
+        float(np.std(delayed.error + delayed.known)),
+        float(np.std(delayed.error)),
         delay,
         1.0 - found.outside,
         found.outside_uncertainty,
@@ -140,15 +131,3 @@ def _left_order(samples: Samples, left: Array) -> tuple[float, str] | None:
                 found.append((np.var(design @ fit), amplitude, f'{often} per {body} turn'))
     _, amplitude, words = max(found)
     return (amplitude, words) if words else None
-
-
-def _delay(samples: Samples, residual: Array, shift: float) -> Estimate:
-    """Estimate a delay, s, with the zero, of which `shift` has been taken out already.
-
-    The residual is the measured minus the corrected output angle, rad.
-    """
-    (bounds,) = block_bounds([len(residual)])
-    columns = np.column_stack([samples.own_values(np.arange(len(residual))), residual])
-    parts = np.split(columns, bounds[1:-1])
-    equations = NormalEquations(np.array([part.T @ part for part in parts]))
-    return jackknife(shift + equations.solve([0, 1])[:, 1], together=TOGETHER)

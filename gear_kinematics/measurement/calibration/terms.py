@@ -54,11 +54,23 @@ def thinned(recordings: Sequence[Recorded]) -> list[Recorded]:
 class Samples:
     """The measured angles of one recording, (n,) each unless said otherwise."""
 
-    def __init__(self, recording: Recording, encoders: Encoders, ratio: Fraction) -> None:
-        self.recording, self.encoders = recording, encoders
+    def __init__(
+        self,
+        recording: Recording,
+        encoders: Encoders,
+        ratio: Fraction,
+        shift: float = 0.0,
+        deviation: Array | None = None,
+    ) -> None:
+        """Take samples that were measured earlier by a shift, s, than their stamps say.
+
+        What is known of the error, `deviation` at the rotor's samples, rad, is taken out of it.
+        """
+        encoders = encoders.earlier(shift) if shift else encoders
+        self.recording, self.encoders, self.shift = recording, encoders, shift
         self.turns, self.angle = encoders.position()
-        self.seconds = encoders.seconds
-        self.error = encoders.error(ratio)
+        self.known = 0.0 if deviation is None else encoders.at_measured(deviation)
+        self.error = encoders.error(ratio) - self.known
         self.offset = float(np.median(self.error))
         self.error -= self.offset
         self.speed = encoders.speed(ratio)

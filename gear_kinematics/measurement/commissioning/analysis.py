@@ -17,9 +17,10 @@ import numpy as np
 from gear_kinematics.kinematics.gear_ratio import GearRatio, tooth_pairs
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.commissioning.joint import Joint
-from gear_kinematics.measurement.ratio import ENCODER_ERROR, RatioEstimate, estimate_ratio
+from gear_kinematics.measurement.ratio import RatioEstimate, estimate_ratio
 from gear_kinematics.measurement.recording import Encoders, Recording, RecordingError
 from gear_kinematics.measurement.transmission import transmission_figures
+from gear_kinematics.measurement.two_encoders import ENCODER_ERROR
 from gear_kinematics.measurement.wording import plus_minus
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import counted, number

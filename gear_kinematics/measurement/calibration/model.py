@@ -1,0 +1,197 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The linear model of the errors of a gear, fitted to recordings of both encoders.
+
+Each recording has its own zero, and a delay between its encoders where that can be told. A delay
+that is clear is taken out of the stamps, as the error is in proportion to it for a moment only.
+
+Terms are removed unless each improves the prediction of blocks left out by more than one standard
+error of the paired differences of the blocks (T. Hastie, R. Tibshirani, J. Friedman, The Elements
+of Statistical Learning, 2nd ed., 2009, sections 3.3.2, 7.10).
+"""
+
+from collections.abc import Callable, Sequence
+from itertools import islice, pairwise
+
+import numpy as np
+from scipy.optimize import lsq_linear
+
+from gear_kinematics.correction.calibration_file import Stop
+from gear_kinematics.measurement.calibration.terms import Samples, Term
+from gear_kinematics.measurement.recording import Array
+from gear_kinematics.statistics.normal_equations import NormalEquations, block_bounds
+from gear_kinematics.statistics.uncertainty import (
+    COVERAGE,
+    Estimate,
+    jackknife,
+    standard_error,
+    student_t,
+)
+
+TOGETHER = (1, 2, 4)
+"""Numbers of successive blocks that are taken as one, in case neighbours are correlated."""
+_MAX_DEGREES = 10**9  # of freedom
+_SHIFTS = 4  # corrections of the delays, each for what the ones before left
+_SETTLED = 1e-5  # s to which a delay is corrected
+
+
+class Model:
+    """The linear model of recordings, with the terms that are worth it."""
+
+    def __init__(self, samples: Sequence[Samples], terms: Sequence[Term]) -> None:
+        """Fit a zero and a delay of each recording, and choose among terms of the gear."""
+        self.samples = samples
+        common = sum(len(term.coefficients) for term in terms)
+        own = range(common, common + 2 * len(samples))
+        bounds = block_bounds([len(s.used) for s in samples])
+        blocks = [(k, *ends) for k, edges in enumerate(bounds) for ends in pairwise(edges)]
+        products = np.array([c.T @ c for c in (self._columns(terms, *of) for of in blocks)])
+        chosen = select(NormalEquations(products), terms, own)
+        self.terms = [terms[k] for k in chosen]
+        # From here on, of the chosen terms alone.
+        firsts = np.cumsum([0, *(len(term.coefficients) for term in terms)])
+        places = [place for k in chosen for place in range(firsts[k], firsts[k + 1])]
+        self._common = len(places)
+        self._products = products[:, [*places, *own, -1]][:, :, [*places, *own, -1]]
+        self._equations = NormalEquations(self._products)
+        fits = self._equations.solve(range(self._common + len(own)))
+        self.coefficients, self._own = np.split(fits, [self._common], axis=1)
+        """Of the terms' columns, of all blocks and without each, (fits, columns)."""
+        self._of = np.array([recording for recording, _, _ in blocks])
+        self._counts = np.array([end - begin for _, begin, end in blocks])
+
+    def _columns(self, terms: Sequence[Term], recording: int, begin: int, end: int) -> Array:
+        """Columns of terms, of zero and delay of each recording, and the error."""
+        s = self.samples[recording]
+        at = s.used[begin:end]
+        own = np.zeros((len(at), 2 * len(self.samples)))
+        own[:, 2 * recording : 2 * recording + 2] = s.own_values(at)
+        return np.column_stack([*(term.values(s, at) for term in terms), own, s.error[at]])
+
+    @property
+    def delays(self) -> list[Estimate | None]:
+        """Delay of each recording, s; None where it cannot be told from hysteresis."""
+        return [
+            jackknife(s.shift + fits, together=TOGETHER) if s.tells_delay else None
+            for s, fits in zip(self.samples, self._own.T[1::2], strict=True)
+        ]
+
+    def zero(self, recording: int) -> float:
+        """What the zero of a recording's encoder adds, rad."""
+        return self.samples[recording].offset + float(self._own[0, 2 * recording])
+
+    def helps(self) -> bool:
+        """Whether the terms improve the prediction by more than a standard error."""
+        everything = range(self._products.shape[-1] - 1)
+        without, best = map(self._equations.errors, (everything[self._common :], everything))
+        return bool(self.terms) and not is_as_good(without, best)
+
+    def values(self) -> Array:
+        """Columns of the terms at the used samples of all recordings, (n, columns)."""
+        return np.concatenate(
+            [
+                np.hstack([np.zeros((len(s.used), 0)), *(t.values(s, s.used) for t in self.terms)])
+                for s in self.samples
+            ]
+        )
+
+    def checked(self) -> tuple[Array, Array, float, float]:
+        """Predict parts of the samples as a check does, with a zero and a delay of their own.
+
+        The parts are recordings or, of a single one, every other block, so that both have the
+        same angles: a trend is not known at others.
+
+        Returns:
+            The errors without and with the correction of all used samples, rad; the half width of
+            the interval, rad; and its coverage, each part judged by the width of the others.
+        """
+        parts = self._of if len(self.samples) > 1 else np.arange(len(self._of)) % 2
+        equations, fold = NormalEquations(self._products, parts), np.repeat(parts, self._counts)
+        fits = equations.solve(range(self._products.shape[-1] - 1))[1:, : self._common]
+        own = np.concatenate([s.own_values(s.used) for s in self.samples])
+        before = np.concatenate([s.error[s.used] for s in self.samples])
+        after = before - np.einsum('nc,nc->n', self.values(), fits[fold])
+        for rows in (fold == part for part in set(parts)):
+            for errors in (before, after):
+                errors[rows] -= own[rows] @ np.linalg.lstsq(own[rows], errors[rows], rcond=None)[0]
+        squares = np.add.reduceat(after**2, np.cumsum([0, *self._counts[:-1]]))
+        width = widening(squares) * half_width(after)
+        inside = [np.abs(after[fold == k]) <= half_width(after[fold != k]) for k in set(parts)]
+        return before, after, width, float(np.mean(np.concatenate(inside)))
+
+
+def half_width(residuals: Array) -> float:
+    """Return the half width of the interval that contains a share `COVERAGE` of residuals."""
+    return float(np.quantile(np.abs(residuals), COVERAGE))
+
+
+def without_delays(
+    model_of: Callable[[Sequence[float]], Model], recordings: int
+) -> tuple[Model, list[Estimate | None]]:
+    """Fit a model, and again with the delays taken out that are clear.
+
+    Args:
+        model_of: makes the model with a delay, s, taken out of each recording.
+        recordings: their number.
+
+    Returns:
+        The model, and the delay of each recording, s; None where it cannot be told.
+    """
+    late = [0.0] * recordings
+    model = model_of(late)
+    for _ in range(_SHIFTS):
+        delays = model.delays
+        late = [delay.value if delay and delay.clear else 0.0 for delay in delays]
+        if np.allclose(late, [s.shift for s in model.samples], rtol=0.0, atol=_SETTLED):
+            break
+        model = model_of(late)
+    return model, delays
+
+
+def is_as_good(errors: Array, best: Array) -> bool:
+    """Whether errors of blocks are no greater than others by more than a standard error."""
+    difference = errors - best
+    return bool(difference.mean() <= standard_error(difference, TOGETHER)[0])
+
+
+def widening(errors: Array) -> float:
+    """Factor by which an interval has to be wider because its width is an estimate itself.
+
+    Student's t for the degrees of freedom with which the blocks' mean squares `errors` determine
+    their mean (F. E. Satterthwaite, Biometrics Bulletin 2 (1946) 110), over the normal quantile.
+    """
+    variance = (standard_error(errors, TOGETHER)[0] / float(errors.mean())) ** 2
+    degrees = 2.0 / max(variance, 1.0 / _MAX_DEGREES)
+    return student_t(max(1, int(degrees))) / student_t(_MAX_DEGREES)
+
+
+def select(equations: NormalEquations, terms: Sequence[Term], own: Sequence[int]) -> list[int]:
+    """Choose among terms, whose columns are the first ones of the equations, in order.
+
+    A leading trend stays: any output has errors that vary slowly with its angle, and limit where
+    others hold.
+
+    Args:
+        equations: with single blocks as folds.
+        terms: candidates.
+        own: columns that are always fitted.
+    """
+    places = iter(range(len(own) + sum(len(term.coefficients) for term in terms)))
+    columns = [list(islice(places, len(term.coefficients))) for term in terms]
+
+    def errors(chosen: Sequence[int]) -> Array:
+        return equations.errors([*(place for k in chosen for place in columns[k]), *own])
+
+    # The output lags by hysteresis, so that no coefficient of a stop operator is positive.
+    lags = [isinstance(term.entry, Stop) for term in terms for _ in term.coefficients]
+    most = np.where([*lags, *(False for _ in own)], 0.0, np.inf)
+    root = np.linalg.cholesky(equations.regular(range(len(most)))[0])
+    right = np.linalg.solve(root, equations.products[0, :-1, -1])
+    fitted = lsq_linear(root.T, right, (-np.inf, most), method='bvls')
+    path = [[k for k, place in enumerate(columns) if fitted.active_mask[place[0]] == 0]]
+    fixed = int(bool(terms) and terms[0].is_trend)
+    while len(path[0]) > fixed:
+        smaller = [[k for k in path[0] if k != gone] for gone in path[0] if gone >= fixed]
+        path.insert(0, min(smaller, key=lambda chosen: float(errors(chosen).mean())))
+    every = [errors(chosen) for chosen in path]
+    best = min(every, key=lambda error: float(error.mean()))
+    return next(c for c, error in zip(path, every, strict=True) if is_as_good(error, best))

@@ -1,0 +1,177 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""One fit of the angles of two encoders: ratio, offset, play, delay, and periodic errors of both.
+
+The output angle is slope · rotor angle + offset + play by direction - delay · speed + errors that
+repeat with each turn of output or rotor: for k cycles a turn, their amplitude is at most
+`ENCODER_ERROR`/k, with a probability of 95 %. What a travel of less than a turn leaves open of
+them is in the uncertainties; over more, they are fitted. All else is in the scatter of the fits
+without one block of successive samples.
+"""
+
+import math
+from collections.abc import Collection
+
+import numpy as np
+
+from gear_kinematics.correction.reversals import tells_delay
+from gear_kinematics.correction.transmission_error import Direction
+from gear_kinematics.measurement.recording import Array, RecordingError
+from gear_kinematics.statistics.normal_equations import NormalEquations
+from gear_kinematics.statistics.uncertainty import Component, Estimate, jackknife
+
+ENCODER_ERROR = math.radians(1.0)
+"""rad. Magnetic encoders deviate by ±1° over a turn (datasheets of ams AS5046 and AS5600), and
+printed gears by about as much: that of the rotor's encoder, and of gear and output's encoder."""
+STEP = 0.01
+"""s around a sample, for its speed; of a row without times."""
+_ACCURACY = math.radians(2.0 / 3600.0) / math.sqrt(3.0)
+"""rad, standard deviation. Few encoders are accurate to ±2″ over the travel, and a gear on its
+springs follows its errors a little more the faster it turns."""
+_BLOCKS = 23
+"""Prime, as blocks of whole cycles of an error would not differ."""
+_MOST = 10_000
+"""Samples that are used: more tell no more of errors that are correlated."""
+_MEANS = 115
+"""Means of successive samples whose scatter tells how far errors are correlated, at least."""
+_ORDERS = 48, 4
+"""Of output and rotor: as 1/k, they add up to a random walk, as of pitch errors. With 24, 3 of 200
+simulated recordings of 340° were outside of twice the interval."""
+_ROTOR_SHARE = 0.1
+"""Of the error, at the output, that the gear may have once per turn of the rotor."""
+_TO_STANDARD = math.sqrt(-2.0 * math.log(0.05))
+"""Amplitude that 95 % do not exceed, over the standard deviation of its sine and cosine."""
+_PLAY, _DELAY = 0.1, 0.05
+"""Standard deviations, rad and s, that hardly bind play and delay; 1 rad those of the travel."""
+_LAG = 6e-5
+"""Standard deviation, s², of the lag by the acceleration: inertia over stiffness of the output, or
+1/ω² of one that oscillates at 20 Hz on the springs of its gear, as arms of robots do."""
+_SLOPE, _WAY, _LATE = 0, 2, 3  # columns of the fit; 1 is the offset
+_LEAST_NOISE = 1e-9
+"""rad: less than the step of any encoder."""
+_ROUNDS = 5
+"""Estimates of the noise, each by what the one before left; with 3, ± is 50 % off."""
+
+
+class EncoderFit:
+    """Fits to all samples, and then without each block of successive ones: (1 + blocks,)."""
+
+    def __init__(
+        self, rotor: Array, output: Array, time: Array, way: Array, slope: float, late: float = 0.0
+    ) -> None:
+        """Fit angles, (n,) each, rad, counting turns, in the order of time.
+
+        Args:
+            rotor: angle of the rotor.
+            output: angle of the output.
+            time: s.
+            way: direction of the motion, 1 or -1; samples with 0 are left out.
+            slope: output angle over rotor angle, about.
+            late: delay of the output's samples, s, about.
+
+        Raises:
+            RecordingError: if there are too few samples.
+        """
+        self._angles = rotor, output, time, way
+        kept = np.flatnonzero(way * (time - late >= time[0]) * (time - late <= time[-1]))
+        kept = kept[:: -(-len(kept) // _MOST) or 1]
+        if len(kept) < 2 * _BLOCKS:
+            raise RecordingError(f'{len(kept)} samples in motion are too few')
+        around = (time[kept] - late + k * STEP for k in (-2, -1, 0, 1, 2))
+        first, early, at, after, last = (np.interp(when, time, rotor) for when in around)
+        speed = slope * (after - early) / (2.0 * STEP)
+        self.tells_delay = tells_delay(way[kept] * speed, way[kept] * speed)
+        """Whether a delay can be told from play."""
+        self.travel = float(np.ptp(at))
+        # The measured angle must not explain itself: errors are periodic in that of the rotor.
+        columns = _columns(at, slope, way[kept], speed)
+        # Nor must its error: the reading of the rotor is not in its acceleration.
+        acceleration = slope * (first - early - after + last) / (3.0 * STEP**2)
+        left = rest = output[kept] - slope * at - np.mean(output[kept] - slope * at)
+        blocks = np.array_split(np.column_stack([columns, _LAG * acceleration, rest]), _BLOCKS)
+        self._products = np.array([block.T @ block for block in blocks])
+        self._model = list(range(columns.shape[1]))
+        self._equations = NormalEquations(self._products)
+        for _ in range(_ROUNDS):
+            self._equations.noise = max(_noise(left), _LEAST_NOISE**2)
+            left = rest - columns @ self._equations.solve(self._model, slice(1))[0]
+        self._terms = self._equations.solve(self._model)
+        self.slope = slope + self._terms[:, _SLOPE] / self.travel
+        self._delays = late - _DELAY * self._terms[:, _LATE]
+
+    def refined(self) -> 'EncoderFit':
+        """Fit again with the slope and the delay that were found."""
+        return EncoderFit(*self._angles, float(self.slope[0]), float(self._delays[0]))
+
+    def slope_estimate(self, period: float) -> Estimate:
+        """Estimate the slope, output angle over rotor angle.
+
+        By how much it changes if a lag by the acceleration is fitted, as of an inertia on springs,
+        or what is lost by interpolation, is in its uncertainty.
+
+        Args:
+            period: s between the samples between which the rotor is interpolated; 0 if it is not.
+        """
+        lagging = self._equations.solve([*self._model, len(self._model)], slice(1))
+        curvature = NormalEquations(self._products[:, :-1, :-1])
+        curvature.noise = self._equations.noise
+        # Between samples the rotor is taken to move evenly: twice where there is a delay, too.
+        curved = period**2 / 4.0 / _LAG * curvature.solve(self._model, slice(1))
+        parts = (
+            self._equations.spreads(self._model)[_SLOPE],
+            _ACCURACY,
+            (lagging[0, _SLOPE] - self._terms[0, _SLOPE]) / math.sqrt(3.0),
+            curved[0, _SLOPE] / math.sqrt(3.0),
+        )
+        return jackknife(self.slope, *(Component(float(part) / self.travel) for part in parts))
+
+    def delay(self, unit: float = 1.0) -> Estimate:
+        """Estimate the delay of the output's samples, s times a unit."""
+        spread = Component(unit * _DELAY * float(self._equations.spreads(self._model)[_LATE]))
+        return jackknife(unit * self._delays, spread)
+
+    def lost_motion(self, *others: Component, delay: bool) -> Estimate:
+        """Estimate the angle lost on a reversal, rad, beside a delay or with what a delay adds."""
+        chosen = [k for k in self._model if delay or k != _LATE]
+        play, spreads = self._equations.solve(chosen)[:, _WAY], self._equations.spreads(chosen)
+        own = Component(2.0 * _PLAY * float(spreads[_WAY]))
+        return jackknife(-2.0 * _PLAY * play, own, *others)
+
+
+def directions(output: Array, travel: float, starts: Collection[int] = ()) -> Array:
+    """Direction of the output at each sample, (n,): 1, -1, or 0 where it is not known.
+
+    Args:
+        output: (n,), rad, in the order of time.
+        travel: rad after a reversal until the new direction counts.
+        starts: indices of samples before which the motion is unknown.
+    """
+    direction = Direction(travel)
+    way = np.zeros(len(output), np.int8)
+    for row, step in enumerate(np.diff(output, prepend=output[0]).tolist()):
+        if row in starts:
+            direction.reset()
+        way[row] = direction.move(step)
+    return way
+
+
+def _columns(rotor: Array, slope: float, way: Array, speed: Array) -> Array:
+    """Each term as large as it may be: (n, terms); slope, offset, play and delay are first."""
+    x = (rotor - np.mean(rotor)) / np.ptp(rotor)
+    columns = [x, np.ones(len(x)), _PLAY * way, _DELAY * speed]
+    amplitudes = ENCODER_ERROR, (abs(slope) + _ROTOR_SHARE) * ENCODER_ERROR
+    for angle, amplitude, most in zip((slope * rotor, rotor), amplitudes, _ORDERS, strict=True):
+        power = once = np.exp(1j * angle)  # cos + j sin of k times the angle
+        for k in range(1, most + 1):
+            size = amplitude / (_TO_STANDARD * k)
+            columns += [size * power.real, size * power.imag]
+            power = power * once
+    return np.stack(columns, axis=1)
+
+
+def _noise(residual: Array) -> float:
+    """Variance of a sample; of correlated ones, the one that the scatter of means implies."""
+    most, means, size = 0.0, residual, 1
+    while len(means) >= _MEANS or size == 1:
+        most = max(most, size * float(np.mean(means**2)))
+        means, size = (means[:-1:2] + means[1::2]) / 2.0, 2 * size
+    return most
