@@ -45,8 +45,9 @@ def require_any(paths: Collection[Path], node: str) -> dict[str, Path]:
     for path in paths:
         try:
             given = given_parameters(path, node)
-            for value in filter(None, map(given.get, FILES)):
-                files.setdefault(str(value), path.parent / str(value))
+            for name, value in given.items():
+                if name.rpartition('.')[2] in FILES and value:
+                    files.setdefault(str(value), path.parent / str(value))
         except _OtherNodesError as error:
             useless.append(str(error))
     if paths and len(useless) == len(paths):

@@ -2,6 +2,7 @@
 """What shows the mechanism: robot_description and markers."""
 
 import time
+from collections.abc import Mapping
 
 from rclpy.clock import Clock, ClockType
 from rclpy.event_handler import QoSPublisherMatchedInfo
@@ -11,46 +12,62 @@ from std_msgs.msg import String
 from visualization_msgs.msg import MarkerArray
 
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.parameters.arm_urdf import arm_urdf
 from gear_kinematics.ros.markers import Markers
 from gear_kinematics.ros.outputs import Outputs, latched
 from gear_kinematics.wire import topics
+from gear_kinematics.wire.topics import topic_of
 
 
 class Display:
     """Publishes the URDF after every change, and the markers while they have viewers."""
 
-    def __init__(self, node: Node, parameters: NodeParameters, outputs: Outputs) -> None:
-        self._outputs = outputs
-        self._description = ''
+    def __init__(
+        self, node: Node, actuators: Mapping[str, NodeParameters], outputs: Outputs
+    ) -> None:
+        """Show the actuators with these parameters, whose bodies are known."""
+        self._outputs, self._description = outputs, ''
         outputs.create(topics.ROBOT_DESCRIPTION, String, latched())
-        if rate := parameters.markers_rate:
-            steady = Clock(clock_type=ClockType.STEADY_TIME)
-            self._timer = node.create_timer(
-                1.0 / rate, self._publish_markers, clock=steady, autostart=False
-            )
-            outputs.create(topics.MARKERS, MarkerArray, latched(), self._on_viewers)
+        self.markers = {
+            name: MarkerOutput(node, topic_of(name, topics.MARKERS), each.markers_rate, outputs)
+            for name, each in actuators.items()
+            if each.markers_rate
+        }
 
-    def update(self, parameters: NodeParameters) -> None:
+    def update(self, actuators: Mapping[str, NodeParameters]) -> None:
         """Use names of joints and links; publishes the URDF if it has changed."""
-        description = parameters.urdf()
+        description, _ = arm_urdf(actuators)
         if description == self._description:
             return
         self._description = description
         message = serialize_message(String(data=description))
         self._outputs.send([(topics.ROBOT_DESCRIPTION, message)])
-        self._markers = Markers(
-            parameters.mechanism, module=parameters.module, frame_prefix=parameters.frame_prefix
-        )
+        for name, output in self.markers.items():
+            of = actuators[name]
+            output.shown = Markers(of.mechanism, module=of.module, frame_prefix=of.frame_prefix)
+
+
+class MarkerOutput:
+    """Publishes the markers of a mechanism while there are viewers."""
+
+    shown: Markers
+
+    def __init__(self, node: Node, topic: str, rate: float, outputs: Outputs) -> None:
+        self._topic, self._outputs = topic, outputs
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self.timer = node.create_timer(1.0 / rate, self.publish, clock=steady, autostart=False)
+        outputs.create(topic, MarkerArray, latched(), self._on_viewers)
 
     def _on_viewers(self, event: QoSPublisherMatchedInfo) -> None:
         """Run the timer of the markers while there are subscribers; resend for a new one."""
         # Not the change of the count: some executors report 0 for an earlier subscriber.
         if event.current_count:
-            self._markers.repeat()
-            self._timer.reset()
+            self.shown.repeat()
+            self.timer.reset()
         else:
-            self._timer.cancel()
+            self.timer.cancel()
 
-    def _publish_markers(self) -> None:
-        if message := self._markers.due(time.monotonic()):
-            self._outputs.send([(topics.MARKERS, message)])
+    def publish(self) -> None:
+        """Publish the markers if they are due."""
+        if message := self.shown.due(time.monotonic()):
+            self._outputs.send([(self._topic, message)])

@@ -2,6 +2,7 @@
 """The log of the rotor's driver: that it is missing, has stopped, or has returned."""
 
 import math
+from collections.abc import Mapping
 
 from rclpy.node import Node
 
@@ -18,30 +19,36 @@ _HOME = 'check whether the drive restarted; then call ~/home'
 class DriverLog:
     """Logs each change once."""
 
-    def __init__(self, node: Node, rotor_input: RotorInput) -> None:
-        """Start with the node that subscribes to the rotor's topic."""
-        self._log, self._node, self._input = node.get_logger(), node, rotor_input
+    def __init__(self, node: Node, inputs: Mapping[str, RotorInput]) -> None:
+        """Start with the node that subscribes to the rotors' topic, and inputs by actuator."""
+        self._log, self._node, self._inputs = node.get_logger(), node, inputs
         self._topic = node.resolve_topic_name(ROTOR_STATE)
         self._looked = False
         """Whether there was no publisher at the last update either."""
-        self._jumps = rotor_input.plausibility.jumps
-        self._before: RotorSample | None = None  # the silence
+        self._jumps = self._jumped()
+        self._before: dict[str, RotorSample] = {}  # the silence
         self.awaited = False
         """Whether it was logged that the driver is missing or silent."""
+
+    def _jumped(self) -> dict[str, int]:
+        return {name: each.plausibility.jumps for name, each in self._inputs.items()}
 
     def update(self, publishers: int, silence: float) -> None:
         """Take the number of publishers, and the time since the last message, s, if any.
 
         This is to be called once a second.
         """
-        plausibility, last = self._input.plausibility, self._input.last
-        if plausibility.jumps > self._jumps:
-            self._log.warning(f'{plausibility.jumped}: {_HOME}')
-        self._jumps = plausibility.jumps
+        jumps = self._jumped()
+        for name, each in self._inputs.items():
+            if jumps[name] > self._jumps[name]:
+                self._log.warning(f'{_of(name)}{each.plausibility.jumped}: {_HOME}')
+        self._jumps = jumps
         looked, self._looked = self._looked, not publishers
         if self.awaited:
             return
-        if last and silence > self._input.parameters.input_timeout:
+        last = {name: each.last for name, each in self._inputs.items() if each.last}
+        timeouts = (each.parameters.input_timeout for each in self._inputs.values())
+        if last and silence > max(timeouts):
             self._log.warning(f'{self._topic} has stopped: no input for {silence:.1f} s')
             self.awaited, self._before = True, last
         # At the first update, not all publishers are discovered yet.
@@ -52,13 +59,22 @@ class DriverLog:
             )
             self.awaited = True
 
-    def heard(self, sample: RotorSample) -> None:
-        """Take the first sample while the driver was awaited."""
-        self.awaited, before, self._before = False, self._before, None
-        moved = sample.position.since((before or sample).position)
-        if abs(moved) > _ELSEWHERE:
-            self._jumps = self._input.plausibility.jumps
-            at = f'the rotor is {math.degrees(moved):.0f}° from where it was'
+    def heard(self, samples: Mapping[str, RotorSample]) -> None:
+        """Take the first samples by actuator while the driver was awaited."""
+        self.awaited, before, self._before = False, self._before, {}
+        elsewhere = []
+        for name, sample in samples.items():
+            moved = sample.position.since(before.get(name, sample).position)
+            if abs(moved) > _ELSEWHERE:
+                turned = f'the rotor is {math.degrees(moved):.0f}° from where it was'
+                elsewhere.append(f'{_of(name)}{turned}')
+        if elsewhere:
+            self._jumps = self._jumped()
+            at = '; '.join(elsewhere)
             self._log.warning(f'{self._topic} is heard again, but {at}: {_HOME}')
         else:
             self._log.info(f'{self._topic} is heard now')
+
+
+def _of(name: str) -> str:
+    return f'{name}: ' if name else ''

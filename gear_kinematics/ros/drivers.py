@@ -1,7 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The inputs of the node: subscriptions to drivers, and the messages lost on the way."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from rclpy.event_handler import QoSRequestedIncompatibleQoSInfo, SubscriptionEventCallbacks
@@ -27,13 +27,17 @@ class DriverInput:
     """
 
     def __init__(
-        self, node: Node, topic: str, on_message: Callable[[bytes], None], monitor: DriverMonitor
+        self,
+        node: Node,
+        topic: str,
+        on_message: Callable[[bytes], None],
+        monitors: Sequence[DriverMonitor],
     ) -> None:
         """Subscribe; `on_message` gets the bytes of each message."""
         self._node = node
         self._topic = topic
         self._on_message = on_message
-        self._monitor = monitor
+        self._monitors = monitors
         self._subscribe()
 
     def _subscribe(self) -> None:
@@ -73,14 +77,15 @@ class DriverInput:
         Losses are unknown while there are two drivers, whose numbers are not told apart, and where
         the middleware does not number messages.
         """
-        losses, monitor, before = self._losses, self._monitor, self._monitor.drivers
-        monitor.drivers = self.subscription.get_publisher_count()
-        several = max(before, monitor.drivers) > 1
+        losses, before = self._losses, self._monitors[0].drivers
+        drivers = self.subscription.get_publisher_count()
+        several = max(before, drivers) > 1
         # The first number of a driver in place of one that has ended says nothing.
-        replaced = before == 0 < monitor.drivers and self._heard
+        replaced = before == 0 < drivers and self._heard
         if several:
             losses.next = None
-        elif not replaced:
-            monitor.lost += losses.missing
+        for monitor in self._monitors:
+            monitor.drivers = drivers
+            monitor.lost += 0 if several or replaced else losses.missing
+            monitor.losses_known = losses.numbered and not several and not replaced
         losses.missing, self._heard = 0, losses.next is not None
-        monitor.losses_known = losses.numbered and not several and not replaced

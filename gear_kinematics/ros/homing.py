@@ -1,9 +1,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The service ~/home, and the zero that is kept in the home file."""
+"""The services that home, and the zeros that are kept in the home file."""
 
 import math
 import time
-from dataclasses import replace
+from collections.abc import Collection, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 from rclpy.node import Node
@@ -13,6 +14,7 @@ from std_srvs.srv import Trigger
 from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.parameters.arm import full_name
 from gear_kinematics.parameters.home_file import read_home, write_home
 from gear_kinematics.state.diagnostics import InputMonitor
 from gear_kinematics.state.rotor_input import RotorInput
@@ -24,43 +26,45 @@ _SPEED_SPAN = 0.1
 encoder with 4096 counts per turn would be 1.5 rad/s, and 0.08 rad/s at an output that rests."""
 
 
-def restored(node: Node, path: Path, parameters: NodeParameters) -> NodeParameters:
-    """Set the zero of the home file, if there is one; returns the parameters with it.
+class _RefusedError(RuntimeError):
+    """Why a shaft cannot be homed."""
+
+
+def restored(
+    node: Node, path: Path, actuators: Mapping[str, NodeParameters]
+) -> Mapping[str, float]:
+    """Set the zeros of the home file, if there is one; returns them by actuator.
 
     Raises:
         ConfigError: if the file cannot be used.
     """
-    if not (home := read_home(path, parameters, node.get_fully_qualified_name())):
-        return parameters
-    zero, homed = home
-    node.set_parameters([Parameter('rotor_zero', value=zero)])
-    node.get_logger().info(f'rotor_zero {zero:.3f} rad restored from {path}, homed {homed}')
-    return replace(parameters, rotor_zero=zero)
+    if not (home := read_home(path, actuators, node.get_fully_qualified_name())):
+        return {}
+    zeros, homed = home
+    named = {full_name(name, 'rotor_zero'): zero for name, zero in zeros.items()}
+    node.set_parameters([Parameter(name, value=zero) for name, zero in named.items()])
+    which = ', '.join(f'{name} {zero:.3f} rad' for name, zero in named.items())
+    node.get_logger().info(f'{which} restored from {path}, homed {homed}')
+    return zeros
 
 
-class Homing:
-    """Sets the zero of a node on request, and keeps it."""
+class Shaft:
+    """The shaft of an actuator: where it is, and how fast its rotor turns."""
 
-    def __init__(
-        self, node: Node, path: Path | None, rotor_input: RotorInput, monitor: InputMonitor
-    ) -> None:
-        """Open the service; `path` is that of the home file, if there is to be one."""
-        self._node, self._path, self._input, self._monitor = node, path, rotor_input, monitor
-        monitor.zero_kept = 'lost at restart: set home_file'
-        if path:
-            monitor.zero_kept = f'kept in {path}' if path.exists() else 'not kept: not homed yet'
+    def __init__(self, rotor_input: RotorInput, monitor: InputMonitor) -> None:
+        """Follow an input; the monitor reports where its zero is kept."""
+        self.input, self.monitor = rotor_input, monitor
         self._seen = 0.0  # time of the last valid input; s of a steady clock
         self._before: RotorSample | None = None  # where `_speed` was measured
         self._segment = 0  # of that
         self._speed = 0.0  # of the rotor, rad/s
-        node.create_service(Trigger, '~/home', self.answer)
 
-    def note(self, sample: RotorSample, segment: int) -> None:
-        """Take note of a valid input: where the shaft is, and how fast the rotor turns.
+    def note(self, sample: RotorSample, segment: int, now: float) -> None:
+        """Take note of a valid input, which came now.
 
-        Without a velocity that is the mean over `_SPEED_SPAN`; 0 until there is one.
+        Without a velocity the speed is the mean over `_SPEED_SPAN`; 0 until there is one.
         """
-        self._seen = time.monotonic()
+        self._seen = now
         if not self._before or self._segment != segment:  # other turns or zero
             self._before, self._segment, self._speed = sample, segment, 0.0
         elapsed = (sample.stamp - self._before.stamp) / SECOND
@@ -70,40 +74,107 @@ class Homing:
         if sample.velocity is not None:
             self._speed = sample.velocity
 
-    def keep(self) -> None:
-        """Write the zero that was set to the home file."""
-        if not self._path:
-            return
-        try:
-            write_home(self._path, self._input.parameters, self._node.get_fully_qualified_name())
-            self._monitor.zero_kept = f'kept in {self._path}'
-        except OSError as error:  # the zero holds until the node ends
-            self._monitor.zero_kept = f'not kept: {self._path}: {error.strerror}'
+    @property
+    def rotor_angle(self) -> float:
+        """The angle of the rotor at `home_angle`, rad."""
+        parameters = self.input.parameters
+        return float(parameters.gear.gear_ratio.rotor_angle(parameters.home_angle))
 
-    def answer(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """Declare that the output shaft is at `home_angle` now, or tell why not."""
-        response.success, response.message = self._home()
-        return response
+    def zero(self) -> tuple[float, str]:
+        """Find `rotor_zero` for a shaft at `home_angle`, rad; says where the shaft was and is.
 
-    def _home(self) -> tuple[bool, str]:
-        parameters, turns = self._input.parameters, self._input.turns
+        Raises:
+            _RefusedError: if the shaft cannot be homed; the text says why.
+        """
+        parameters, turns = self.input.parameters, self.input.turns
         ratio, limit = parameters.gear.gear_ratio, parameters.home_max_speed
-        rotor_angle = ratio.rotor_angle(parameters.home_angle)
         try:
-            zero = self._input.zero_for(rotor_angle)
-            before = turns.relative_to(self._input.zero, parameters.rotor_direction)
-        except RuntimeError:  # after the joint was changed, too
-            return False, f'there was no valid {topics.ROTOR_STATE} yet'
+            zero = self.input.zero_for(self.rotor_angle)
+            before = turns.relative_to(self.input.zero, parameters.rotor_direction)
+        except RuntimeError as error:  # after the joint was changed, too
+            raise _RefusedError(f'there was no valid {topics.ROTOR_STATE} yet') from error
         if (age := time.monotonic() - self._seen) > parameters.input_timeout:
-            return False, f'the last valid {topics.ROTOR_STATE} came {age:.1f} s ago'
+            raise _RefusedError(f'the last valid {topics.ROTOR_STATE} came {age:.1f} s ago')
         if (speed := abs(ratio.output_rate(self._speed))) > limit:
             too_fast = f'the shaft turns at {speed:.3g} rad/s'
-            return False, f'{too_fast}; home_max_speed is {limit:g} rad/s'
+            raise _RefusedError(f'{too_fast}; home_max_speed is {limit:g} rad/s')
         whole, rest = ratio.output_angle(*before, math)
-        result = self._node.set_parameters_atomically([Parameter('rotor_zero', value=zero)])
+        was, now = math.degrees(TURN * whole + rest), math.degrees(parameters.home_angle)
+        return zero, f'the shaft was at {was:z.1f}° and is now {now:z.1f}°'
+
+
+class Homing:
+    """Sets the zeros of a node on request, and keeps them."""
+
+    def __init__(
+        self, node: Node, path: Path | None, shafts: Mapping[str, Shaft], kept: Collection[str]
+    ) -> None:
+        """Open a service for each shaft of an arm, and one for all.
+
+        `path` is that of the home file, if there is to be one, and `kept` names the shafts whose
+        zeros are in it.
+        """
+        self._node, self._path, self._shafts, self._set = node, path, shafts, set(kept)
+        for name, shaft in shafts.items():
+            shaft.monitor.zero_kept = 'lost at restart: set home_file'
+            if path:
+                known = f'kept in {path}' if name in kept else 'not kept: not homed yet'
+                shaft.monitor.zero_kept = known
+            if name:
+                node.create_service(Trigger, f'~/{name}/home', partial(self._answer, [name]))
+        node.create_service(Trigger, '~/home', self.answer)
+
+    def keep(self, names: Collection[str]) -> None:
+        """Write the zeros that were set to the home file, after some were set."""
+        self._set.update(names)
+        if not self._path:
+            return
+        zeros = {
+            name: each.input.parameters for name, each in self._shafts.items() if name in self._set
+        }
+        try:
+            write_home(self._path, zeros, self._node.get_fully_qualified_name())
+            kept = f'kept in {self._path}'
+        except OSError as error:  # the zeros hold until the node ends
+            kept = f'not kept: {self._path}: {error.strerror}'
+        for name in zeros:
+            self._shafts[name].monitor.zero_kept = kept
+
+    def answer(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """Declare that the output shafts are at `home_angle` now, or tell why none is."""
+        return self._answer([*self._shafts], request, response)
+
+    def _answer(
+        self, names: Sequence[str], _request: Trigger.Request, response: Trigger.Response
+    ) -> Trigger.Response:
+        response.success, response.message = self._home(names)
+        return response
+
+    def _home(self, names: Sequence[str]) -> tuple[bool, str]:
+        """Home all of some shafts or none."""
+        found, refused = {}, []
+        for name in names:
+            try:
+                found[name] = self._shafts[name].zero()
+            except _RefusedError as error:
+                refused.append(_of(name, str(error)))
+        if refused:
+            none = 'no shaft was homed: ' if len(names) > 1 else ''
+            return False, none + '; '.join(refused)
+        angles = [(self._shafts[name], self._shafts[name].rotor_angle) for name in names]
+        result = self._node.set_parameters_atomically(
+            [Parameter(full_name(name, 'rotor_zero'), value=found[name][0]) for name in names]
+        )
         if not result.successful:
             return False, result.reason
-        self._input.home(rotor_angle)
-        was, now = math.degrees(TURN * whole + rest), math.degrees(parameters.home_angle)
-        kept = f'rotor_zero {zero:.3f} rad, {self._monitor.zero_kept}'
-        return True, f'the shaft was at {was:z.1f}° and is now {now:z.1f}° ({kept})'
+        texts = []
+        for name, (shaft, rotor_angle) in zip(names, angles, strict=True):
+            shaft.input.home(rotor_angle)
+            zero, moved = found[name]
+            kept = f'rotor_zero {zero:.3f} rad, {shaft.monitor.zero_kept}'
+            texts.append(_of(name, f'{moved} ({kept})'))
+        return True, '; '.join(texts)
+
+
+def _of(name: str, text: str) -> str:
+    return f'{name}: {text}' if name else text

@@ -3,7 +3,7 @@
 
 import time
 import traceback
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,23 +20,25 @@ from sensor_msgs.msg import JointState, MultiDOFJointState
 from std_msgs.msg import Bool
 
 from gear_kinematics.correction.calibration_file import Calibration
-from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics import Gear, Mechanism
 from gear_kinematics.parameters import NODE, PARAMETERS, NodeParameters
+from gear_kinematics.parameters.arm import full_name, shared_names
 from gear_kinematics.parameters.files import require_any
+from gear_kinematics.ros.actuator import Actuator
 from gear_kinematics.ros.diagnostics import diagnostic_array, find_faults
 from gear_kinematics.ros.display import Display
 from gear_kinematics.ros.driver_log import DriverLog
 from gear_kinematics.ros.drivers import DEPTH, DriverInput
 from gear_kinematics.ros.homing import Homing, restored
-from gear_kinematics.ros.node_parameters import declared, fault_of
+from gear_kinematics.ros.node_parameters import declared_actuators, fault_of
 from gear_kinematics.ros.other_gears import OtherGears
 from gear_kinematics.ros.outputs import Outputs, PublishingNode, latched
-from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
-from gear_kinematics.state.gear_state import GearState
-from gear_kinematics.state.loads import PreloadMonitor
+from gear_kinematics.state.arm_state import ArmState
+from gear_kinematics.state.gear_state import RotorAnswer
 from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.joint_reader import JOINT_MISSING, RejectedInputError
+from gear_kinematics.wire.topics import topic_of
 
 _MESSAGE_TYPES = {
     topics.JOINT_STATE: JointState,
@@ -47,7 +49,9 @@ _REPORT_PERIOD = 1.0  # s
 
 
 class GearStatePublisher(PublishingNode):
-    """Publishes the state of the mechanism for every valid message on rotor_state."""
+    """Publishes the state of its actuators for every valid message on rotor_state."""
+
+    _known = PARAMETERS  # until the names of the actuators are known
 
     def __init__(self, *, parameter_files: Collection[Path] = (), **options: Any) -> None:
         """Declare the parameters, of which the files must have some, and open the topics.
@@ -60,61 +64,89 @@ class GearStatePublisher(PublishingNode):
         super().__init__(NODE, **options)
         self._files = require_any(parameter_files, self.get_fully_qualified_name())
         self.add_on_set_parameters_callback(self._check_parameters)
-        parameters = NodeParameters.of(declared(self))
-        if home_file := self._file(parameters.home_file):
+        given = declared_actuators(self)
+        zeros: Mapping[str, float] = {}
+        if home_file := self._file(next(iter(given.values())).home_file):
             home_file = home_file.absolute()
-            parameters = restored(self, home_file, parameters)
-        self._gear = parameters.gear
-        self._actuator = GearState(parameters, self._calibration(parameters.calibration))
-        self._display: Display | None = None
-        self._preload = PreloadMonitor(parameters) if parameters.preload else None
-        self._monitor = InputMonitor(started=time.monotonic())
-        self._encoder_monitor = EncoderMonitor()
+            zeros = restored(self, home_file, given)
+        self._actuators = {
+            name: Actuator(
+                replace(each, rotor_zero=zeros.get(name, each.rotor_zero)),
+                self._calibration(each.calibration, each.gear),
+            )
+            for name, each in given.items()
+        }
+        self._named = {full_name(name, key): (name, key) for name in given for key in PARAMETERS}
+        self._known = {full: PARAMETERS[key] for full, (_, key) in self._named.items()}
+        self._arm = ArmState({name: each.state for name, each in self._actuators.items()})
+        self._referenced: bool | None = None  # as it was published last
 
         self._outputs = Outputs(self, self._note_subscribers, self._note_unsent)
-        for topic in self._actuator.topics:
-            message_type = _MESSAGE_TYPES[topics.TOPICS[topic].type]
+        self._topics = self._arm.topics
+        for topic, base in self._topics.items():
+            message_type = _MESSAGE_TYPES[topics.TOPICS[base].type]
             self._outputs.create(topic, message_type, QoSProfile(depth=DEPTH))
         self._note_subscribers()
-        self._outputs.create(topics.REFERENCED, Bool, latched())
-        self._referenced: bool | None = None  # as it was published last
+        for topic in dict.fromkeys(topic_of(name, topics.REFERENCED) for name in ('', *given)):
+            self._outputs.create(topic, Bool, latched())
         self._outputs.create(topics.DIAGNOSTICS, DiagnosticArray, QoSProfile(depth=10))
-        if isinstance(self._gear, Mechanism):
-            self._display = Display(self, parameters, self._outputs)
-            self._display.update(parameters)
+        self._display: Display | None = None
+        if shown := self._shown():
+            self._display = Display(self, shown, self._outputs)
+            self._display.update(shown)
         self.add_post_set_parameters_callback(self._configure)
-        self._homing = Homing(self, home_file, self._actuator.input, self._monitor)
+        shafts = {name: each.shaft for name, each in self._actuators.items()}
+        self._homing = Homing(self, home_file, shafts, zeros)
         # A missing input must be reported even while a simulated clock is paused.
         self.create_timer(
             _REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME)
         )
-        self._drivers = self._rotor_driver, _ = (
-            DriverInput(self, topics.ROTOR_STATE, self._on_rotor_state, self._monitor),
-            DriverInput(
-                self, topics.OUTPUT_ENCODER, self._on_output_encoder, self._encoder_monitor
-            ),
+        every = self._actuators.values()
+        self._rotor_driver = DriverInput(
+            self, topics.ROTOR_STATE, self._on_rotor_state, [each.monitor for each in every]
         )
-        self._driver_log = DriverLog(self, self._actuator.input)
-        self._other_gears = OtherGears(self)
-        known = 'bodies unknown'
-        if isinstance(self._gear, Mechanism):
-            known = f'ring {self._gear.ring_teeth}, satellite {self._gear.satellite_teeth} teeth'
-        joint = parameters.rotor_joint
-        listening_for = f'joint {joint!r}' if joint else 'the only joint'
+        monitors = [each.encoder_monitor for each in every]
+        self._drivers = (
+            self._rotor_driver,
+            DriverInput(self, topics.OUTPUT_ENCODER, self._on_output_encoder, monitors),
+        )
+        inputs = {name: each.state.input for name, each in self._actuators.items()}
+        self._driver_log = DriverLog(self, inputs)
+        self._other_gears = OtherGears(self, lambda: self._current().values())
+        self._log_start()
+
+    def _current(self) -> dict[str, NodeParameters]:
+        """The parameters of all actuators."""
+        return {name: each.state.parameters for name, each in self._actuators.items()}
+
+    def _shown(self) -> dict[str, NodeParameters]:
+        """The parameters of those whose bodies are known."""
+        return {name: each for name, each in self._current().items() if not each.gear_ratio}
+
+    def _log_start(self) -> None:
+        """Log which gears there are, and where their rotors are looked up, in one line."""
+        texts, joints = [], []
+        for name, each in self._current().items():
+            gear, known = each.gear, 'bodies unknown'
+            if isinstance(gear, Mechanism):
+                known = f'ring {gear.ring_teeth}, satellite {gear.satellite_teeth} teeth'
+            of = f'{name}: ' if name else ''
+            texts.append(f'{of}gear ratio {gear.gear_ratio} ({known})')
+            joints.append(f'joint {each.rotor_joint!r}' if each.rotor_joint else 'the only joint')
         self.get_logger().info(
-            f'gear ratio {self._gear.gear_ratio} ({known}), listening for {listening_for} '
+            f'{", ".join(texts)}, listening for {", ".join(joints)} '
             f'on {self._rotor_driver.subscription.topic_name}'
         )
 
     def _note_subscribers(self, _event: object = None) -> None:
         """Let only the outputs with subscribers be computed."""
-        self._actuator.choose(self._outputs.subscribed(self._actuator.topics))
+        self._arm.choose(self._outputs.subscribed(self._topics))
 
     def _check_parameters(self, changed: list[Parameter]) -> SetParametersResult:
         """Refuse values that are invalid beyond type and range, which rclpy checks."""
         try:
-            reason = next(filter(None, map(fault_of, changed)), '')
-            if not reason and hasattr(self, '_actuator'):  # else the constructor checks them
+            reason = next(filter(None, (fault_of(each, self._known) for each in changed)), '')
+            if not reason and hasattr(self, '_arm'):  # else the constructor checks them
                 self._prepare((parameter.name, parameter.value) for parameter in changed)
         except ValueError as error:
             reason = str(error)
@@ -125,19 +157,31 @@ class GearStatePublisher(PublishingNode):
 
     def _prepare(self, changed: Iterable[tuple[str, Any]]) -> None:
         """Make what the changed parameters affect and can be refused for, also one set twice."""
-        parameters, calibration = self._actuator.parameters, self._actuator.calibration
-        for name, value in changed:
-            if name in PARAMETERS:
-                parameters = replace(parameters, **{name: value})
+        prepared = {
+            name: (each.state.parameters, each.state.calibration)
+            for name, each in self._actuators.items()
+        }
+        affected = {''} & prepared.keys()
+        for full, value in changed:
+            name, key = self._named.get(full, ('', ''))
+            if key:
+                affected.add(name)
+                parameters, calibration = prepared[name]
+                parameters = replace(parameters, **{key: value})
                 state_messages(parameters)  # to check the names
-            if name == 'calibration':
-                calibration = self._calibration(value)
-        self._prepared = parameters, calibration
+                if key == 'calibration':
+                    calibration = self._calibration(value, parameters.gear)
+                prepared[name] = parameters, calibration
+        if '' not in prepared:
+            faults = shared_names({name: parameters for name, (parameters, _) in prepared.items()})
+            if faults:
+                raise ValueError('; '.join(faults))
+        self._prepared = {name: prepared[name] for name in affected}
 
-    def _calibration(self, value: str) -> Calibration | None:
+    def _calibration(self, value: str, gear: Gear) -> Calibration | None:
         """Load the calibration that a value of the parameter names, if any."""
         path = self._file(value)
-        return Calibration.load(path, self._gear) if path else None
+        return Calibration.load(path, gear) if path else None
 
     def _file(self, value: str) -> Path | None:
         """Return the file that a value of a parameter names, if any."""
@@ -145,96 +189,124 @@ class GearStatePublisher(PublishingNode):
 
     def _configure(self, changed: Collection[Parameter]) -> None:
         """Apply what was prepared, after every change."""
-        self._actuator.apply(*self._prepared)
+        for name, prepared in self._prepared.items():
+            self._arm.apply(name, *prepared)
         if self._display:
-            self._display.update(self._actuator.parameters)
-        if any(parameter.name == 'rotor_zero' for parameter in changed):
-            self._homing.keep()
+            self._display.update(self._shown())
+        named = [self._named.get(parameter.name, ('', '')) for parameter in changed]
+        if homed := [name for name, key in named if key == 'rotor_zero']:
+            self._homing.keep(homed)
 
     def _on_rotor_state(self, data: bytes) -> None:
-        try:
-            answer = self._actuator.rotor(data, self._now)
-        except RejectedInputError as rejection:
-            self._warn_of(topics.ROTOR_STATE, rejection)
+        now, answers = time.monotonic(), list[tuple[str, RotorAnswer]]()
+        referenced = dict[str, bool]()
+        for name, answer in self._arm.rotor(data, self._now):
+            if isinstance(answer, RejectedInputError):
+                self._warn_of(topics.ROTOR_STATE, name, answer)
+                continue
+            actuator = self._actuators[name]
+            actuator.note(answer, now)
+            if answer.referenced is not actuator.referenced:
+                referenced[name] = answer.referenced
+            answers.append((name, answer))
+        if not answers:
             return
-        self._monitor.last_input = time.monotonic()
-        sample, segment, referenced, withheld = answer[:4]
         if self._driver_log.awaited:
-            self._driver_log.heard(sample)
-        self._homing.note(sample, segment)
-        if referenced is not self._referenced:
-            self._publish_referenced(referenced)
-        self._outputs.send(self._actuator.encode(answer))
-        self._monitor.published += not withheld
-        self._monitor.unreferenced += not referenced
-        if self._preload:
-            self._preload.follow(sample, segment)
-        if self._actuator.input.referenced is not referenced:  # by the output's encoder
-            self._publish_referenced(self._actuator.input.referenced)
+            self._driver_log.heard({name: answer.sample for name, answer in answers})
+        self._publish_referenced(referenced)
+        self._outputs.send(self._arm.encode(answers))
+        for name, answer in answers:
+            self._actuators[name].note_published(answer)
+        self._look_at_references([name for name, _ in answers])
 
-    def _publish_referenced(self, referenced: bool) -> None:  # noqa: FBT001, what is published
-        """Publish at once that the turns have become known or unknown."""
-        changed = self._referenced is not None
-        self._referenced = referenced
-        self._outputs.send([(topics.REFERENCED, serialize_message(Bool(data=referenced)))])
-        if changed:
+    def _look_at_references(self, names: Iterable[str]) -> None:
+        """Publish what the outputs' encoders have found."""
+        states = {name: self._actuators[name].state.input.referenced for name in names}
+        self._publish_referenced(
+            {
+                name: value
+                for name, value in states.items()
+                if self._actuators[name].referenced not in {None, value}
+            }
+        )
+
+    def _publish_referenced(self, changed: Mapping[str, bool]) -> None:
+        """Publish at once which turns have become known or unknown."""
+        if not changed:
+            return
+        known, values = False, {}
+        for name, value in changed.items():
+            known |= self._actuators[name].referenced is not None
+            values[topic_of(name, topics.REFERENCED)] = value
+            self._actuators[name].referenced = value
+        every = all(each.referenced for each in self._actuators.values())
+        if every is not self._referenced:
+            values[topics.REFERENCED] = self._referenced = every
+        self._outputs.send(
+            (topic, serialize_message(Bool(data=value))) for topic, value in values.items()
+        )
+        if known:
             self._publish_diagnostics()
 
     def _on_output_encoder(self, data: bytes) -> None:
-        self._encoder_monitor.last_input = time.monotonic()
-        try:
-            errors = self._actuator.encoder(data, self._now)
-        except RejectedInputError as rejection:
-            self._warn_of(topics.OUTPUT_ENCODER, rejection)
-            return
-        self._outputs.send(self._actuator.encode_errors(errors))
-        referenced = self._actuator.input.referenced
-        if self._referenced not in (None, referenced):
-            self._publish_referenced(referenced)
+        now, errors = time.monotonic(), []
+        for name, answer in self._arm.encoder(data, self._now):
+            self._actuators[name].encoder_monitor.last_input = now
+            if isinstance(answer, RejectedInputError):
+                self._warn_of(topics.OUTPUT_ENCODER, name, answer)
+            else:
+                errors.append((name, answer))
+        self._outputs.send(self._arm.encode_errors(errors))
+        self._look_at_references([name for name, _ in errors])
 
     def _note_unsent(self, publisher: Publisher, error: Exception) -> None:
         # For example, with history keep_all and a blocked subscriber.
-        self._monitor.unsent += 1
+        for actuator in self._actuators.values():
+            actuator.monitor.unsent += 1
         self._warn(f'{publisher.topic_name} not sent: {error}')
 
     def _now(self) -> int:
         return int(self.get_clock().now().nanoseconds)
 
-    def _warn_of(self, topic: str, rejection: RejectedInputError) -> None:
+    def _warn_of(self, topic: str, name: str, rejection: RejectedInputError) -> None:
         if topic == topics.ROTOR_STATE:
-            if str(rejection) == JOINT_MISSING not in self._actuator.input.rejected:
+            actuator = self._actuators[name]
+            if str(rejection) == JOINT_MISSING not in actuator.state.input.rejected:
                 return  # a message of another driver on a shared topic, and no input
-            self._monitor.last_input = time.monotonic()
+            actuator.monitor.last_input = time.monotonic()
         if time.monotonic() >= self._next_warning:
-            detail = f': {rejection.detail}' if rejection.detail else ''
-            self._warn(f'{topic} rejected: {rejection}{detail}')
+            of, detail = f' of {name}' if name else '', rejection.detail
+            self._warn(f'{topic}{of} rejected: {rejection}{detail and f": {detail}"}')
 
     def _report(self) -> None:
         for driver in self._drivers:
             driver.count_losses()
         self._look_at_graph()
-        now, last = time.monotonic(), self._monitor.last_input
-        self._driver_log.update(self._monitor.drivers, now - (last or now))
+        monitors = [each.monitor for each in self._actuators.values()]
+        now, last = time.monotonic(), max(each.last_input or 0.0 for each in monitors)
+        self._driver_log.update(monitors[0].drivers, now - (last or now))
         self._publish_diagnostics()
 
     def _publish_diagnostics(self) -> None:
-        now, rotor = time.monotonic(), self._actuator.input
-        encoder = self._actuator.output_encoder
-        errors = self._encoder_monitor.report(encoder, self._actuator.parameters, now)
-        received = self._monitor.report(rotor, now, encoder.reference)
-        preload = self._preload.report() if self._preload else None
-        reports = {'rotor input': received, 'transmission error': errors, 'preload': preload}
+        now = time.monotonic()
+        reports = {
+            f'{name}: {subject}' if name else subject: report
+            for name, each in self._actuators.items()
+            for subject, report in each.reports(now).items()
+        }
         message = serialize_message(diagnostic_array(self, reports))
         self._outputs.send([(topics.DIAGNOSTICS, message)])
 
     def _look_at_graph(self) -> None:
         """Check the connections with other nodes, and log new faults."""
-        known = self._monitor.graph
+        monitors = [each.monitor for each in self._actuators.values()]
+        known = monitors[0].graph
         inputs = (driver.subscription for driver in self._drivers)
         publishers = self._outputs.publishers.values()
-        found = self._monitor.graph = find_faults(
-            self, inputs, publishers, topics.STATE_TOPICS, self._other_gears.clash
-        )
+        states = [topic for topic, base in self._topics.items() if base in topics.STATE_TOPICS]
+        found = find_faults(self, inputs, publishers, states, self._other_gears.clash)
+        for monitor in monitors:
+            monitor.graph = found
         for fault in (*found.errors, *found.warnings):
             if fault not in (*known.errors, *known.warnings):
                 self.get_logger().warning(fault)

@@ -11,8 +11,14 @@ from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescri
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from gear_kinematics.parameters import PARAMETERS, default_value
-from gear_kinematics.parameters.arm import unknown_parameters
+from gear_kinematics.parameters import PARAMETERS, NodeParameters, default_value
+from gear_kinematics.parameters.arm import (
+    COMMON,
+    actuators_of,
+    faults_in,
+    full_name,
+    unknown_parameters,
+)
 from gear_kinematics.parameters.body_parameters import branch_parameters
 from gear_kinematics.parameters.parameter import Parameter as Declaration
 from gear_kinematics.ros.workarounds.private import given_parameters
@@ -51,6 +57,37 @@ def declared(
     return {name: [] if value is None else value for name, value in values.items()}
 
 
+def declared_actuators(node: Node) -> dict[str, NodeParameters]:
+    """Declare the parameters of all actuators of a node; returns their values by actuator.
+
+    Those of an arm are declared for each actuator, except `COMMON` ones.
+
+    Raises:
+        ParameterException: if a value has a wrong type, or is refused.
+        ValueError: if values or names of an arm are refused; the text lists them all.
+    """
+    given = {name: _plain(each.value) for name, each in given_parameters(node).items()}
+    if not given.get('actuators'):
+        return actuators_of(declared(node))
+    if faults := faults_in(given):
+        raise ValueError('; '.join(faults))
+    actuators = actuators_of(given)
+    values: dict[str, Any] = {}
+    for name, parameters in actuators.items():
+        own = parameters.values()
+        known = {**PARAMETERS} | branch_parameters(own['branches'])
+        common = {key: key for key in COMMON if key not in values}
+        named = common | {full_name(name, key): key for key in known if key not in COMMON}
+        values |= {full: own[key] for full, key in named.items()}
+        _declare(node, {full: known[key] for full, key in named.items()}, values.__getitem__)
+    return actuators
+
+
+def _plain(value: Any) -> Any:
+    """Return a value as parameter files have it."""
+    return [*(value or ())] if value is None or isinstance(value, (list, tuple, array)) else value
+
+
 def _declare(
     node: Node, parameters: Mapping[str, Declaration], default: Callable[[str], Any]
 ) -> None:
@@ -74,9 +111,7 @@ def fault_of(parameter: Parameter, known: Mapping[str, Declaration] = PARAMETERS
     declaration = known.get(parameter.name)
     value = parameter.value
     if declaration and declaration.kind is list:
-        lists = value is None or isinstance(value, (list, array))
-        value = [*(value or ())] if lists else value
-        if fault := declaration.fault(parameter.name, value):
+        if fault := declaration.fault(parameter.name, _plain(value)):
             return fault
     elif declaration and (fault := declaration.other_fault(parameter.name, value)):
         return fault

@@ -2,7 +2,9 @@
 """Whether the nodes of other gears, which may share a topic, publish joints of the same names."""
 
 from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
+from operator import attrgetter
 
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
@@ -10,6 +12,8 @@ from rclpy.parameter import parameter_value_to_python
 from rclpy.parameter_client import AsyncParameterClient
 from rclpy.task import Future
 
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.parameters.arm import full_name
 from gear_kinematics.wire.topics import OUTPUT_STATE
 
 _NAMES = ['frame_prefix', 'output_joint']
@@ -19,11 +23,12 @@ _PATIENCE = 3  # questions, one a second, after which a node is no gear's, or do
 class OtherGears:
     """Asks other nodes how they name their joints."""
 
-    def __init__(self, node: Node) -> None:
-        self._node = node
+    def __init__(self, node: Node, own: Callable[[], Iterable[NodeParameters]]) -> None:
+        """Ask as a node; `own` returns the parameters of its actuators."""
+        self._node, self._own = node, own
         self._clients: dict[str, AsyncParameterClient] = {}
         self._asked: Counter[str] = Counter()
-        self._names: dict[str, list[str]] = {}
+        self._names: dict[str, list[NodeParameters]] = {}
 
     def clash(self, other: str, topic: str) -> bool:
         """Whether another node, by its full name, has joints of this one on a topic.
@@ -37,13 +42,28 @@ class OtherGears:
                 return True
         client, self._asked[other] = self._clients[other], self._asked[other] + 1
         if client.services_are_ready():
-            client.get_parameters(_NAMES, partial(self._take, other))
+            self._ask(other, [''])
         if not (theirs := self._names.get(other)):
             return self._asked[other] > _PATIENCE
-        ours = [self._node.get_parameter(name).value for name in _NAMES]
-        return theirs == ours if topic == OUTPUT_STATE else theirs[0] == ours[0]
+        key = attrgetter('output_name' if topic == OUTPUT_STATE else 'frame_prefix')
+        return bool({*map(key, theirs)} & {*map(key, self._own())})
 
-    def _take(self, other: str, answer: Future) -> None:
+    def _ask(self, other: str, actuators: Sequence[str]) -> None:
+        names = [full_name(actuator, name) for actuator in actuators for name in _NAMES]
+        take = partial(self._take, other, actuators)
+        self._clients[other].get_parameters(names, take)
+
+    def _take(self, other: str, actuators: Sequence[str], answer: Future) -> None:
         names = [parameter_value_to_python(value) for value in answer.result().values]
-        if len(names) == len(_NAMES) and None not in names:
-            self._names[other] = names
+        if names and None not in names:
+            self._names[other] = [
+                NodeParameters.of(dict(zip(_NAMES, pair, strict=True)), actuator)
+                for actuator, *pair in zip(actuators, names[::2], names[1::2], strict=True)
+            ]
+        elif actuators == ['']:  # it could be an arm
+            self._clients[other].get_parameters(['actuators'], partial(self._take_arm, other))
+
+    def _take_arm(self, other: str, answer: Future) -> None:
+        names = [parameter_value_to_python(value) for value in answer.result().values]
+        if names and names[0]:
+            self._ask(other, names[0])

@@ -10,12 +10,14 @@ import pytest
 import yaml
 
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.parameters.arm import actuators_of
 from gear_kinematics.parameters.atomic_file import replace_file
 from gear_kinematics.parameters.files import ConfigError
 from gear_kinematics.parameters.home_file import read_home, write_home
 
 NODE = '/gear_state_publisher'
-HOMED = replace(NodeParameters.load(), rotor_zero=28.969, rotor_joint='0x1: é')
+SINGLE = {'': NodeParameters.load()}
+HOMED = {'': replace(SINGLE[''], rotor_zero=28.969, rotor_joint='0x1: é')}
 OLD = """\
 schema: gear_kinematics/home/1
 homed: 2026-03-01 12:00 UTC
@@ -36,10 +38,10 @@ def path(tmp_path):
 def test_what_is_read_is_what_was_written(path):
     assert read_home(path, HOMED, NODE) is None
     write_home(path, HOMED, NODE)
-    zero, homed = read_home(path, HOMED, NODE)
-    assert (zero, homed[-4:]) == (28.969, ' UTC')
+    zeros, homed = read_home(path, HOMED, NODE)
+    assert (zeros, homed[-4:]) == ({'': 28.969}, ' UTC')
     path.write_text(OLD, 'utf-8')
-    assert read_home(path, NodeParameters.load(), NODE) == (28.969, '2026-03-01 12:00 UTC')
+    assert read_home(path, SINGLE, NODE) == ({'': 28.969}, '2026-03-01 12:00 UTC')
 
 
 @pytest.mark.parametrize(
@@ -57,12 +59,28 @@ def test_what_is_read_is_what_was_written(path):
 def test_other_gear_or_odd_value_is_refused_in_a_line(path, entries, cause):
     path.write_text(yaml.safe_dump(yaml.safe_load(OLD) | entries), 'utf-8')
     with pytest.raises(ConfigError) as refusal:
-        read_home(path, NodeParameters.load(), NODE)
+        read_home(path, SINGLE, NODE)
     text = str(refusal.value)
     assert text.startswith(f'{path}: ')
     assert cause in text
     assert len(text) < 500
     assert '\n' not in text
+
+
+def test_file_of_an_arm_has_the_zeros_of_what_was_homed(path):
+    """And is refused for other actuators, for another gear, and for a single one."""
+    arm = actuators_of({'actuators': ['shoulder', 'elbow'], 'elbow.rotor_zero': 2.5})
+    write_home(path, {'elbow': arm['elbow']}, NODE)
+    zeros, _ = read_home(path, arm, NODE)
+    assert zeros == {'elbow': 2.5}
+    other = replace(arm['elbow'], rotor_direction=-1)
+    for actuators, cause in (
+        ({'elbow': other}, 'its elbow.rotor_direction is 1, not -1'),
+        ({'shoulder': arm['shoulder']}, "its 'elbow' is not in `actuators`"),
+        (SINGLE, "its schema is 'gear_kinematics/home/2', not 'gear_kinematics/home/1'"),
+    ):
+        with pytest.raises(ConfigError, match=cause):
+            read_home(path, actuators, NODE)
 
 
 @pytest.mark.parametrize('target', ['elsewhere.yaml', 'nothing.yaml'])
@@ -92,7 +110,7 @@ def test_old_zero_is_removed_where_the_new_one_cannot_be_written(path, monkeypat
 
     monkeypatch.setattr('gear_kinematics.parameters.atomic_file.os.fsync', full)
     with pytest.raises(OSError, match='No space left'):
-        write_home(path, replace(HOMED, rotor_zero=1.0), NODE)
+        write_home(path, {'': replace(HOMED[''], rotor_zero=1.0)}, NODE)
     monkeypatch.undo()
     assert read_home(path, HOMED, NODE) is None
     write_home(path, HOMED, NODE)
@@ -100,7 +118,7 @@ def test_old_zero_is_removed_where_the_new_one_cannot_be_written(path, monkeypat
     monkeypatch.setattr('gear_kinematics.parameters.atomic_file.os.fsync', full)
     monkeypatch.setattr('pathlib.Path.unlink', full)
     with pytest.raises(OSError, match='its zero is out of date'):
-        write_home(path, replace(HOMED, rotor_zero=1.0), NODE)
+        write_home(path, {'': replace(HOMED[''], rotor_zero=1.0)}, NODE)
 
 
 @pytest.mark.parametrize(

@@ -31,7 +31,7 @@ class Graph:
         self._topics, self.logged = topics, []
         self.get_logger = lambda: SimpleNamespace(warning=self.log('W'), info=self.log('I'))
         self.input = RotorInput(NodeParameters.load())
-        self.driver_log = DriverLog(self, self.input)
+        self.driver_log = DriverLog(self, {'': self.input})
 
     def log(self, level):
         return lambda text: self.logged.append((level, text))
@@ -56,7 +56,7 @@ class Graph:
         data = rotor_bytes(round(stamp * SECOND), position=[position])
         sample = self.input.accept(data, lambda: SECOND)
         if self.driver_log.awaited:
-            self.driver_log.heard(sample)
+            self.driver_log.heard({'': sample})
 
 
 def test_topics_of_drivers_are_named_once_until_one_is_heard():
@@ -109,7 +109,7 @@ def test_node_logs_silence_of_its_joint_on_a_shared_topic(make, capfd):
     for stamp, name, position in ((1, 'rotor', 5.0), (2, 'wheel', 0.0), (9, 'rotor', 0.0)):
         node._on_rotor_state(rotor_bytes(stamp * SECOND, [name], [position]))
         if name == 'rotor':
-            node._monitor.last_input -= 1.5
+            node._actuators[''].monitor.last_input -= 1.5
         node._report()
     said = capfd.readouterr().err
     assert said.count('/shared/rotor_state has stopped: no input for ') == 2

@@ -34,7 +34,11 @@ def home(node):
 
 
 def values_of(node):
-    return node._monitor.report(node._actuator.input, time.monotonic()).values
+    return (
+        node._actuators['']
+        .monitor.report(node._actuators[''].state.input, time.monotonic())
+        .values
+    )
 
 
 # With the ratio -19: φ5 = -(position - zero)/19, so 61.5° is -20.394 rad at the rotor.
@@ -88,8 +92,8 @@ def test_turns_that_the_output_encoder_adds_are_no_speed(homing):
         shaft = rotor_bytes(number * MILLISECOND, ['shaft'], [2.0])
         node._on_output_encoder(shaft)
         drive(node, [-38.0 % math.tau], number * MILLISECOND)
-        if node._actuator.input.referenced:
-            answers.append(node._homing._speed)
+        if node._actuators[''].state.input.referenced:
+            answers.append(node._actuators[''].shaft._speed)
     assert len(answers) > 100
     assert set(answers) == {0.0}
     assert home(node).message.startswith('the shaft was at 114.6° and is now 0.0°')
@@ -98,7 +102,7 @@ def test_turns_that_the_output_encoder_adds_are_no_speed(homing):
 def test_position_that_is_old_is_not_homed(homing):
     node = homing()
     drive(node, [1.0])
-    node._homing._seen -= 1234.5
+    node._actuators[''].shaft._seen -= 1234.5
     node._on_rotor_state(b'no message')
     assert home(node).message == 'the last valid rotor_state came 1234.5 s ago'
 

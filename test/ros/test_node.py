@@ -41,6 +41,7 @@ pytestmark = pytest.mark.live
 
 TYPES = dict(zip(STATES, (JointState, PoseArray, JointState), strict=True))
 READ_ONLY = {
+    'actuators',
     'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches', 'gear_ratio',
     'a.cam_phase', 'a.axial_position', 'b.cam_phase', 'b.axial_position', 'markers_rate',
     'meshes', 'executor', 'home_file', 'preload', 'branch_stiffness', 'shaft_stiffness',
@@ -71,7 +72,10 @@ def test_declared_parameters_are_those_of_the_shipped_file(node):
     assert own == shipped
     descriptors = {name: node.describe_parameter(name) for name in own}
     assert all(d.description for d in descriptors.values())
-    assert {name for name, d in descriptors.items() if d.dynamic_typing} == {'output_range'}
+    assert {name for name, d in descriptors.items() if d.dynamic_typing} == {
+        'actuators',
+        'output_range',
+    }
     assert {name for name, d in descriptors.items() if d.read_only} == READ_ONLY
 
 
@@ -151,7 +155,7 @@ def test_parameters_set_together_take_effect_with_the_next_message_or_not_at_all
 ):
     node, published, settings = make('changed'), [], Settings()
     monkeypatch.setattr(node._outputs, 'send', published.extend)
-    node._actuator.choose(STATES)
+    node._actuators[''].state.choose(STATES)
     random = Random(6)  # noqa: S311, no secret
     seen = set()
     for turn in range(150):
@@ -315,10 +319,10 @@ def test_inputs_that_overflow_the_queue_of_a_blocked_node_are_lost(make, context
 
     def receive(number):
         deadline = time.monotonic() + DEADLINE
-        while node._actuator.input.received < number and time.monotonic() < deadline:
+        while node._actuators[''].state.input.received < number and time.monotonic() < deadline:
             executor.spin_once(timeout_sec=0.1)
         node._rotor_driver.count_losses()
-        return node._actuator.input.received, node._monitor.lost
+        return node._actuators[''].state.input.received, node._actuators[''].monitor.lost
 
     while not driver.get_subscription_count():
         executor.spin_once(timeout_sec=0.1)
@@ -339,7 +343,7 @@ def test_losses_are_counted_by_the_numbers_of_one_driver(make, monkeypatch):
             about = number and {'publication_sequence_number': number}
             node._rotor_driver._take(rotor_bytes(1, position=[1.0]), about)
         node._rotor_driver.count_losses()
-        return node._monitor.lost, node._monitor.losses_known
+        return node._actuators[''].monitor.lost, node._actuators[''].monitor.losses_known
 
     assert lost() == (0, True)
     assert lost(7, 8, 10) == (1, True)  # 1 to 6 were sent before the two were connected
@@ -372,11 +376,11 @@ def test_home_that_is_refused_changes_nothing(make):
     response = node._homing.answer(None, Trigger.Response())
     assert not response.success
     assert 'rotor_zero' in response.message
-    assert not node._actuator.input.referenced
+    assert not node._actuators[''].state.input.referenced
 
 
 def test_markers_cost_nothing_without_viewers_and_can_be_switched_off(node, make):
-    timer = node._display._timer
+    timer = node._display.markers[''].timer
     [other] = [one for one in node.timers if one is not timer]
     assert timer.is_canceled()
     assert not other.is_canceled()
@@ -407,7 +411,7 @@ def test_description_and_markers_follow_the_prefix_and_are_sent_when_they_change
     ]
     links = {f'arm_{body}' for body in bodies}
     assert {link.get('name') for link in robot.iter('link')} == links
-    node._display._publish_markers()
+    node._display.markers[''].publish()
     markers = deserialize_message(published[1][1], MarkerArray).markers
     assert {marker.header.frame_id for marker in markers} == links
 
@@ -423,7 +427,7 @@ def test_of_a_gear_with_only_a_ratio_the_output_alone_is_published(make, monkeyp
     assert not {f'/ratio/{name}' for name in bodies} & topics
     published = []
     monkeypatch.setattr(node._outputs, 'send', published.extend)
-    node._actuator.choose(['output_state', 'corrected_state'])
+    node._actuators[''].state.choose(['output_state', 'corrected_state'])
     node._on_rotor_state(rotor_bytes(1, position=[1457.0]))
     assert node._homing.answer(None, SimpleNamespace()).success
     node._on_rotor_state(rotor_bytes(2, position=[1457.0]))
@@ -455,7 +459,7 @@ def test_outputs_of_unknown_turns_are_marked_or_withheld(make, monkeypatch, outp
     node = make('marked', rotor_encoder='single_turn', unreferenced_outputs=outputs)
     published = []
     monkeypatch.setattr(node._outputs, 'send', published.extend)
-    node._actuator.choose(['output_state'])
+    node._actuators[''].state.choose(['output_state'])
 
     def topics_after(stamp, position=1.0):
         published.clear()
@@ -475,7 +479,7 @@ def test_outputs_of_unknown_turns_are_marked_or_withheld(make, monkeypatch, outp
         DIAGNOSTICS,
         *given,
     ]  # in a second it may have turned unseen
-    assert node._monitor.unreferenced == 3
+    assert node._actuators[''].monitor.unreferenced == 3
 
 
 @pytest.mark.parametrize(

@@ -36,7 +36,7 @@ def test_only_joints_of_the_same_names_clash(context, make, executor, theirs, cl
         other = Node('gear_state_publisher', context=context, namespace='/sharing/other')
     for node in (mine, other):
         executor.add_node(node)
-    gears = OtherGears(mine)
+    gears = OtherGears(mine, lambda: mine._current().values())
     assert not gears.clash(name, OUTPUT_STATE)  # it is asked
     answered = lambda: gears._names or gears._asked[name] > 20  # noqa: E731
 
@@ -52,6 +52,6 @@ def test_only_joints_of_the_same_names_clash(context, make, executor, theirs, cl
 
 
 def test_node_that_is_gone_clashes_after_a_while(make):
-    gears = OtherGears(make('/alone'))
+    gears = OtherGears(make('/alone'), list)
     found = [gears.clash('/alone/gone', OUTPUT_STATE) for _ in range(5)]
     assert found == [False, False, False, True, True]
