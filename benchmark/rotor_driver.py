@@ -6,6 +6,7 @@ It sends probes until it is ordered to drive, and reports when it has.
 
 import struct
 import time
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -55,20 +56,21 @@ def counted_number(stamp: Any) -> Any:
 class RotorState:
     """The message in bytes, made once by rclpy; only numbers are written into it."""
 
-    def __init__(self) -> None:
-        """Find the places of the numbers."""
-        position, velocity, effort = marks = (1.5, 2.5, 3.5)
-        message = JointState(
-            name=['rotor'], position=[position], velocity=[velocity], effort=[effort]
-        )
+    def __init__(self, joints: Sequence[str] = ('rotor',)) -> None:
+        """Find the places of the numbers, which are the same for all joints."""
+        arrays = [[mark] * len(joints) for mark in (1.5, 2.5, 3.5)]
+        position, velocity, effort = arrays
+        message = JointState(name=joints, position=position, velocity=velocity, effort=effort)
         self._data = bytearray(serialize_message(message))
-        self._places = [self._data.index(struct.pack('<d', mark)) for mark in marks]
+        packed = [struct.pack(f'<{len(joints)}d', *array) for array in arrays]
+        self._pack = struct.Struct(f'<{len(joints)}d').pack_into
+        self._joints, self._places = len(joints), [self._data.index(data) for data in packed]
 
     def encode(self, stamp: int, number: int) -> bytes:
         """Give the message of a number."""
         struct.pack_into('<iI', self._data, 4, *divmod(stamp, SECOND))
         for place, value in zip(self._places, rotor_motion(number), strict=True):
-            struct.pack_into('<d', self._data, place, value)
+            self._pack(self._data, place, *(value,) * self._joints)
         return bytes(self._data)
 
 
@@ -80,8 +82,9 @@ def main() -> None:
         Path('/proc/self/timerslack_ns').write_text('1', 'ascii')
     with peer('rotor_driver') as node, suppress(EOFError):
         depth = node.declare_parameter('depth', DEPTH).value
+        joints = node.declare_parameter('joints', ['rotor']).value
         publisher = node.create_publisher(JointState, 'rotor_state', QoSProfile(depth=depth))
-        message = RotorState()
+        message = RotorState(joints)
         report()
         probes = 0
         while not order_waits(_PROBE_PERIOD):

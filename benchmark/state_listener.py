@@ -44,7 +44,7 @@ class Listener:
         self._topics = callbacks.keys()
         for topic, callback in callbacks.items():
             node.create_subscription(
-                _TYPES[topic],
+                _TYPES[topic.rpartition('/')[2]],
                 topic,
                 self._receiver(topic, callback),
                 QoSProfile(depth=DEPTH),
