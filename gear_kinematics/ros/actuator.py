@@ -6,7 +6,7 @@ import time
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.ros.homing import Shaft
-from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor, Report
+from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor, StatusReport
 from gear_kinematics.state.gear_state import GearState, RotorAnswer
 from gear_kinematics.state.loads import PreloadMonitor
 
@@ -37,7 +37,7 @@ class Actuator:
         if self._preload:
             self._preload.follow(sample, segment)
 
-    def reports(self, now: float) -> dict[str, Report | None]:
+    def reports(self, now: float) -> dict[str, StatusReport | None]:
         """Report by subject on the time since the last report, until now."""
         encoder = self.state.output_encoder
         errors = self.encoder_monitor.report(encoder, self.state.parameters, now)
