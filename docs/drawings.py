@@ -71,6 +71,21 @@ FLOWS = {
             (NODE, 'the real output,\nwith a calibration', 'corrected_state, corrected_interval'),
         ),
     ),
+    'pictures/arm.svg': Flow(
+        {
+            'driver of\nseven motors': (0, 1),
+            NODE: (3, 1),
+            'robot_state_publisher,\nMoveIt': (6, 2),
+            'a recorder': (6, 1),
+            'rqt_robot_monitor': (6, 0),
+        },
+        (
+            ('driver of\nseven motors', NODE, 'rotor_state'),
+            (NODE, 'robot_state_publisher,\nMoveIt', 'output_state of seven joints'),
+            (NODE, 'a recorder', 'corrected_state, ...'),
+            (NODE, 'rqt_robot_monitor', '/diagnostics'),
+        ),
+    ),
     'pictures/ros2_control.svg': Flow(
         {
             'motor driver': (0, 1),

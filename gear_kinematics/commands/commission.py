@@ -9,6 +9,7 @@ from gear_kinematics.bag.roles import find_rotor_topic, joints_on
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.encoders import (
     add_known_ratio,
+    add_new_config,
     add_recordings,
     known_ratio,
     say_columns,
@@ -18,12 +19,17 @@ from gear_kinematics.commands.joints import choose_joint
 from gear_kinematics.commands.output import Console, message_progress, warn_of_shared_memory
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.measurement.commissioning import analysis
-from gear_kinematics.measurement.commissioning.document import actuator_file, document
+from gear_kinematics.measurement.commissioning.document import (
+    actuator_file,
+    actuator_lines,
+    document,
+)
 from gear_kinematics.measurement.formats import is_table, open_bag
 from gear_kinematics.measurement.reading import read_encoders
 from gear_kinematics.measurement.rotor_fields import recorded_questions
-from gear_kinematics.parameters import NodeParameters, default_config
-from gear_kinematics.parameters.new_config import write_new
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.parameters.arm_file import add_actuators, check_new
+from gear_kinematics.parameters.new_config import arm_head, start_command, write_new
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.wire.topics import JOINT_STATE
 
@@ -48,13 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='moment of the last recording at which the output angle is 0; a stamp or a time, s '
         "(default: where the output's encoder reads 0)",
     )
-    arguments.group(parser, 'output').add_argument(
-        '-o',
-        '--output',
-        default=default_config().name,
-        metavar='FILE',
-        help='the parameter file to create (default: %(default)s); it must not exist yet',
-    )
+    add_new_config(parser)
     arguments.add_verbose(parser, 'print tables and remarks in a pipe as well')
     add_report_forms(parser)
 
@@ -62,14 +62,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> ExitCode:
     """Write a parameter file, or judge one."""
     path = Path(options.output)
-    if not options.check and (path.exists() or path.is_symlink()):
-        raise ValueError(f'{path}: exists already; give another name with -o')
+    if not options.check:
+        check_new(path, options.actuator)
     if options.live == bool(options.recordings):
         raise ValueError('name recordings, or give --live to listen to the drivers instead')
-    written = {} if options.check else {'-o': options.output}
+    written = {} if options.check or path.exists() else {'-o': options.output}
     reporter = Reporter(options, others=written, brief=not options.verbose)
-    file = NodeParameters.load(options.check) if options.check else None
-    if file:
+    file = None
+    if options.check:
+        file = NodeParameters.load(options.check, actuator=options.actuator)
         options.joint = options.joint or file.rotor_joint
         options.encoder_joint = options.encoder_joint or file.output_encoder_joint
     request = analysis.Request(
@@ -81,7 +82,11 @@ def run(options: argparse.Namespace) -> ExitCode:
         file=file,
     )
     result = _hear(request) if options.live else _read(options, request)
-    if result.between and not file:
+    if result.between and not file and options.actuator:
+        heard = result.request
+        command = start_command(heard.rotor.topic, path.name, heard.output.topic)
+        add_actuators(path, {options.actuator: actuator_lines(result)}, arm_head(command))
+    elif result.between and not file:
         write_new(path, actuator_file(result, path.name))
     report = document(result, str(options.check or path))
     reporter.write(report, [options.check] if file else [])

@@ -12,6 +12,7 @@ from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.columns import ANGLE_UNITS, Sources
 from gear_kinematics.measurement.formats import is_table
 from gear_kinematics.measurement.recording import Recording
+from gear_kinematics.parameters import default_config
 from gear_kinematics.report.document import printable
 
 _COLUMNS = {
@@ -85,11 +86,17 @@ def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
 
 
 def add_known_ratio(
-    parser: argparse.ArgumentParser, purpose: str
+    parser: argparse.ArgumentParser, purpose: str, *, several: bool = False
 ) -> argparse._MutuallyExclusiveGroup:
-    """Add the options `--ratio` and `--teeth`, of which `known_ratio` returns the ratio."""
+    """Add the options `--ratio` and `--teeth`, of which `known_ratio` returns the ratio.
+
+    With `several`, the ratio is a list of ratios with the names of joints, '' for all.
+    """
     known = arguments.group(parser, 'gear').add_mutually_exclusive_group()
-    known.add_argument('--ratio', type=ratio_text, metavar='I', help=purpose)
+    if several:
+        known.add_argument('--ratio', nargs='+', type=_named_ratio, metavar='I', help=purpose)
+    else:
+        known.add_argument('--ratio', type=ratio_text, metavar='I', help=purpose)
     known.add_argument(
         '--teeth', type=teeth, metavar='ZK/ZS', help='or that of the teeth of ring and satellite'
     )
@@ -99,9 +106,33 @@ def add_known_ratio(
 def known_ratio(options: argparse.Namespace) -> GearRatio | None:
     """Return the ratio that the options of `add_known_ratio` give, if any."""
     if options.teeth:
-        ring, satellite = options.teeth
-        return GearRatio(-satellite, ring - satellite)
+        return ratio_of_teeth(options.teeth)
     return GearRatio.parse(options.ratio) if options.ratio else None
+
+
+def ratio_of_teeth(numbers: tuple[int, int]) -> GearRatio:
+    """Return the ratio of a gear with the numbers of teeth of its ring gear and satellites."""
+    ring, satellite = numbers
+    return GearRatio(-satellite, ring - satellite)
+
+
+def add_new_config(parser: argparse.ArgumentParser) -> None:
+    """Add the options for the parameter file to write, and the actuator of an arm in it."""
+    output = arguments.group(parser, 'output')
+    output.add_argument(
+        '-o',
+        '--output',
+        default=default_config().name,
+        metavar='FILE',
+        help='the parameter file to create (default: %(default)s); it must not exist yet, unless '
+        'it is that of an arm, to which an actuator is added',
+    )
+    output.add_argument(
+        '--actuator',
+        default='',
+        metavar='NAME',
+        help='add the gear to FILE, or a new FILE, as this actuator of an arm',
+    )
 
 
 def teeth(text: str) -> tuple[int, int]:
@@ -132,6 +163,12 @@ def say_columns(recording: Recording, options: argparse.Namespace) -> None:
     taken = [', '.join(recording.columns)] if is_table(recording.path) else []
     for clause in () if options.quiet else (*taken, *recording.faults):
         print(printable(f'{recording.name}: {clause}'), file=sys.stderr)
+
+
+def _named_ratio(text: str) -> tuple[str, GearRatio]:
+    """Parse a ratio, perhaps with the name of a joint before it: `shoulder=-101`."""
+    name, _, ratio = text.rpartition('=')
+    return name, GearRatio.parse(ratio_text(ratio))
 
 
 def ratio_text(text: str) -> str:

@@ -2,18 +2,27 @@
 """`gearkin init`: a parameter file for a driver that is running."""
 
 import argparse
+import re
+from collections.abc import Sequence
 from pathlib import Path
 
-from gear_kinematics.commands import ExitCode
-from gear_kinematics.commands.encoders import add_known_ratio, known_ratio
-from gear_kinematics.commands.joints import ask, can_ask, choose_joint
+from gear_kinematics.commands import ExitCode, arguments
+from gear_kinematics.commands.encoders import add_known_ratio, add_new_config, ratio_of_teeth
+from gear_kinematics.commands.joints import ask, can_ask, choose_joint, joints_of_arm
 from gear_kinematics.commands.output import Console, complain, warn_of_shared_memory
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.commissioning.analysis import Channel
 from gear_kinematics.measurement.rotor_fields import questions
-from gear_kinematics.parameters import default_config
-from gear_kinematics.parameters.new_config import new_config, start_command, write_new
+from gear_kinematics.parameters.arm_file import add_actuators, check_new
+from gear_kinematics.parameters.new_config import (
+    arm_head,
+    new_actuator,
+    new_config,
+    start_command,
+    write_new,
+)
 from gear_kinematics.report.document import printable
+from gear_kinematics.wire.nearest import among, listed
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -23,23 +32,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_known_ratio(
         parser,
         'of the gear, such as -19 or 1457/26; negative if the output turns '
-        'against the rotor (default: asked for)',
+        'against the rotor (default: asked for); with --arm also of each, such as '
+        'shoulder=-101 elbow=-51',
+        several=True,
     )
-    parser.add_argument(
-        '-o',
-        '--output',
-        type=Path,
-        default=default_config().name,
-        metavar='FILE',
-        help='the parameter file to create (default: %(default)s); it must not exist yet',
+    arguments.group(parser, 'gear').add_argument(
+        '--arm',
+        action='store_true',
+        help='set up each joint of the topic as an actuator of an arm, which has its name',
     )
+    add_new_config(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
     """List the drivers, and write the file."""
-    path: Path = options.output
-    if path.exists() or path.is_symlink():
-        raise ValueError(f'{path}: exists already; give another name with -o')
+    path = Path(options.output)
+    if options.arm and (options.actuator or options.joint):
+        raise ValueError('--arm sets up all joints: leave out --actuator and --joint')
+    if not options.arm:
+        check_new(path, options.actuator)
     warn_of_shared_memory(participants=1)
     # These need ROS, unlike most commands.
     from gear_kinematics.watch.drivers import listen  # noqa: PLC0415
@@ -48,23 +59,67 @@ def run(options: argparse.Namespace) -> ExitCode:
     drivers = listen()
     list_drivers(drivers, Console())
     joints = [Channel(driver.topic, joint) for driver in drivers for joint in driver.joints]
-    given = Channel(options.topic or '', options.joint or '')
-    topic, joint = choose_joint(joints, given, 'rotor')
-    ratio = known_ratio(options)
-    if not ratio:
-        if not can_ask():
-            raise ValueError(
-                'which ratio has the gear? Repeat with it, such as --ratio -19 or --teeth 80/76'
-            )
-        text = ask('Ratio of the gear, negative if the output turns against the rotor: ')
-        ratio = GearRatio.parse(text)
-    write_new(path, new_config(topic, joint, str(path), ratio, options.teeth))
-    print(
-        f'{path} is for the joint {printable(joint)} on {topic}, with the gear ratio {ratio}. '
-        'Start the node:'
-    )
-    print(f'    {start_command(topic, str(path))}')
+    if options.arm:
+        chosen = joints_of_arm(joints, options.topic or '')
+    else:
+        chosen = [choose_joint(joints, Channel(options.topic or '', options.joint or ''), 'rotor')]
+    topic = chosen[0].topic
+    ratios = _ratios(options, [channel.joint for channel in chosen])
+    command = start_command(topic, str(path))
+    if options.arm or options.actuator:
+        blocks = {
+            options.actuator or _actuator(joint): new_actuator(topic, joint, ratio, options.teeth)
+            for joint, ratio in ratios.items()
+        }
+        if len(blocks) < len(ratios):
+            raise ValueError('two joints have nearly the same name: add each with --actuator')
+        add_actuators(path, blocks, arm_head(command))
+        topics = set(re.findall(r'# The joint .* on (\S+), with', path.read_text('utf-8')))
+        if len(topics) > 1:
+            complain(f'one topic has to have all motors: remap the drivers of {listed(topics)}')
+        print(f'{path}: added {", ".join(map(printable, blocks))}. Start the node:')
+    else:
+        [(joint, ratio)] = ratios.items()
+        write_new(path, new_config(topic, joint, str(path), ratio, options.teeth))
+        print(
+            f'{path} is for the joint {printable(joint)} on {topic}, with the gear ratio {ratio}. '
+            'Start the node:'
+        )
+    print(f'    {command}')
     heard = next(driver.messages for driver in drivers if driver.topic == topic)
-    for question in questions([m[2] for m in heard], [m[1] for m in heard], joint, ratio):
-        complain(f'{topic}: {question}')
+    data, received = [m[2] for m in heard], [m[1] for m in heard]
+    for joint, ratio in ratios.items():
+        for question in questions(data, received, joint, ratio):
+            complain(f'{topic}: {f"{printable(joint)}: " * options.arm}{question}')
     return ExitCode.DONE
+
+
+def _ratios(options: argparse.Namespace, joints: Sequence[str]) -> dict[str, GearRatio]:
+    """The ratio of each joint's gear, which is given or asked for."""
+    given: dict[str, GearRatio] = dict(options.ratio or ())
+    if len(given) < len(options.ratio or ()):
+        raise ValueError('--ratio: one ratio for all joints, or one for each, such as m1=-19')
+    if unknown := [name for name in given if name not in {'', *joints}]:
+        raise ValueError(f'--ratio: no joint {unknown[0]!r}{among(unknown[0], joints)}')
+    if options.teeth:
+        given[''] = ratio_of_teeth(options.teeth)
+    ratios, before = {}, ''
+    for joint in joints:
+        gear = f'the gear of {printable(joint)}' if options.arm else 'the gear'
+        if not (ratio := given.get(joint, given.get(''))):
+            if not can_ask():
+                example = f'{joint}=-19' if options.arm else '-19'
+                remedy = f'Repeat with it, such as --ratio {example} or --teeth 80/76'
+                raise ValueError(f'which ratio has {gear}? {remedy}')
+            again = f' (Enter: {before})' if before else ''
+            question = f'Ratio of {gear}, negative if the output turns against the rotor{again}: '
+            ratio = GearRatio.parse(ask(question) or before)
+            before = str(ratio)
+        ratios[joint] = ratio
+    return ratios
+
+
+def _actuator(joint: str) -> str:
+    """The name of an actuator, which a parameter and a topic can have, after its joint."""
+    name = re.sub(r'\W', '_', joint, flags=re.ASCII)
+    return name if name[:1].isalpha() else f'joint_{name}'

@@ -38,14 +38,7 @@ def choose_joint(
     Raises:
         ValueError: if there is none, or there are several and nobody to ask.
     """
-    topic = given.topic and f'/{given.topic.removeprefix("/")}'
-    found = [j for j in joints if topic in {'', j.topic} and given.joint in {'', j.joint}]
-    base = {'rotor': ROTOR_STATE, 'output': OUTPUT_ENCODER}[role]
-    usual = [joint for joint in found if base_name(joint.topic) == base]
-    others = [joint for joint in found if base_name(joint.topic) not in TOPICS]
-    found = (
-        usual or others or (found if any(given) else [])
-    )  # topics of this package only if named
+    found = _candidates(joints, given, {'rotor': ROTOR_STATE, 'output': OUTPUT_ENCODER}[role])
     if len(found) == 1:
         return found[0]
     names = [f'{printable(joint)} on {topic}' for topic, joint in found or joints]
@@ -59,3 +52,28 @@ def choose_joint(
     if not (answer.isdecimal() and 1 <= int(answer) <= len(found)):
         raise ValueError(f'{answer!r} is no number from 1 to {len(found)}')
     return found[int(answer) - 1]
+
+
+def joints_of_arm(joints: Sequence[Channel], topic: str) -> list[Channel]:
+    """Return the joints of the rotors of an arm: all on a given topic, or on the only one.
+
+    Raises:
+        ValueError: if there is none, or there are several topics.
+    """
+    found = _candidates(joints, Channel(topic, ''), ROTOR_STATE)
+    if len(topics := {joint.topic for joint in found}) == 1:
+        return found
+    there = listed(topics or {joint.topic for joint in joints}) or 'none with joints'
+    raise ValueError(f'which topic has the joints of the arm? Repeat with --topic: {there}')
+
+
+def _candidates(joints: Sequence[Channel], given: Channel, base: str) -> list[Channel]:
+    """Find the joints that are given, on their usual topic or else on those of other packages.
+
+    Topics of this package count only if something is given.
+    """
+    topic = given.topic and f'/{given.topic.removeprefix("/")}'
+    found = [j for j in joints if topic in {'', j.topic} and given.joint in {'', j.joint}]
+    usual = [joint for joint in found if base_name(joint.topic) == base]
+    others = [joint for joint in found if base_name(joint.topic) not in TOPICS]
+    return usual or others or (found if any(given) else [])

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from gear_kinematics.parameters.yaml_file import Loader, read_yaml
+from gear_kinematics.parameters.yaml_file import Loader, load_yaml, read_yaml
 from gear_kinematics.wire.nearest import nearest
 
 _NODE_PATTERN = re.compile(r'(/(\*\*?|[A-Za-z_]\w*))+', re.ASCII)
@@ -154,6 +154,11 @@ class _RosLoader(Loader):
 _RosLoader.add_constructor(
     'tag:yaml.org,2002:map', lambda loader, node: _Pairs(loader.construct_pairs(node, deep=True))
 )
+
+
+def parameter_blocks(text: str) -> list[tuple[str, dict[str, Any]]]:
+    """List the blocks in the text of a parameter file: names of nodes, with their parameters."""
+    return [*_blocks(load_yaml(text, _RosLoader))]
 
 
 def _blocks(tree: Any, name: str = '') -> Iterator[tuple[str, dict[str, Any]]]:

@@ -26,10 +26,7 @@ def new_config(
     The joint is an index where joints have no names. Without the `teeth` of ring and satellite,
     only the ratio is known of the gear.
     """
-    values = {'rotor_joint': quoted(joint), 'gear_ratio': quoted(str(ratio))}
-    if teeth:
-        values |= zip(('ring_teeth', 'satellite_teeth'), map(str, teeth), strict=True)
-        values['gear_ratio'] = "''"
+    values = _gear(joint, ratio, teeth)
     # The head of the default file is about the default file.
     body = re.sub(r'\A(#.*\n)+', '', default_config().read_text('utf-8'))
     line = rf'(?m)^( +({"|".join(values)}): ).*'
@@ -40,6 +37,34 @@ def new_config(
         f'#     {start_command(topic, name)}\n'
         '# Check the mechanism, rotor_direction and rotor_encoder. SI units: m, rad, s.\n' + body
     )
+
+
+def new_actuator(
+    topic: str, joint: str, ratio: GearRatio, teeth: tuple[int, int] | None = None
+) -> list[str]:
+    """Return the lines of an actuator in the parameter file of an arm; see `new_config`."""
+    place = f'# The joint {_one_line(joint)} on {_one_line(topic)}, with the gear ratio {ratio}.'
+    return [place, *(f'{name}: {value}' for name, value in _gear(joint, ratio, teeth).items())]
+
+
+def arm_head(command: str) -> list[str]:
+    """Return the head of a new parameter file of an arm, with the command that starts the node."""
+    return [
+        '# An arm: all its actuators in one node. Start it with',
+        f'#     {command}',
+        '# Each parameter can stand below an actuator, or beside `actuators` for all of them.',
+        '# Check rotor_direction and rotor_encoder. An output has the name of its actuator,',
+        '# unless an output_joint is given. SI units: m, rad, s.',
+    ]
+
+
+def _gear(joint: str, ratio: GearRatio, teeth: tuple[int, int] | None) -> dict[str, str]:
+    """The parameters that are known of a gear, as scalars of YAML."""
+    values = {'rotor_joint': quoted(joint), 'gear_ratio': quoted(str(ratio))}
+    if teeth:
+        values |= zip(('ring_teeth', 'satellite_teeth'), map(str, teeth), strict=True)
+        values['gear_ratio'] = "''"
+    return values
 
 
 def quoted(text: str) -> str:

@@ -2,6 +2,7 @@
 """gearkin commission as a user runs it."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from simulated_encoders import TURN, Drive, ramped_strokes, stamps
 from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.commands.cli import main
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.parameters.arm import load_actuators
 from gear_kinematics.wire.cdr import JointStateTemplate
 
 REAL = Path(__file__).resolve().parents[3] / 'shared' / 'data' / 'dual_encoders'
@@ -64,6 +66,31 @@ def test_file_is_one_that_the_node_takes(bag, tmp_path, capsys, monkeypatch):
     assert main(['commission', str(bag), '--check', 'other.yaml']) == 1
     said = capsys.readouterr().out
     assert 'other.yaml is contradicted: rotor_direction is 1, not -1' in said
+
+
+def test_actuator_is_added_to_the_file_of_an_arm(bag, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path('arm.yaml').write_text(
+        '/**:\n  ros__parameters:\n    actuators: [shoulder]\n    shoulder:  # mine\n'
+        "      gear_ratio: '-101'\n"
+    )
+    one = 'commission', str(bag), '--actuator', 'elbow'
+    assert main([*one, '-o', 'arm.yaml']) == 0
+    assert 'It is written to arm.yaml.' in capsys.readouterr().out
+    text = Path('arm.yaml').read_text()
+    assert 'shoulder:  # mine' in text
+    assert '      # The gear has the ratio -19 (' in text
+    assert load_actuators(Path('arm.yaml'))['shoulder'].gear_ratio == '-101'
+    assert main([*one, '--check', 'arm.yaml']) == 0
+    assert 'elbow is in it already' in refusal(*one, '-o', 'arm.yaml')
+    assert main([*one, '-o', 'new.yaml']) == 0
+    alone = NodeParameters.load(Path('new.yaml'))
+    assert alone == replace(
+        NodeParameters.load(Path('arm.yaml'), actuator='elbow'), actuators=('elbow',)
+    )
+    assert (alone.gear_ratio, alone.output_encoder_joint) == ('-19', 'output_shaft')
+    remapped = '-r rotor_state:=/rotor_state -r output_encoder:=/output_encoder'
+    assert f'--params-file new.yaml {remapped}\n' in Path('new.yaml').read_text()
 
 
 def test_open_ratio_writes_nothing_unless_it_is_confirmed(positions, tmp_path, capsys):

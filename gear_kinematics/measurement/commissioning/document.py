@@ -33,28 +33,43 @@ def actuator_file(result: Commissioning, name: str = default_config().name) -> s
     """Return the text of a parameter file of a name; ValueError if the ratio is open."""
     if not result.between:
         raise ValueError(result.answer)
-    names = ', '.join(joint.recording.name for joint in result.joints)
     command = start_command(result.request.rotor.topic, name, result.request.output.topic)
-    lines = [
-        *_comment(f'{result.answer} From {names}. SI units: m, rad, s. Start the node with'),
-        f'#     {printable(command)}',
-        '/**:',
-        '  ros__parameters:',
-    ]
+    return '\n'.join(
+        [
+            *_comment(f'{_found(result)} SI units: m, rad, s. Start the node with'),
+            f'#     {printable(command)}',
+            '/**:',
+            '  ros__parameters:',
+            *(f'{_INDENT}{line}' for line in _values(result)),
+            '',
+        ]
+    )
+
+
+def actuator_lines(result: Commissioning) -> list[str]:
+    """Return the lines of a gear in the parameter file of an arm."""
+    return [*_comment(_found(result)), *_values(result)]
+
+
+def _found(result: Commissioning) -> str:
+    return f'{result.answer} From {", ".join(joint.recording.name for joint in result.joints)}.'
+
+
+def _values(result: Commissioning) -> Iterator[str]:
+    """Yield the lines of parameters, each below its evidence, and what else was found."""
     for found in result.values:
         if found.value is None:
-            lines += _comment(f'Open: {found.name}: {found.evidence}.', _INDENT)
+            yield from _comment(f'Open: {found.name}: {found.evidence}.')
         else:
-            lines += _comment(found.evidence, _INDENT)
-            lines.append(f'{_INDENT}{found.name}: {_yaml(found.value)}')
+            yield from _comment(found.evidence)
+            yield f'{found.name}: {_yaml(found.value)}'
     for note in (*result.notes, *(f'{question}.' for question in result.questions)):
-        lines += _comment(note, _INDENT)
-    return '\n'.join([*lines, ''])
+        yield from _comment(note)
 
 
-def _comment(text: str, indent: str = '') -> Iterator[str]:
+def _comment(text: str) -> Iterator[str]:
     lines = wrap(printable(text), _WIDTH, break_long_words=False, break_on_hyphens=False)
-    return (f'{indent}# {line}' for line in lines)
+    return (f'# {line}' for line in lines)
 
 
 def _yaml(value: str | float) -> str:
