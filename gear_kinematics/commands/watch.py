@@ -20,6 +20,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='FULL_NAME',
         help='the node, such as /left/gear_state_publisher (default: the first that runs)',
     )
+    parser.add_argument(
+        '--actuator', default='', metavar='NAME', help='of an arm (default: the first)'
+    )
 
 
 def run(options: argparse.Namespace) -> ExitCode:
@@ -38,7 +41,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         from gear_kinematics.watch.server import serve as show  # noqa: PLC0415, an extra
     from gear_kinematics.watch.watcher import Watcher  # noqa: PLC0415
 
-    watcher = Watcher(options.node)
+    watcher = Watcher(options.node, options.actuator)
     with stopped_by_signals() as stopped:
         with watcher:
             show(watcher, Console(), lambda: stopped() or watcher.ended)

@@ -18,6 +18,8 @@ from rclpy.task import Future
 from std_srvs.srv import Trigger
 
 from gear_kinematics.parameters import BRANCH_PARAMETERS, PARAMETERS, NodeParameters
+from gear_kinematics.parameters.arm import actuators_of, faults_in
+from gear_kinematics.parameters.arm import full_name as of_actuator
 from gear_kinematics.ros.diagnostics import full_name
 from gear_kinematics.ros.graph import Graph
 from gear_kinematics.watch.drivers import Listener
@@ -25,11 +27,14 @@ from gear_kinematics.watch.polled import Polled
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.cdr import SECOND, MalformedMessageError
 from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError, joints_of
+from gear_kinematics.wire.nearest import among
 
 _PATIENCE = 2.0  # s: a service that has not found this client yet loses the request
 _ZERO = 'rotor zero (rad)'  # in diagnostics
 _MOST_SUBJECTS = 50  # of diagnostics; any node can send statuses under the name of another
 _LONGEST = 1000  # characters of a text in diagnostics
+_KNOWN = {name.rpartition('.')[2] for name in (*PARAMETERS, *BRANCH_PARAMETERS)}
+"""Parameters without the names of actuators, branches and groups."""
 _revisions = count(1)
 _SHOWN = topics.OUTPUT_STATE, *topics.CORRECTED_TOPICS, topics.TRANSMISSION_ERROR
 
@@ -61,11 +66,13 @@ class Answer(NamedTuple):
 
 
 class GearNode:
-    """Follows the node with a full name, which may end and start again."""
+    """Follows a gear of the node with a full name, which may end and start again."""
 
-    def __init__(self, node: Node, name: str) -> None:
+    def __init__(self, node: Node, name: str, actuator: str = '') -> None:
         self._node = node  # subscribes and calls services
         self.name = name
+        self.actuator = actuator  # of an arm; '': the first of what the node has
+        self.arm: Mapping[str, NodeParameters] = {}  # of all actuators, once they are known
         self.seen = False  # whether it has ever run
         self.running = False
         self.revision = next(_revisions)
@@ -75,7 +82,7 @@ class GearNode:
         self.earlier: dict[str, Any] = {}  # parameters before their last change that was seen
         self.homed_zero: float | None = None  # rotor_zero after its last change that was seen
         self.statuses: dict[str, Status] = {}  # diagnostics by subject
-        self.homing = node.create_client(Trigger, f'{name}/home')
+        self.homing = self._homing_of(actuator)
         self._topics: dict[str, str] = {}  # of what is shown, by names without remapping
         self._outputs = Listener(node, self._is_own)
         self._diagnostics = Polled(node, topics.DIAGNOSTICS, DiagnosticArray)
@@ -83,6 +90,14 @@ class GearNode:
         self._due = math.inf  # when to ask for the parameters; s of a steady clock
         self._zero = ''  # in diagnostics
         self._publishers: set[bytes] = set()
+
+    @property
+    def label(self) -> str:
+        """The full name of the node, and the name of the actuator if it has several."""
+        return f'{self.name} {self.actuator}'.rstrip()
+
+    def _homing_of(self, actuator: str) -> Any:
+        return self._node.create_client(Trigger, f'{self.name}/{actuator}/home'.replace('//', '/'))
 
     def look(self, graph: Graph, *, shown: bool) -> None:
         """Find in the graph whether the node runs, and which topics it has, to be `shown`."""
@@ -96,7 +111,7 @@ class GearNode:
         publishers = graph.publishers_of(self.name)
         if publishers - self._publishers:
             self.statuses.clear()
-            self.parameters, self.fault, self.earlier = None, '', {}
+            self.parameters, self.fault, self.earlier, self.arm = None, '', {}, {}
             self.revision, self._due = next(_revisions), 0.0
         self._publishers = publishers or self._publishers  # a busy machine loses sight of them
 
@@ -105,8 +120,9 @@ class GearNode:
         self._outputs.poll()
         for data, *_ in self._diagnostics.take():
             for status in deserialize_message(data, DiagnosticArray).status:
-                if status.hardware_id == self.name:
-                    subject = status.name.rpartition(': ')[2][:_LONGEST]
+                prefix, whole = self.actuator and f'{self.actuator}: ', status.name.partition(': ')
+                if status.hardware_id == self.name and whole[2].startswith(prefix):
+                    subject = whole[2].removeprefix(prefix)[:_LONGEST]
                     values = {pair.key: pair.value[:_LONGEST] for pair in status.values}
                     if (zero := values.get(_ZERO, self._zero)) != self._zero:
                         self._zero = zero
@@ -122,13 +138,17 @@ class GearNode:
             self._due = time.monotonic() + _PATIENCE
             self._client.list_parameters([], 0, self._ask)
 
-    def joint(self, topic: str) -> JointValue | None:
-        """Return the latest value of a topic of type `JointState`; None before there is one."""
+    def joint(self, topic: str, name: str = '') -> JointValue | None:
+        """Return the latest value of a topic of type `JointState`; None before there is one.
+
+        The joint is that of the output, or the one with a name.
+        """
         output = self._outputs.heard.get(self._topics.get(topic, ''))
         if output is None or output.last is None:
             return None
+        own = self.parameters.output_name if self.parameters else ''
         try:
-            _, _, position, velocity, _ = JointReader('').read(output.last.data)
+            _, _, position, velocity, _ = JointReader(name or own).read(output.last.data)
         except RejectedInputError:
             return None
         age = (time.time_ns() - output.last.received) / SECOND
@@ -166,15 +186,14 @@ class GearNode:
             answer.set_result(Answer(text, result.successful))
             self._due = 0.0
 
-        parameters = [Parameter(name, value=value) for name, value in values.items()]
+        parameters = [
+            Parameter(of_actuator(self.actuator, name), value=value)
+            for name, value in values.items()
+        ]
         self._client.set_parameters_atomically(parameters, take)
 
     def _ask(self, listed: Future) -> None:
-        names = [
-            name
-            for name in listed.result().result.names
-            if name in PARAMETERS or name.rpartition('.')[2] in BRANCH_PARAMETERS
-        ]
+        names = [n for n in listed.result().result.names if n.rpartition('.')[2] in _KNOWN]
 
         def take(answered: Future) -> None:
             values = answered.result().values
@@ -187,15 +206,20 @@ class GearNode:
     def _take_parameters(self, given: Mapping[str, Any]) -> None:
         """Take the parameters, and note what has changed while the node ran."""
         try:
-            for name, value in given.items():
-                known = PARAMETERS.get(name) or BRANCH_PARAMETERS[name.rpartition('.')[2]]
-                if fault := known.fault(name, value):
-                    raise ValueError(fault)
-            parameters = NodeParameters.of(given)  # an older node can lack some
+            if faults := faults_in(given):
+                raise ValueError('; '.join(faults))
+            arm = actuators_of(given)  # of whose values an older node can lack some
+            if (actuator := self.actuator or next(iter(arm))) not in arm:
+                raise ValueError(f'it has no actuator {actuator!r}{among(actuator, arm)}')
+            parameters = arm[actuator]
             _ = parameters.gear
         except ValueError as error:
             self.fault = str(error)
             return
+        if actuator != self.actuator:
+            self.statuses.clear()  # they were those of all actuators
+            self._node.destroy_client(self.homing)
+            self.actuator, self.homing = actuator, self._homing_of(actuator)
         if self.parameters:
             now, before = parameters.values(), self.parameters.values()
             changed = {name: value for name, value in before.items() if now.get(name) != value}
@@ -203,4 +227,4 @@ class GearNode:
                 self.earlier, self.revision = changed, next(_revisions)
             if 'rotor_zero' in changed:
                 self.homed_zero = parameters.rotor_zero
-        self.parameters, self.fault, self._due = parameters, '', math.inf
+        self.parameters, self.fault, self._due, self.arm = parameters, '', math.inf, arm

@@ -15,6 +15,7 @@ _BODY = """\
 <span id="state" class="badge">connecting</span>
 <span id="message"></span>
 <button type="button" id="home" disabled>Home</button>
+<dl id="arm" aria-label="output angles of all actuators"></dl>
 </header>
 <main>
 <section class="live" aria-label="mechanism and values">

@@ -52,12 +52,13 @@ def show(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> Non
     def frame(pressed: str) -> tuple[list[Entry], bool]:
         nonlocal asked, asking
         view = watcher.view
-        others = [node.name for node in view.nodes if node.name != view.node]
+        names = [node.name for node in view.nodes]
+        place = names.index(view.node) + 1 if view.node in names else 0
+        others = [name for name in (*names[place:], *names[:place]) if name != view.node]
         if pressed == 'u':
             asked = watcher.ask({'do': 'undo', 'revision': view.revision})
         elif pressed == 'n' and others:
-            following = next((name for name in others if name > view.node), others[0])
-            asked = watcher.ask({'do': 'show', 'node': following})
+            asked = watcher.ask({'do': 'show', 'node': others[0]})
         elif (asking and pressed == 'y') or (pressed == 'h' and not view.question):
             # Without a question it is refused, and why.
             asked = watcher.ask({'do': 'home', 'revision': asking or view.revision})
@@ -84,7 +85,8 @@ def show(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> Non
 def rows_of(view: View) -> list[Entry]:
     """Convert a view to rows."""
     state = Entry(view.node or 'gearkin watch', view.state, view.message, view.tone)
-    return [state, *view.values, *view.diagnostics]
+    arm = '   '.join(f'{each.name} {each.value}' for each in view.arm)
+    return [state, *[Entry('all', arm)] * bool(arm), *view.values, *view.diagnostics]
 
 
 def guide(live: LiveCommissioning, console: Console, stopped: Callable[[], bool]) -> None:

@@ -51,8 +51,9 @@ class Guide:
 class View:
     """Everything that is shown at a moment."""
 
-    nodes: tuple[Entry, ...] = ()  # all that run, with joint and ratio
-    node: str = ''  # full name of the node; '' as long as there was none
+    nodes: tuple[Entry, ...] = ()  # all gears of nodes that run, with joint and ratio
+    node: str = ''  # label of the gear; '' as long as there was none
+    arm: tuple[Entry, ...] = ()  # the output angles of all actuators, if there are several
     revision: int = 0  # which a command repeats that answers this view
     state: str = 'no node'  # or connecting, connected, no output, ended, or fault
     tone: Tone = 'unusable'
@@ -76,18 +77,19 @@ def view_of(
     While `looking`, not all nodes may have been found yet.
     """
     nodes = tuple(map(_choice, gears))
-    state, message = _state_of(gear, [node.name for node in nodes])
+    state, message = _state_of(gear, [gear.name for gear in gears])
     if looking and state == 'no node':
         state, message = 'connecting', 'Looking for nodes.'
     view = View(nodes, state=state, tone=_TONES.get(state, 'fail'), message=message)
     if gear:
-        view = replace(view, node=gear.name, revision=gear.revision)
+        view = replace(view, node=gear.label, revision=gear.revision)
     if not (gear and gear.running):
         return view
     statuses = tuple(status_entry(s, time.monotonic()) for s in gear.statuses.values())
     percent = _number(_diagnostic(gear, 'preload', 'margin (% of the preload)'))
     margin = None if percent is None else percent / 100.0
     view = replace(view, values=tuple(values_of(gear)), diagnostics=statuses, margin=margin)
+    view = replace(view, arm=tuple(_angles(gear)))
     output, parameters = gear.joint(topics.OUTPUT_STATE), gear.parameters
     if state != 'connected' or not (output and parameters):
         return view
@@ -106,9 +108,17 @@ def view_of(
 def _choice(gear: GearNode) -> Entry:
     """Name a node that runs, with its joint and ratio once they are known."""
     if not (parameters := gear.parameters):
-        return Entry(gear.name, '')
+        return Entry(gear.label, '')
     joint = parameters.rotor_joint or 'the only joint'
-    return Entry(gear.name, f'{joint}, ratio {parameters.gear.gear_ratio}')
+    return Entry(gear.label, f'{joint}, ratio {parameters.gear.gear_ratio}')
+
+
+def _angles(gear: GearNode) -> Iterator[Entry]:
+    """Give the output angle of each actuator of an arm, as in the latest message of this gear."""
+    for name, parameters in gear.arm.items() if len(gear.arm) > 1 else ():
+        output = gear.joint(topics.OUTPUT_STATE, parameters.output_name)
+        angle = _degrees(output.position, 1) if output else 'none'
+        yield Entry(name, angle, tone=_freshness(output, parameters) if output else 'stale')
 
 
 def _state_of(gear: GearNode | None, running: Collection[str]) -> tuple[str, str]:
@@ -116,7 +126,7 @@ def _state_of(gear: GearNode | None, running: Collection[str]) -> tuple[str, str
     if gear is None:
         return 'no node', f'No gear_state_publisher is running. {start}'
     if not gear.seen:
-        hint = among(gear.name, running) if running else ''
+        hint = among(gear.name, {*running}) if running else ''
         return 'no node', f'{gear.name} is not running{hint}. {start}'
     if not gear.running:
         return 'ended', f'{gear.name} has ended. Waiting for it to start again.'

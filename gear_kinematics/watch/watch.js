@@ -101,6 +101,7 @@
     showState(now.state, now.tone, now.message);
     showNodes(now.nodes, now.node);
     allow(now.question, now.undo);
+    showEntries(find('arm'), now.arm);
     showEntries(find('values'), now.values);
     showEntries(find('diagnostics'), now.diagnostics);
     showCurve(now.output);

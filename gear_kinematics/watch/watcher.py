@@ -30,15 +30,16 @@ _SEARCH = 4.0  # s, in which nodes are found that announce themselves every 3 s
 class Watcher:
     """A context manager that watches a node, or the first that runs, in a separate thread."""
 
-    def __init__(self, node: str = '') -> None:
+    def __init__(self, node: str = '', actuator: str = '') -> None:
         self.view = View()
         self.drawn: tuple[Mechanism | None, float] = None, 0.0
         """The mechanism, if more than its ratio is known, and the module of its teeth, m."""
-        self._wanted = node and f'/{node.removeprefix("/")}'
+        self._wanted = f'/{node.removeprefix("/")} {actuator}'.rstrip() if node else ''
+        self._actuator = actuator  # of the first node that runs
         self._asked: SimpleQueue[tuple[Any, Future[Answer]]] = SimpleQueue()
         self._ending = Event()
         self._gear: GearNode | None = None
-        self._gears: dict[str, GearNode] = {}
+        self._gears: list[GearNode] = []
         self._live: LiveCommissioning | None = None
 
     def __enter__(self) -> Self:
@@ -93,7 +94,7 @@ class Watcher:
             try:
                 if self._live:
                     self._live.take(messages)
-                running = [gear for _, gear in sorted(self._gears.items()) if gear.running]
+                running = [gear for gear in self._gears if gear.running]
                 for gear in running:
                     gear.poll()
                 view = view_of(self._gear, running, looking=end < found)
@@ -108,12 +109,21 @@ class Watcher:
 
     def _look(self, graph: Graph) -> None:
         self._drivers.look(graph.drivers())
-        for name in sorted({*graph.gears, self._wanted} - {'', *self._gears}):
-            self._gears[name] = GearNode(self._node, name)
-        first = self._gears[graph.gears[0]] if graph.gears else None
-        going_on = self._gear if self._gear and self._gear.name in graph.gears else None
-        self._gear = self._gears.get(self._wanted) or going_on or first or self._gear
-        for gear in self._gears.values():
+        wanted, _, actuator = self._wanted.partition(' ')
+        for name in sorted({*graph.gears, wanted} - {'', *(gear.name for gear in self._gears)}):
+            own = actuator if name == wanted else self._actuator
+            self._gears.append(GearNode(self._node, name, own))
+        for gear in [*self._gears]:
+            known = {other.actuator for other in self._gears if other.name == gear.name}
+            others = [GearNode(self._node, gear.name, own) for own in gear.arm if own not in known]
+            self._gears += others
+        self._gears.sort(key=_place)
+        running = [gear for gear in self._gears if gear.name in graph.gears]
+        going_on = self._gear if self._gear in running else None
+        named = (gear for gear in self._gears if self._wanted in {gear.label, gear.name})
+        asked = next(named, None)
+        self._gear = asked or going_on or next(iter(running), None) or self._gear
+        for gear in self._gears:
             gear.look(graph, shown=gear is self._gear)
 
     def _ready_gear(self, command: Mapping[str, Any]) -> GearNode:
@@ -144,7 +154,7 @@ class Watcher:
                 values = live.changes(gear)
                 done = f'{gear.name} has taken {", ".join(values) or "nothing new"}, until it ends'
                 gear.set(values, f'{done}; the file keeps them.', answer)
-            case {'do': 'show', 'node': str(node)} if node in self._gears:
+            case {'do': 'show', 'node': str(node)} if node in {g.label for g in self._gears}:
                 self._wanted = node
                 self._look(Graph(self._node))
                 answer.set_result(Answer('', done=True))
@@ -165,3 +175,8 @@ class Watcher:
             live = self._live = LiveCommissioning(Request(rotor=rotor, output=output))
         at_end = bool(asked.get('zero'))
         live.request = replace(live.request, ratio=ratio, zero_here='END' if at_end else None)
+
+
+def _place(gear: GearNode) -> tuple[str, int]:
+    """The place of a gear in a list: by its node, and in the order of the actuators."""
+    return gear.name, [*gear.arm, gear.actuator].index(gear.actuator)

@@ -25,8 +25,10 @@ from rich.console import Console
 from sensor_msgs.msg import JointState
 from watching import WatcherStandIn
 
+from gear_kinematics.commands import init
 from gear_kinematics.commands.cli import main
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.parameters.arm import load_actuators
 from gear_kinematics.ros.graph import Graph
 from gear_kinematics.watch import drivers
 from gear_kinematics.watch.drivers import DriverTopic
@@ -102,6 +104,8 @@ def gear_node(**changes):
     kept = {'home file': 'lost at restart: set home_file'}
     node = {
         'name': '/left/gear_state_publisher',
+        'actuator': '',
+        'arm': {},
         'revision': 7,
         'running': True,
         'seen': True,
@@ -115,7 +119,9 @@ def gear_node(**changes):
         'earlier': {},
         'homed_zero': None,
     }
-    return SimpleNamespace(**{**node, **changes})
+    gear = SimpleNamespace(**{**node, **changes})
+    gear.label = f'{gear.name} {gear.actuator}'.rstrip()
+    return gear
 
 
 def test_values_are_those_of_the_topics():
@@ -158,12 +164,17 @@ def test_only_a_bounded_part_of_diagnostics_is_kept():
 
     node = object.__new__(GearNode)
     node.name, node.running, node.statuses, node._zero = '/left/gear', False, {}, ''
-    node._outputs = SimpleNamespace(poll=lambda: None)
+    node._outputs, node.actuator = SimpleNamespace(poll=lambda: None), ''
     for subjects in (['rotor input', *map(str, range(1000))], ['rotor input']):
         node._diagnostics = SimpleNamespace(take=partial(taken, *subjects))
         node.poll()
     assert len(node.statuses) == 50
     assert node.statuses['rotor input'].message == TEXT[:1000]
+    node.statuses, node.actuator = {}, 'elbow'
+    subjects = 'shoulder: rotor input', 'elbow: rotor input', 'elbow: preload'
+    node._diagnostics = SimpleNamespace(take=partial(taken, *subjects))
+    node.poll()
+    assert [*node.statuses] == ['rotor input', 'preload']
 
 
 @pytest.mark.parametrize(('margin', 'tone'), [('0.75', ''), ('-0.3', 'bad')])
@@ -237,8 +248,8 @@ def test_nodes_that_run_are_listed_with_joint_and_ratio():
 
 
 def test_another_node_is_shown_when_chosen_or_when_the_first_has_ended(monkeypatch):
-    def node(_, name):
-        gear = gear_node(name=name)
+    def node(_, name, actuator):
+        gear = gear_node(name=name, actuator=actuator)
         gear.look = lambda graph, shown: looked.append((name, name in graph.gears, shown))
         return gear
 
@@ -253,15 +264,50 @@ def test_another_node_is_shown_when_chosen_or_when_the_first_has_ended(monkeypat
     watcher._drivers, watcher._node = SimpleNamespace(look=lambda _: None), None
     assert look() == []
     assert look('/b') == [('/b', True, True)]
-    assert look('/a', '/b') == [('/b', True, True), ('/a', True, False)]
-    assert look('/a') == [('/b', False, False), ('/a', True, True)]
+    assert look('/a', '/b') == [('/a', True, False), ('/b', True, True)]
+    assert look('/a') == [('/a', True, True), ('/b', False, False)]
     both = SimpleNamespace(gears=['/a', '/b'], drivers=list)
     monkeypatch.setattr('gear_kinematics.watch.watcher.Graph', lambda _: both)
     watcher._do({'do': 'show', 'node': '/b'}, Future())
     assert watcher._gear.name == '/b'
-    assert look('/a') == [('/b', False, True), ('/a', True, False)]  # it was asked for
+    assert look('/a') == [('/a', True, False), ('/b', False, True)]  # it was asked for
     with pytest.raises(ValueError, match='not possible'):
         watcher._do({'do': 'show', 'node': '/nobody'}, Future())
+    # An arm: once its actuators are known, each can be chosen.
+    watcher._gear.actuator, watcher._gear.arm = 'shoulder', {'shoulder': None, 'elbow': None}
+    watcher._gear.label = '/b shoulder'
+    look('/a', '/b')
+    assert [gear.label for gear in watcher._gears] == ['/a', '/b shoulder', '/b elbow']
+    watcher._do({'do': 'show', 'node': '/b elbow'}, Future())
+    assert (watcher._gear.name, watcher._gear.actuator) == ('/b', 'elbow')
+
+
+def test_all_angles_of_an_arm_are_in_a_row():
+    arm = {
+        name: replace(NodeParameters.load(), actuator=name, output_joint=joint, gear_ratio='-3')
+        for name, joint in {'shoulder': 'lift', 'elbow': 'bend', 'hand': 'turn'}.items()
+    }
+    arm = {name: replace(each, frame_prefix=f'{name}_') for name, each in arm.items()}
+    joints = {
+        'lift': JointValue(0.5 * math.pi, None, 0.001),
+        'bend': JointValue(-1e-9, None, 90.0),
+    }
+    gear = gear_node(
+        arm=arm,
+        actuator='shoulder',
+        parameters=arm['shoulder'],
+        joint=lambda topic, name='lift': joints.get(name) if topic == 'output_state' else None,
+    )
+    view = view_of(gear, [gear])
+    assert view.arm == (
+        Entry('shoulder', '90.0°'),
+        Entry('elbow', '0.0°', tone='stale'),
+        Entry('hand', 'none', tone='stale'),
+    )
+    label = '/left/gear_state_publisher shoulder'
+    assert (view.node, [node.name for node in view.nodes]) == (label, [label])
+    said = line(rows_of(view))
+    assert said.startswith(f'{label} connected; all shoulder 90.0°   elbow 0.0°   hand none; ')
 
 
 @pytest.mark.live
@@ -292,6 +338,27 @@ def test_parameters_of_an_odd_type_are_a_fault():
     assert not node.parameters
 
 
+def test_an_actuator_of_an_arm_has_its_own_parameters_and_service():
+    """The first that the node has is taken for the one that is not named."""
+    made, asked = [], []
+    given = {'actuators': ['shoulder', 'elbow'], 'elbow.gear_ratio': '-51', 'rotor_zero': 1.0}
+    ros = SimpleNamespace(create_client=lambda _, name: made.append(name), destroy_client=print)
+    for actuator, ratio in {'': '', 'elbow': '-51'}.items():
+        node = object.__new__(GearNode)
+        node.name, node.actuator, node._node, node.homing = '/arm', actuator, ros, None
+        node.parameters, node.statuses = None, {}
+        node._take_parameters(given)
+        assert (node.label, node.fault) == (f'/arm {actuator or "shoulder"}', '')
+        assert (node.parameters.gear_ratio, node.parameters.rotor_zero) == (ratio, 1.0)
+        node._client = SimpleNamespace(set_parameters_atomically=lambda p, _: asked.extend(p))
+        node.set({'rotor_zero': 2.0}, 'done', Future())
+    assert made == ['/arm/shoulder/home']
+    assert [each.name for each in asked] == ['shoulder.rotor_zero', 'elbow.rotor_zero']
+    node.actuator = 'elbo'
+    node._take_parameters(given)
+    assert node.fault.startswith("it has no actuator 'elbo'; did you mean `elbow`?")
+
+
 @pytest.mark.parametrize(
     ('zeros', 'earlier', 'lost'),
     [
@@ -309,6 +376,7 @@ def test_zero_that_a_node_has_lost_is_known(zeros, earlier, lost):
     """Zeros as they are read, and None where the node starts again."""
     node = object.__new__(GearNode)
     node.parameters, node.homed_zero, node.earlier, node.revision = None, None, {}, 0
+    node.actuator = ''
     for before, zero in pairwise([None, *zeros]):
         revision = node.revision
         if zero is None:
@@ -553,7 +621,84 @@ def test_init_writes_what_is_named(listening, capsys):
     assert f'{command}/motor/joint_states\n' in capsys.readouterr().out
 
 
-@pytest.mark.usefixtures('listening')
+ARM = (
+    DriverTopic('/arm/motors', ('shoulder', 'wrist 1', '2'), 250.0),
+    DriverTopic('/left/output_state', ('shoulder',), 250.0),
+)
+
+
+def test_init_sets_up_all_motors_of_an_arm(listening, monkeypatch, capsys):
+    monkeypatch.setattr(drivers, 'listen', lambda: list(ARM))
+    file, ratios = listening / 'arm.yaml', ['-101', 'wrist 1=50.5']
+    assert main(['init', '--arm', '-o', 'arm.yaml', '--ratio', *ratios]) == 0
+    assert {
+        name: (each.rotor_joint, each.gear_ratio) for name, each in load_actuators(file).items()
+    } == {
+        'shoulder': ('shoulder', '-101'),
+        'wrist_1': ('wrist 1', '101/2'),
+        'joint_2': ('2', '-101'),
+    }
+    command = 'gear_state_publisher --ros-args --params-file arm.yaml -r rotor_state:=/arm/motors'
+    assert command in (said := capsys.readouterr().out)
+    assert 'arm.yaml: added shoulder, wrist_1, joint_2. Start the node:' in said
+    assert f'{command}\n' in file.read_text('utf-8')
+    one = ['init', '--actuator', 'hand', '--topic', '/left/output_state', '-o', 'arm.yaml']
+    assert main([*one, '--teeth', '11/10']) == 2
+    assert "rotor_joint 'shoulder' belongs to shoulder and hand" in capsys.readouterr().err
+    monkeypatch.setattr(drivers, 'listen', lambda: list(DRIVERS))
+    one = ['init', '--actuator', 'hand', '--joint', 'm1', '-o', 'arm.yaml']
+    assert main([*one, '--teeth', '11/10']) == 0
+    hand = load_actuators(file)['hand']
+    assert (hand.rotor_joint, hand.gear.gear_ratio, hand.ring_teeth) == ('m1', -10, 11)
+    assert '# The joint m1 on /motor/joint_states, with the gear ratio -10' in file.read_text()
+    both = '/arm/motors, /motor/joint_states'
+    assert f'remap the drivers of {both}\n' in capsys.readouterr().err
+    before = file.read_text('utf-8')
+    monkeypatch.setattr(drivers, 'listen', None)  # before anything is listened to
+    assert main([*one, '--ratio', '3']) == 2
+    assert 'arm.yaml: hand is in it already' in capsys.readouterr().err
+    assert file.read_text('utf-8') == before
+
+
+@pytest.mark.parametrize(
+    ('heard', 'arguments', 'cause'),
+    [
+        (ARM, ['--ratio', 'shoulder=-3'], 'which ratio has the gear of wrist 1? Repeat with it'),
+        (ARM, ['--ratio', 'sholder=-3'], "no joint 'sholder'; did you mean `shoulder`?"),
+        (ARM, ['--ratio', '-3', '-5'], 'one ratio for all joints, or one for each'),
+        (ARM, ['--joint', 'shoulder'], 'leave out --actuator and --joint'),
+        (DRIVERS[1:], ['--ratio', '3'], 'which topic has the joints of the arm?'),
+        (
+            [DRIVERS[0], DriverTopic('/b', ('m2',), 9.0)],
+            ['--ratio', '3'],
+            'which topic has the joints of the arm? Repeat with --topic: /b, /motor/joint_states',
+        ),
+        ([DriverTopic('/b', ('m.2', 'm_2'), 9.0)], ['--ratio', '3'], 'nearly the same name'),
+    ],
+)
+def test_init_writes_no_arm_that_is_not_known(
+    listening, monkeypatch, capsys, heard, arguments, cause
+):
+    monkeypatch.setattr(drivers, 'listen', lambda: list(heard))
+    assert main(['init', '--arm', *arguments]) == 2
+    assert cause in capsys.readouterr().err
+    assert not list(listening.iterdir())
+
+
+def test_init_asks_for_the_ratio_of_each_joint(listening, monkeypatch, capsys):
+    """Enter repeats the last one."""
+    monkeypatch.setattr(drivers, 'listen', lambda: list(ARM))
+    monkeypatch.setattr(init, 'can_ask', lambda: True)
+    answers = iter(['-101', '', '50.5'])
+    monkeypatch.setattr('builtins.input', lambda question: print(question) or next(answers))
+    assert main(['init', '--arm']) == 0
+    said = capsys.readouterr().out
+    assert 'Ratio of the gear of wrist 1, negative if' in said
+    assert said.count(' (Enter: -101): ') == 2
+    ratios = [each.gear_ratio for each in load_actuators(listening / 'actuator.yaml').values()]
+    assert ratios == ['-101', '-101', '101/2']
+
+
 @pytest.mark.usefixtures('listening')
 def test_init_questions_velocities_that_contradict_the_positions(monkeypatch, capsys):
     moving = [
