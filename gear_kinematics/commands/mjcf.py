@@ -51,7 +51,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> ExitCode:
     """Write the model; with MuJoCo installed, it is checked by loading it."""
     check_targets(options, {'--output': options.output})
-    gear = TwinGear.load(options.config or default_config(), options.node, options.calibration)
+    config = options.config or default_config()
+    gear = TwinGear.load(config, options.node, options.calibration, options.actuator)
     gear, notes = measured(gear, options.measured)
     if notes:
         complain(f'not in the reports: {"; ".join(notes)}')

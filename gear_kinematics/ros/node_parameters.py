@@ -57,10 +57,16 @@ def declared(
     return {name: [] if value is None else value for name, value in values.items()}
 
 
-def declared_actuators(node: Node) -> dict[str, NodeParameters]:
+def declared_actuators(
+    node: Node,
+    others: Mapping[str, Declaration] = MappingProxyType({}),
+    default: Callable[[str], Any] = default_value,
+    shared: Mapping[str, Declaration] = PARAMETERS,
+) -> dict[str, NodeParameters]:
     """Declare the parameters of all actuators of a node; returns their values by actuator.
 
-    Those of an arm are declared for each actuator, except `COMMON` ones.
+    Those of an arm are declared for each actuator, except `COMMON` ones, and so are `others`; the
+    arguments are those of `declared`.
 
     Raises:
         ParameterException: if a value has a wrong type, or is refused.
@@ -68,14 +74,16 @@ def declared_actuators(node: Node) -> dict[str, NodeParameters]:
     """
     given = {name: _plain(each.value) for name, each in given_parameters(node).items()}
     if not given.get('actuators'):
-        return actuators_of(declared(node))
-    if faults := faults_in(given):
+        return actuators_of(declared(node, others, default, shared))
+    if faults := faults_in(given, others):
         raise ValueError('; '.join(faults))
     actuators = actuators_of(given)
     values: dict[str, Any] = {}
     for name, parameters in actuators.items():
         own = parameters.values()
-        known = {**PARAMETERS} | branch_parameters(own['branches'])
+        known = {**shared, **branch_parameters(own['branches']), **others}
+        for key in others:
+            own[key] = given.get(full_name(name, key), given.get(key, default(key)))
         common = {key: key for key in COMMON if key not in values}
         named = common | {full_name(name, key): key for key in known if key not in COMMON}
         values |= {full: own[key] for full, key in named.items()}

@@ -1,14 +1,15 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The node gear_simulator: an actuator without hardware, in real time."""
+"""The node gear_simulator: an actuator, or those of an arm, without hardware, in real time."""
 
 import math
 import time
-from collections.abc import Collection
-from dataclasses import replace
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
 from functools import partial
 from importlib.util import find_spec
+from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
@@ -20,9 +21,10 @@ from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
 from gear_kinematics.parameters import PARAMETERS, NodeParameters, default_value
+from gear_kinematics.parameters.arm import full_name
 from gear_kinematics.parameters.files import require_any
 from gear_kinematics.ros.drivers import DEPTH
-from gear_kinematics.ros.node_parameters import declared, fault_of
+from gear_kinematics.ros.node_parameters import declared_actuators, fault_of
 from gear_kinematics.ros.outputs import Outputs, PublishingNode
 from gear_kinematics.twin import parameters as twin
 from gear_kinematics.twin.driver import Command, Driver
@@ -39,7 +41,7 @@ _GREATEST_LOAD = 1e6  # N·m
 
 
 class GearSimulator(PublishingNode):
-    """Moves a simulated gear, and publishes its encoders as drivers do."""
+    """Moves simulated gears, and publishes their encoders as drivers do."""
 
     def __init__(self, *, parameter_files: Collection[Path] = (), **options: Any) -> None:
         """Declare the parameters, open the topics and begin.
@@ -56,51 +58,55 @@ class GearSimulator(PublishingNode):
             raise ValueError(fault)
         # What a file leaves out is as in gear_state_publisher with that file.
         shared = default_value if parameter_files else twin.default_value
-        values = declared(
+        actuators = declared_actuators(
             self,
             twin.PARAMETERS,
             lambda name: (twin.default_value if name in twin.PARAMETERS else shared)(name),
             {name: replace(each, read_only=True) for name, each in PARAMETERS.items()},
         )
-        parameters, own = NodeParameters.of(values), twin.TwinParameters.of(values)
-        gear = TwinGear.of(parameters, own, files.get(parameters.calibration))
-        self._model = _make_model(own.model, gear)
-        self._driver = Driver(
-            self._model,
-            max_torque=own.max_rotor_torque,
-            rotor_counts=own.rotor_counts,
-            output_counts=own.output_counts,
-            dropout=own.dropout,
-        )
-        self._joint, self._load = parameters.rotor_joint, 0.0
-        self._period = round(SECOND / own.rate)
+        values = {name: each.value for name, each in self.get_parameters_by_prefix('').items()}
+        own = {name: twin.TwinParameters.of(values, name) for name in actuators}
+        if len({(each.rate, each.dropout) for each in own.values()}) > 1:
+            raise ValueError('rate and dropout are those of all actuators')
+        self._gears = [
+            SimulatedGear.of(parameters, own[name], files)
+            for name, parameters in actuators.items()
+        ]
+        rate = next(iter(own.values())).rate
+        self._period = round(SECOND / rate)
         self._outputs = Outputs(self, lambda _: None, self._note_unsent)
         qos = QoSProfile(depth=DEPTH)
-        output = parameters.output_encoder_joint or parameters.output_joint
-        self._joints = []
-        for topic, joint, read in (
-            (topics.ROTOR_STATE, self._joint or 'rotor', self._driver.rotor),
-            (topics.OUTPUT_ENCODER, output, self._driver.output),
+        self._encoders = []
+        for topic, joints, read in (
+            (topics.ROTOR_STATE, [gear.joint or 'rotor' for gear in self._gears], Driver.rotor),
+            (topics.OUTPUT_ENCODER, [gear.output_joint for gear in self._gears], Driver.output),
         ):
             self._outputs.create(topic, JointState, qos)
-            template = JointStateTemplate([joint], velocity=True, effort=True)
-            self._joints.append((topic, template, read))
+            template = JointStateTemplate(joints, velocity=True, effort=True)
+            self._encoders.append((topic, template, read))
         self.create_subscription(JointState, topics.ROTOR_COMMAND, self._on_command, qos)
-        self.create_subscription(Float64, topics.LOAD_TORQUE, self._on_load, qos)
-        for shaft in ('output', 'rotor'):
-            self.create_service(SetBool, f'~/lock_{shaft}', partial(self._lock, shaft))
-        self.create_service(Trigger, '~/power_cycle', self._power_cycle)
-        self.create_service(Trigger, '~/wear', self._wear)
-        self.get_logger().info(
-            f'simulating a gear of ratio {parameters.gear.gear_ratio} with '
-            f'{type(self._model).__name__} at {own.rate:g} Hz'
-        )
+        for gear in self._gears:
+            self._open(gear, qos)
+        gears = ', '.join(gear.title for gear in self._gears)
+        self.get_logger().info(f'simulating {gears} at {rate:g} Hz')
         self._offset = 0
         """Of the node's clock, ns."""
         self._due = time.monotonic_ns() + self._period
         """When the next state is due, ns of a steady clock."""
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(self._period / SECOND, self._step, clock=steady)
+
+    def _open(self, gear: 'SimulatedGear', qos: QoSProfile) -> None:
+        """Open the load and the services of a gear."""
+        name = f'{gear.name}/' * bool(gear.name)
+        self.create_subscription(
+            Float64, f'{name}{topics.LOAD_TORQUE}', partial(self._on_load, gear), qos
+        )
+        for shaft in ('output', 'rotor'):
+            service = f'~/{name}lock_{shaft}'
+            self.create_service(SetBool, service, partial(_lock, gear.model, shaft))
+        self.create_service(Trigger, f'~/{name}power_cycle', partial(_power_cycle, gear.driver))
+        self.create_service(Trigger, f'~/{name}wear', partial(self._wear, gear))
 
     def _step(self) -> None:
         """Let the time pass that has passed, and publish the states of it."""
@@ -112,15 +118,16 @@ class GearSimulator(PublishingNode):
             self._due += late
         self._compare_clocks()
         while self._due <= now:
-            self._driver.advance(self._period / SECOND, self._load)
-            if self._model.notice:
-                self._warn(self._model.notice)
-                self._model.notice = ''
-            stamp = max(self._due + self._offset, 0)
+            for gear in self._gears:
+                gear.driver.advance(self._period / SECOND, gear.load)
+                if gear.model.notice:
+                    self._warn(gear.said(gear.model.notice))
+                    gear.model.notice = ''
+            stamp, drivers = max(self._due + self._offset, 0), [g.driver for g in self._gears]
             self._outputs.send(
-                (topic, template.encode(stamp, read()))
-                for topic, template, read in self._joints
-                if not self._driver.drops()
+                (topic, template.encode(stamp, [*chain(*zip(*map(read, drivers), strict=True))]))
+                for topic, template, read in self._encoders
+                if not drivers[0].drops()
             )
             self._due += self._period
 
@@ -133,44 +140,39 @@ class GearSimulator(PublishingNode):
 
     def _on_command(self, message: JointState) -> None:
         """Follow a command; values that are absent or not finite are not commanded."""
-        only = len(message.name) == 1
-        joint = self._joint or (message.name[0] if only else '')
-        if joint not in message.name or not (self._joint or only):
-            fault = f'no joint {joint!r} in it{among(joint, message.name)}'
-            if not self._joint:
-                fault = f'{len(message.name)} joints in it: set rotor_joint to one of them'
+        names, joints = list(message.name), [gear.joint for gear in self._gears]
+        if joints == [''] and len(names) == 1:
+            joints = names
+        elif joints == ['']:
+            fault = f'{len(names)} joints in it: set rotor_joint to one of them'
             self._warn(f'{topics.ROTOR_COMMAND} rejected: {fault}')
             return
-        index = message.name.index(joint)
-        arrays = message.position, message.velocity, message.effort
-        values = (values[index] if index < len(values) else math.nan for values in arrays)
-        command = Command(*(value if math.isfinite(value) else None for value in values))
-        if any(value is not None for value in command):
-            self._driver.follow(command)
-        else:
-            self._warn(f'{topics.ROTOR_COMMAND} rejected: no value in it is finite')
+        commanded = [each for each in zip(self._gears, joints, strict=True) if each[1] in names]
+        if not commanded:
+            missing = ' or '.join(map(repr, joints))
+            fault = f'no joint {missing} in it{among(joints[0], names)}'
+            self._warn(f'{topics.ROTOR_COMMAND} rejected: {fault}')
+        for gear, joint in commanded:
+            index = names.index(joint)
+            arrays = message.position, message.velocity, message.effort
+            values = (values[index] if index < len(values) else math.nan for values in arrays)
+            command = Command(*(value if math.isfinite(value) else None for value in values))
+            if any(value is not None for value in command):
+                gear.driver.follow(command)
+            else:
+                fault = gear.said('no value in it is finite')
+                self._warn(f'{topics.ROTOR_COMMAND} rejected: {fault}')
 
-    def _on_load(self, message: Float64) -> None:
+    def _on_load(self, gear: 'SimulatedGear', message: Float64) -> None:
         if abs(message.data) <= _GREATEST_LOAD:  # NaN is not
-            self._load = message.data
+            gear.load = message.data
         else:
-            self._warn(
-                f'{topics.LOAD_TORQUE} rejected: {message.data:g} N·m is not within '
-                f'±{_GREATEST_LOAD:g} N·m'
-            )
+            fault = f'{message.data:g} N·m is not within ±{_GREATEST_LOAD:g} N·m'
+            self._warn(gear.said(f'{topics.LOAD_TORQUE} rejected: {fault}'))
 
-    def _lock(self, shaft: str, request: SetBool.Request, response: Any) -> Any:
-        setattr(self._model, f'{shaft}_locked', request.data)
-        return _told(response, f'the {shaft} is {"locked" if request.data else "free"}')
-
-    def _power_cycle(self, _: Trigger.Request, response: Any) -> Any:
-        self._driver.power_cycle()
-        position, *_ = self._driver.rotor()
-        return _told(response, f'the driver is on again: the rotor is free, at {position:.3f} rad')
-
-    def _wear(self, _: Trigger.Request, response: Any) -> Any:
-        angle = self.get_parameter('wear').value
-        gear = self._model.gear = self._model.gear.worn(angle)
+    def _wear(self, worn: 'SimulatedGear', _: Trigger.Request, response: Any) -> Any:
+        angle = self.get_parameter(full_name(worn.name, 'wear')).value
+        gear = worn.model.gear = worn.model.gear.worn(angle)
         left = f'a preload of {gear.preload:.2f} N·m is left'
         if not gear.preload:
             left = f'the output has a play of {1e3 * -gear.interference:.2f} mrad'
@@ -180,9 +182,63 @@ class GearSimulator(PublishingNode):
         self._warn(f'{publisher.topic_name} not sent: {error}')
 
 
+@dataclass(slots=True)
+class SimulatedGear:
+    """A gear with its motor and its encoders."""
+
+    name: str  # of the actuator; '' of the only one
+    joint: str  # of the rotor; '' takes the only one of a command
+    output_joint: str
+    model: Model
+    driver: Driver
+    load: float = 0.0  # N·m
+
+    @classmethod
+    def of(
+        cls, parameters: NodeParameters, own: twin.TwinParameters, files: Mapping[str, Path]
+    ) -> Self:
+        """Simulate the gear of an actuator; `files` are calibrations by values of parameters."""
+        gear = TwinGear.of(parameters, own, files.get(parameters.calibration))
+        model = _make_model(own.model, gear)
+        driver = Driver(
+            model,
+            max_torque=own.max_rotor_torque,
+            rotor_counts=own.rotor_counts,
+            output_counts=own.output_counts,
+            dropout=own.dropout,
+        )
+        output = parameters.output_encoder_joint or parameters.output_joint
+        return cls(parameters.actuator, parameters.rotor_joint, output, model, driver)
+
+    @property
+    def title(self) -> str:
+        """What is simulated, with the kind of the model."""
+        ratio = self.model.gear.parameters.gear.gear_ratio
+        return f'{self.name or "a gear"} of ratio {ratio} with {type(self.model).__name__}'
+
+    def said(self, text: str) -> str:
+        """Put the name of the actuator before a text, if it has one."""
+        return f'{self.name}: {text}' if self.name else text
+
+
+def _lock(model: Model, shaft: str, request: SetBool.Request, response: Any) -> Any:
+    setattr(model, f'{shaft}_locked', request.data)
+    return _told(response, f'the {shaft} is {"locked" if request.data else "free"}')
+
+
+def _power_cycle(driver: Driver, _: Trigger.Request, response: Any) -> Any:
+    driver.power_cycle()
+    position, *_ = driver.rotor()
+    return _told(response, f'the driver is on again: the rotor is free, at {position:.3f} rad')
+
+
 def _make_model(kind: str, gear: TwinGear) -> Model:
-    """Make the model that the parameter `model` selects; raises ImportError if it is missing."""
-    if kind == 'fast' or (kind == 'auto' and not find_spec('mujoco')):
+    """Make the model that the parameter `model` selects; raises ImportError if it is missing.
+
+    MuJoCo needs the bodies, which are unknown of a gear known by its ratio alone.
+    """
+    by_ratio = bool(gear.parameters.gear_ratio)
+    if kind == 'fast' or (kind == 'auto' and (by_ratio or not find_spec('mujoco'))):
         return FastModel(gear)
     from gear_kinematics.twin.mujoco_model import MujocoModel  # noqa: PLC0415, an extra
 

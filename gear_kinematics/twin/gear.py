@@ -123,19 +123,22 @@ class TwinGear:
         object.__setattr__(self, 'dead_bands', bands)
 
     @classmethod
-    def load(cls, config: Path, node: str = NODE, calibration: Path | None = None) -> Self:
+    def load(
+        cls, config: Path, node: str = NODE, calibration: Path | None = None, actuator: str = ''
+    ) -> Self:
         """Read a gear from a parameter file.
 
         Args:
             config: parameter file of ROS, such as config/simulated_actuator.yaml.
             node: name of the node whose parameters are read.
             calibration: calibration with the errors; None for the one named in the file, if any.
+            actuator: name of the actuator, in the file of an arm of several.
 
         Raises:
             ValueError: if a file cannot be used, or the gear cannot be simulated.
         """
-        shared = NodeParameters.load(config, node, PARAMETERS)
-        return cls.of(shared, TwinParameters.load(config, node), calibration)
+        shared = NodeParameters.load(config, node, PARAMETERS, actuator)
+        return cls.of(shared, TwinParameters.load(config, node, shared.actuator), calibration)
 
     @classmethod
     def of(

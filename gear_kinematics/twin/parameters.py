@@ -57,17 +57,28 @@ class TwinParameters:
     wear: float = parameter('What ~/wear takes off the flanks, rad at the output', 0.0, 1.0)
 
     @classmethod
-    def load(cls, path: Path, node: str) -> Self:
-        """Read those of a node from a file; raises ConfigError if a value is invalid."""
+    def load(cls, path: Path, node: str, actuator: str = '') -> Self:
+        """Read those of an actuator of a node from a file; ConfigError if a value is invalid."""
         given = given_parameters(path, node)
-        if faults := faults_of(given, PARAMETERS):
+        if faults := faults_of(_own(given, actuator), PARAMETERS):
             raise ConfigError(f'{path}: {"; ".join(faults)}')
-        return cls.of(given)
+        return cls.of(given, actuator)
 
     @classmethod
-    def of(cls, values: Mapping[str, Any]) -> Self:
-        """Create them from valid values by names in ROS; others have their defaults."""
-        return cls(**{name: values.get(name, default_value(name)) for name in PARAMETERS})
+    def of(cls, values: Mapping[str, Any], actuator: str = '') -> Self:
+        """Create those of an actuator from valid values by names in ROS.
+
+        Others are those of all actuators, or have their defaults.
+        """
+        own = _own(values, actuator)
+        return cls(**{name: own.get(name, default_value(name)) for name in PARAMETERS})
+
+
+def _own(values: Mapping[str, Any], actuator: str) -> dict[str, Any]:
+    """The values that hold for an actuator, by names without that of the actuator."""
+    prefix = f'{actuator}.'
+    own = {k.removeprefix(prefix): value for k, value in values.items() if k.startswith(prefix)}
+    return {**values, **own}
 
 
 PARAMETERS: Mapping[str, Parameter] = declared_in(TwinParameters)

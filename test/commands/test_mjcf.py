@@ -25,6 +25,10 @@ def test_the_model_goes_to_stdout_or_a_file(tmp_path):
     for _ in range(2):  # it replaces its own
         assert gearkin_here('mjcf', '-o', path).returncode == 0
     assert path.read_text('utf-8') == done.stdout
+    arm = default_config().with_name('simulated_arm.yaml')
+    elbow = gearkin_here('mjcf', '--config', arm, '--actuator', 'elbow')  # the same gear
+    assert (elbow.stdout, elbow.stderr) == (done.stdout, '')
+    assert 'choose one with --actuator' in refusal('mjcf', '--config', arm)
 
 
 def test_other_files_are_kept(tmp_path):

@@ -9,18 +9,21 @@ import subprocess
 import sys
 import time
 from itertools import pairwise
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 from live import Participant, rotor_state, stamp_of
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
+from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
 from gear_kinematics.parameters import ConfigError
-from gear_kinematics.ros.simulator import GearSimulator
+from gear_kinematics.parameters.files import given_parameters
+from gear_kinematics.ros.simulator import GearSimulator, SimulatedGear
 
 pytestmark = pytest.mark.live
 
@@ -230,19 +233,52 @@ def test_wear_takes_the_preload_and_then_leaves_play(bench):
     )
 
 
+def test_an_arm_follows_one_command_and_tells_all_joints_in_one_message(context):
+    """Positions by the ratios: 2.5 rad of the elbow's rotor, which counts backwards."""
+    file = Path(__file__).resolve().parents[2] / 'config/simulated_arm.yaml'
+    given = given_parameters(file, 'gear_simulator') | {'elbow.wear': 0.0027, 'rotor_counts': 0}
+    overrides = [Parameter(name, value=value) for name, value in given.items()]
+    node = GearSimulator(context=context, namespace='/arm', parameter_overrides=overrides)
+    sent, warnings = {}, []
+    node._outputs.send, node._warn = sent.update, warnings.append
+    command = JointState(name=['wrist_motor', 'tool', 'elbow_motor'], position=[10.0, 1.0, 2.5])
+    node._on_command(command)
+    for gear in node._gears:
+        gear.driver.advance(2.0, 0.0)
+    node._due = time.monotonic_ns()
+    node._step()
+    rotor, output = (
+        deserialize_message(sent[topic], JointState) for topic in ('rotor_state', 'output_encoder')
+    )
+    assert rotor.name == ['rotor', 'elbow_motor', 'wrist_motor']
+    assert output.name == ['shoulder', 'elbow', 'wrist']
+    assert rotor.position.tolist() == pytest.approx([0.0, 2.5, 10.0], abs=1e-3)
+    # Both branches are in mesh; the wrist has a play of 0.29 mrad.
+    expected = [0.0, 2.5 / 19.0, math.tau - 10.0 / 101.0]
+    assert output.position.tolist() == pytest.approx(expected, abs=3e-4)
+    assert len(rotor.velocity) == len(output.effort) == 3
+    node._on_command(JointState(name=['tool'], position=[1.0]))
+    fault = "no joint 'rotor' or 'elbow_motor' or 'wrist_motor' in it; there are: tool"
+    assert warnings == [f'rotor_command rejected: {fault}']
+    services = {each.srv_name for each in node.services}
+    assert {f'~/{gear.name}/wear' for gear in node._gears} <= services
+    worn = [node._wear(gear, None, SimpleNamespace()).message for gear in node._gears[:2]]
+    assert worn == 2 * ['the flanks wore off by 2.70 mrad: a preload of 0.31 N·m is left']
+    node.destroy_node()
+
+
 @pytest.mark.parametrize('notice', ['', 'the rotor is held'])
 def test_motion_that_is_not_that_of_the_gear_is_a_warning(notice):
     warnings, model = [], SimpleNamespace(notice=notice)
+    driver = SimpleNamespace(advance=lambda *_: None)
     node = SimpleNamespace(
         _due=time.monotonic_ns(),
         _period=10**12,
         _compare_clocks=lambda: None,
-        _driver=SimpleNamespace(advance=lambda *_: None),
-        _load=0.0,
-        _model=model,
+        _gears=[SimulatedGear('', 'rotor', 'output', model, driver)],
         _offset=0,
         _outputs=SimpleNamespace(send=tuple),
-        _joints=(),
+        _encoders=(),
         _warn=warnings.append,
     )
     GearSimulator._step(node)
@@ -289,7 +325,8 @@ def test_parameters_that_cannot_be_are_refused(context, tmp_path):
 def test_without_a_name_the_only_joint_of_a_command_is_followed(names, followed, said):
     positions, warnings = [], []
     driver = SimpleNamespace(follow=lambda command: positions.append(command.position))
-    node = SimpleNamespace(_joint='', _driver=driver, _warn=warnings.append)
+    gear = SimulatedGear('', '', 'output', None, driver)
+    node = SimpleNamespace(_gears=[gear], _warn=warnings.append)
     command = JointState(name=names, position=[1.0, 2.0][: len(names)])
     GearSimulator._on_command(node, command)
     assert (positions, ''.join(warnings)) == (followed, said)
