@@ -8,6 +8,7 @@ the positions of the bodies are periodic in the turns of the rotor.
 
 import math
 from fractions import Fraction
+from functools import partial
 from types import ModuleType
 from typing import Any, NamedTuple, overload
 
@@ -43,6 +44,10 @@ class RotorPosition(NamedTuple):
     def since(self, before: 'RotorPosition') -> float:
         """Travel from another position, rad."""
         return TURN * (self.turns - before.turns) + (self.angle - before.angle)
+
+
+# For what each message takes: faster than RotorPosition(...).
+_position = partial(tuple.__new__, RotorPosition)
 
 
 class RotorSample(NamedTuple):
@@ -100,7 +105,7 @@ def split_turns(angle: Any) -> Any:
     turns, rest = nearest_turn(turns, rest - turns * _TURN_HIGH - turns * _TURN_LOW, xp)
     if not few:
         turns = many + turns
-    return RotorPosition(turns, rest - turns * TURN_TAIL)
+    return _position((turns, rest - turns * TURN_TAIL))
 
 
 def nearest_turn(turns: Any, rest: Any, xp: ModuleType) -> tuple[Any, Any]:
@@ -268,9 +273,9 @@ class RotorTurns:
         Raises:
             RuntimeError: before the first update.
         """
-        turns, angle = self._known_position()
+        turns, angle = self.position or self._known_position()
         zero_turns, zero_angle = zero
-        return RotorPosition(direction * (turns - zero_turns), direction * (angle - zero_angle))
+        return _position((direction * (turns - zero_turns), direction * (angle - zero_angle)))
 
     def home(self, rotor_angle: float, direction: int) -> float:
         """Declare that the rotor angle φ2 is `rotor_angle` now; the turns are known from now on.

@@ -9,10 +9,12 @@ import numpy as np
 from gear_kinematics.bag import Bag, DamagedBagError
 from gear_kinematics.measurement.commissioning.encoder_range import find_range
 from gear_kinematics.measurement.encoder_step import Step
+from gear_kinematics.report.document import counted
 from gear_kinematics.state.effort_field import EffortField, questioned
 from gear_kinematics.state.velocity_field import VelocityField, VelocityMeaning, contradiction
 from gear_kinematics.wire.batches import decode_joint_states
 from gear_kinematics.wire.cdr import SECOND
+from gear_kinematics.wire.joint_reader import ARRAY_SIZES
 
 _MOST = 500_000
 """Messages that are looked at; they take about 200 bytes each."""
@@ -33,9 +35,12 @@ def questions(
         ratio: of the gear, if it is known, to recognise velocities of the output.
     """
     states = decode_joint_states(data, joint)
+    if unfit := int(np.count_nonzero(states.joint_found & ~states.arrays_fit)):
+        yield f'{counted(unfit, "message")} rejected: {ARRAY_SIZES}'
     stamp = np.where(states.stamp == 0, np.asarray(received, np.int64), states.stamp)
     newest = np.append(np.iinfo(np.int64).min, np.maximum.accumulate(stamp)[:-1])
-    rows = np.flatnonzero(np.isfinite(states.values[:, 0]) & (stamp > newest))
+    usable = states.arrays_fit & np.isfinite(states.values[:, 0])
+    rows = np.flatnonzero(usable & (stamp > newest))
     if len(rows) < _FEWEST:
         return
     stamp, values = stamp[rows], states.values[rows]

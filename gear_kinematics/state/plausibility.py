@@ -114,11 +114,10 @@ class Plausibility:
         last = self._last
         before, changed, former, _ = last
         step = position - before
-        change = step - former
-        even = self._even
-        if -even <= change <= even and step:
+        even, shortest, longest = self._even
+        if step and -even <= step - former <= even:
             span = stamp - changed
-            if self._shortest <= span <= self._longest:
+            if shortest <= span <= longest:
                 self._former = last
                 self._last = position, stamp, step, span
                 self._stamp = stamp
@@ -191,9 +190,9 @@ class Plausibility:
         return True
 
     def _look_always(self) -> None:
-        self._even, self._shortest, self._longest = -1.0, 0, 0
-        """rad and ns: a step that differs from the last by at most so much, in a time within these
-        limits, is in reach, and tells no more of the resolution."""
+        self._even = -1.0, 0, 0
+        """rad, ns, ns: a step that differs from the last by at most so much, in a time within
+        these limits, is in reach, and tells no more of the resolution."""
 
     def _look_closer(self, position: float, step: float, stamp: int) -> Belief:
         """Judge a reading by all that is known."""
@@ -232,10 +231,10 @@ class Plausibility:
             if shortest <= span <= longest:
                 # A step that differs tells of the resolution, as long as that is coarse.
                 known = self.finest == 0.5 * FLOOR
-                self._even = self.limits.even_step(usual) if known else _EQUAL
+                even = self.limits.even_step(usual) if known else _EQUAL
                 if self.period:
-                    self._even = min(self._even, 0.25 * self.period)
-                self._shortest, self._longest = math.ceil(shortest), int(longest)
+                    even = min(even, 0.25 * self.period)
+                self._even = even, math.ceil(shortest), int(longest)
         return BELIEVED
 
     def _hold(self, position: float, stamp: int) -> Belief:

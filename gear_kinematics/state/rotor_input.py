@@ -42,6 +42,8 @@ from gear_kinematics.wire.joint_reader import (
     RejectedInputError,
 )
 
+_sample = partial(tuple.__new__, RotorSample)
+
 
 class RotorInput:
     """Processes rotor_state messages and counts what is wrong with them."""
@@ -273,8 +275,9 @@ class RotorInput:
         return RotorSamples.of(taken, np.append(rejected, np.array(disordered, np.int64)))
 
     def _take_row(self, stamp: int, row: Sequence[float]) -> RotorSample:
-        position, velocity, effort = row
-        return self._take(stamp, position, _number_or_none(velocity), _number_or_none(effort))
+        position, *others = row
+        velocity, effort = (None if math.isnan(other) else other for other in others)
+        return self._take(stamp, position, velocity, effort)
 
     def _clock(self, now: Callable[[], int]) -> int:
         """The stamp for a message without one."""
@@ -290,7 +293,7 @@ class RotorInput:
         last = self.last
         if last is None:
             self._leave_others()
-        elif stamp <= last.stamp:
+        elif stamp <= last[0]:  # its stamp, by the fastest way
             self._check_order(stamp, last.stamp)
         if self._disorder.stamps and last:
             time = self._disorder.set_back(last.stamp, stamp)
@@ -307,13 +310,13 @@ class RotorInput:
         if effort is not None and not self.effort_field.real:
             effort = self.effort_field.believed(self._unwrapped(position), effort)
         direction = self._parameters.rotor_direction
-        self.last = RotorSample(
+        self.last = sample = _sample((
             stamp,
             self.turns.relative_to(self.zero, direction),
             None if velocity is None else direction * velocity,
             None if effort is None else self._torque_factor * effort,
-        )
-        return self.last
+        ))  # fmt: skip
+        return sample
 
     def _compare(self, stamp: int, position: float, velocity: float | None) -> float | None:
         """Update the turns; returns the velocity, unless the positions contradict it."""
@@ -343,7 +346,3 @@ class RotorInput:
             self.turns.reset()
             self.plausibility.reset()
             self.velocity_field.restart()
-
-
-def _number_or_none(value: float) -> float | None:
-    return None if math.isnan(value) else value

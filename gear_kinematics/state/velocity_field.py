@@ -121,7 +121,8 @@ class VelocityField:
         slopes = [(q - p) / (t - s) * 1e9 for (s, p, _), (t, q, _) in pairwise(readings)]
         if any(abs(each - slope) > _STEADY * abs(slope) for each in slopes):
             return
-        if any(abs(velocity - mean) > _STEADY * abs(mean) for _, _, velocity in readings):
+        most = _STEADY * max(abs(mean), abs(slope))
+        if any(abs(velocity - mean) > most for _, _, velocity in readings):
             return
         self._decide(mean / slope if slope else math.inf)
 

@@ -71,6 +71,12 @@ def test_topics_that_are_not_cdr_are_counted(shared_path, capsys):
     assert battery.startswith('  /battery ')
 
 
+def test_messages_with_arrays_of_unequal_length_are_counted(shared_path, capsys):
+    bag = str(shared_path('data/faults/four_names_three_positions.mcap'))
+    assert main(['info', bag, '--joint', 'm1']) == 0
+    assert '/joint_states: 300 messages rejected: array sizes' in capsys.readouterr().out
+
+
 @pytest.mark.slow
 def test_real_recordings_are_described(shared_path, capsys):
     """Bags of others: servos of Feetech in ROS 2, and joints of a PR2 in ROS 1."""

@@ -46,6 +46,13 @@ def test_wrong_velocities_are_named_and_not_passed_on(factor, meaning):
     assert samples[-1].velocity is None
 
 
+def test_velocities_that_are_noise_around_zero_are_not_used():
+    rotor = RotorInput(SETTINGS)
+    samples = [rotor.accept(data, int) for data in messages(0.0, scatter=2.0)]
+    assert rotor.velocity_field.contradicts
+    assert samples[-1].velocity is None
+
+
 def test_velocities_of_an_encoder_that_is_stuck_contradict_it():
     rotor = RotorInput(SETTINGS)
     for k in range(1000):
