@@ -32,7 +32,7 @@ _BLOCKS = 23
 _MOST = 10_000
 """Samples that are used: more tell no more of errors that are correlated."""
 _MEANS = 115
-"""Means of successive samples whose scatter tells how far errors are correlated, at least."""
+"""Means of successive samples, at least, whose scatter tells how far errors are correlated."""
 _ORDERS = 48, 4
 """Of output and rotor: as 1/k, they add up to a random walk, as of pitch errors. With 24, 3 of 200
 simulated recordings of 340° were outside of twice the interval."""
@@ -74,12 +74,13 @@ class EncoderFit:
         self._angles = rotor, output, time, way
         kept = np.flatnonzero(way * (time - late >= time[0]) * (time - late <= time[-1]))
         kept = kept[:: -(-len(kept) // _MOST) or 1]
-        if len(kept) < 2 * _BLOCKS:
+        if len(kept) < _MEANS:
             raise RecordingError(f'{len(kept)} samples in motion are too few')
         around = (time[kept] - late + k * STEP for k in (-2, -1, 0, 1, 2))
         first, early, at, after, last = (np.interp(when, time, rotor) for when in around)
         speed = slope * (after - early) / (2.0 * STEP)
-        self.tells_delay = tells_delay(way[kept] * speed, way[kept] * speed)
+        means = [part.mean() for part in np.array_split(way[kept] * speed, _MEANS)]
+        self.tells_delay = tells_delay(way[kept] * speed, np.array(means))
         """Whether a delay can be told from play."""
         self.travel = float(np.ptp(at))
         # The measured angle must not explain itself: errors are periodic in that of the rotor.

@@ -10,7 +10,7 @@ import numpy as np
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.calibration_fit import CalibrationFit
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.measurement.calibration.model import Model, without_delays
+from gear_kinematics.measurement.calibration.model import GearModel, without_delays
 from gear_kinematics.measurement.calibration.terms import Samples
 from gear_kinematics.measurement.ratio import wrong_ratio
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RecordingError
@@ -91,7 +91,7 @@ def judge(recording: Recording, encoders: Encoders, calibration: Calibration) ->
     def samples_of(shift: float) -> Samples:
         return Samples(recording, encoders, ratio, shift, correction.deviation)
 
-    model, (delay,) = without_delays(lambda shifts: Model([samples_of(*shifts)], []), 1)
+    model, (delay,) = without_delays(lambda shifts: GearModel([samples_of(*shifts)], []), 1)
     delayed, (samples,) = samples_of(0.0), model.samples
     both = samples.error + samples.known, samples.error
     before, after = (error - error.mean() for error in both)

@@ -29,7 +29,7 @@ from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.measurement.calibration import terms as candidates
 from gear_kinematics.measurement.calibration.model import (
     TOGETHER,
-    Model,
+    GearModel,
     half_width,
     without_delays,
 )
@@ -118,18 +118,18 @@ def fit(
     refused: dict[str, str] = {}
     orders = candidates.known_orders(samples, ratio, mechanism, refused)
 
-    def model_of(shifts: Sequence[float]) -> Model:
+    def model_of(shifts: Sequence[float]) -> GearModel:
         pairs = zip(recordings, shifts, strict=True)
         samples = [Samples(*recorded, ratio, shift) for recorded, shift in pairs]
         others = (*candidates.stops(samples, refused), *candidates.wind_up(samples, refused))
-        return Model(samples, [*orders, *others])  # in the order of the file
+        return GearModel(samples, [*orders, *others])  # in the order of the file
 
     model, delays = without_delays(model_of, len(recordings))
     return _result(model, ratio, mechanism, delays, refused)
 
 
 def _result(
-    model: Model,
+    model: GearModel,
     ratio: Fraction,
     mechanism: Mechanism | None,
     delays: Sequence[Estimate | None],

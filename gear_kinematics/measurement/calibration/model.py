@@ -34,7 +34,7 @@ _SHIFTS = 4  # corrections of the delays, each for what the ones before left
 _SETTLED = 1e-5  # s to which a delay is corrected
 
 
-class Model:
+class GearModel:
     """The linear model of recordings, with the terms that are worth it."""
 
     def __init__(self, samples: Sequence[Samples], terms: Sequence[Term]) -> None:
@@ -125,8 +125,8 @@ def half_width(residuals: Array) -> float:
 
 
 def without_delays(
-    model_of: Callable[[Sequence[float]], Model], recordings: int
-) -> tuple[Model, list[Estimate | None]]:
+    model_of: Callable[[Sequence[float]], GearModel], recordings: int
+) -> tuple[GearModel, list[Estimate | None]]:
     """Fit a model, and again with the delays taken out that are clear.
 
     Args:
