@@ -11,6 +11,7 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackagePrefix, FindPackageShare
 
+from gear_kinematics.parameters.arm_urdf import arm_urdf
 from gear_kinematics.ros.launch_arguments import node_arguments, reads_description_topic
 
 
@@ -23,14 +24,16 @@ def check(context: LaunchContext) -> None:
 
 def start_viewers(context: LaunchContext) -> list[Node]:
     """Describe the nodes, with the parameters of gear_state_publisher."""
-    parameters = node_arguments(context.launch_configurations).parameters
-    fixed_frame = f'{parameters.frame_prefix}stator'
+    actuators = node_arguments(context.launch_configurations).actuators
+    mechanisms = [each for each in actuators.values() if not each.gear_ratio]
+    first = (mechanisms or [*actuators.values()])[0]
+    fixed_frame = 'base' if len(mechanisms) > 1 else f'{first.frame_prefix}stator'
     remappings = [('joint_states', 'mechanism_joint_states')]
     share = FindPackageShare('robot_state_publisher').perform(context)
     if reads_description_topic(Path(share)):
         description = {'use_robot_description_topic': True}
     else:
-        description = {'robot_description': ParameterValue(parameters.urdf(), value_type=str)}
+        description = {'robot_description': ParameterValue(arm_urdf(actuators)[0], value_type=str)}
         # It publishes the URDF again, which must not collide with the topic of the node.
         remappings.append(('robot_description', '~/robot_description'))
     return [

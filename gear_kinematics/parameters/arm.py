@@ -8,7 +8,6 @@ actuators. A node without `actuators` has one actuator, whose name is ''.
 import re
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -116,18 +115,20 @@ def faults_in(given: Mapping[str, Any], others: Iterable[str] = ()) -> list[str]
 
 
 def shared_names(actuators: Mapping[str, NodeParameters]) -> list[str]:
-    """List the faults of names that only one actuator of an arm can have."""
+    """List the faults of gears, and of names that only one actuator of an arm can have."""
     owners = defaultdict[tuple[str, str], list[str]](list)
     joints: Counter[str] = Counter()
+    faults = []
     for name, each in actuators.items():
         owners['output_joint', each.output_name].append(name)
         for parameter in ('rotor_joint', 'output_encoder_joint'):
             owners[parameter, getattr(each, parameter)].append(name)
         if not each.gear_ratio:
             owners['frame_prefix', each.frame_prefix].append(name)
-        with suppress(ValueError):  # which the gear or its messages will raise
+        try:
             joints.update(each.joint_names)
-    faults = []
+        except ValueError as error:
+            faults.append(f'{name}: {error}')
     for (parameter, value), names in owners.items():
         if len(actuators) > 1 and not value and parameter in _JOINTS:
             every = ' and '.join(full_name(name, parameter) for name in names)

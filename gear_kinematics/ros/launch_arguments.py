@@ -8,7 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from gear_kinematics.parameters import NODE, NodeParameters
+from gear_kinematics.parameters import NODE, ConfigError, NodeParameters
+from gear_kinematics.parameters.arm import load_actuators
 from gear_kinematics.wire.topics import ROTOR_STATE
 
 NODE_ARGUMENTS = 'config', 'namespace', 'frame_prefix', 'rotor_joint', ROTOR_STATE
@@ -21,8 +22,8 @@ class NodeArguments(NamedTuple):
 
     config: Path
     """The parameter file."""
-    parameters: NodeParameters
-    """The parameters of the node, with the values that it will have."""
+    actuators: dict[str, NodeParameters]
+    """The parameters of its actuators, with the values that they will have."""
     given: dict[str, Any]
     """Those that replace values of the file."""
 
@@ -38,11 +39,15 @@ def node_arguments(configurations: Mapping[str, str]) -> NodeArguments:
     name = posixpath.join(
         '/', configurations.get('ros_namespace', ''), configurations['namespace'], NODE
     )
-    loaded = NodeParameters.load(config, name)
+    loaded = load_actuators(config, name)
     given: dict[str, Any] = {
         name: configurations[name] for name in _OVERRIDES if configurations[name]
     }
-    return NodeArguments(config, replace(loaded, **given), given)
+    if given and '' not in loaded:
+        names = ' and '.join(given)
+        raise ConfigError(f'{config}: {names} of an arm must be given in the file, by actuator')
+    actuators = {name: replace(each, **given) for name, each in loaded.items()}
+    return NodeArguments(config, actuators, given)
 
 
 def reads_description_topic(share: Path) -> bool:

@@ -69,13 +69,14 @@ class GearStatePublisher(PublishingNode):
         if home_file := self._file(next(iter(given.values())).home_file):
             home_file = home_file.absolute()
             zeros = restored(self, home_file, given)
-        self._actuators = {
-            name: Actuator(
-                replace(each, rotor_zero=zeros.get(name, each.rotor_zero)),
-                self._calibration(each.calibration, each.gear),
-            )
-            for name, each in given.items()
-        }
+        self._actuators: dict[str, Actuator] = {}
+        for name, each in given.items():
+            homed = replace(each, rotor_zero=zeros.get(name, each.rotor_zero))
+            try:
+                calibration = self._calibration(each.calibration, each.gear)
+                self._actuators[name] = Actuator(homed, calibration)
+            except ValueError as error:
+                raise ValueError(f'{name}: {error}' if name else str(error)) from error
         self._named = {full_name(name, key): (name, key) for name in given for key in PARAMETERS}
         self._known = {full: PARAMETERS[key] for full, (_, key) in self._named.items()}
         self._arm = ArmState({name: each.state for name, each in self._actuators.items()})
@@ -198,8 +199,9 @@ class GearStatePublisher(PublishingNode):
             self._homing.keep(homed)
 
     def _on_rotor_state(self, data: bytes) -> None:
-        now, answers = time.monotonic(), list[tuple[str, RotorAnswer]]()
-        referenced = dict[str, bool]()
+        now = time.monotonic()
+        answers: list[tuple[str, RotorAnswer]] = []  # list[...]() would be slow
+        changed: dict[str, bool] = {}
         for name, answer in self._arm.rotor(data, self._now):
             if isinstance(answer, RejectedInputError):
                 self._warn_of(topics.ROTOR_STATE, name, answer)
@@ -207,28 +209,27 @@ class GearStatePublisher(PublishingNode):
             actuator = self._actuators[name]
             actuator.note(answer, now)
             if answer.referenced is not actuator.referenced:
-                referenced[name] = answer.referenced
+                changed[name] = answer.referenced
             answers.append((name, answer))
         if not answers:
             return
         if self._driver_log.awaited:
             self._driver_log.heard({name: answer.sample for name, answer in answers})
-        self._publish_referenced(referenced)
+        self._publish_referenced(changed)
         self._outputs.send(self._arm.encode(answers))
         for name, answer in answers:
             self._actuators[name].note_published(answer)
-        self._look_at_references([name for name, _ in answers])
+        self._publish_referenced(self._found_turns(answers))  # by the output's encoder
 
-    def _look_at_references(self, names: Iterable[str]) -> None:
-        """Publish what the outputs' encoders have found."""
-        states = {name: self._actuators[name].state.input.referenced for name in names}
-        self._publish_referenced(
-            {
-                name: value
-                for name, value in states.items()
-                if self._actuators[name].referenced not in {None, value}
-            }
-        )
+    def _found_turns(self, taken: Iterable[tuple[str, object]]) -> dict[str, bool]:
+        """Whether turns are known, of actuators for which that has changed."""
+        found = {}
+        for name, _ in taken:
+            actuator = self._actuators[name]
+            referenced = actuator.state.input.turns.referenced
+            if referenced is not actuator.referenced is not None:
+                found[name] = referenced
+        return found
 
     def _publish_referenced(self, changed: Mapping[str, bool]) -> None:
         """Publish at once which turns have become known or unknown."""
@@ -257,7 +258,7 @@ class GearStatePublisher(PublishingNode):
             else:
                 errors.append((name, answer))
         self._outputs.send(self._arm.encode_errors(errors))
-        self._look_at_references([name for name, _ in errors])
+        self._publish_referenced(self._found_turns(errors))
 
     def _note_unsent(self, publisher: Publisher, error: Exception) -> None:
         # For example, with history keep_all and a blocked subscriber.

@@ -17,6 +17,7 @@ from gear_kinematics.wire.topics import TRANSMISSION_ERROR, topic_of
 
 _Answer = TypeVar('_Answer')
 _Row = tuple[JointStateTemplate, Sequence[float]]
+_Take = Callable[[GearState, JointMessage, Callable[[], int]], _Answer]
 _Taken = list[tuple[str, _Answer | RejectedInputError]]
 """What came of a message, by actuator, for those whose joint was in it."""
 
@@ -73,22 +74,20 @@ class ArmState:
         data: bytes,
         now: Callable[[], int],
         joints: JointsReader,
-        take: Callable[[GearState, JointMessage, Callable[[], int]], _Answer],
+        take: _Take[_Answer],
     ) -> _Taken[_Answer]:
-        found: Sequence[JointMessage | None] = [data]
-        if not self._single:
-            now = cache(now)
-            try:
-                found = joints.read(data)
-            except RejectedInputError as rejection:
-                found = [rejection] * len(self.actuators)
+        if self._single:
+            return [_outcome('', take, self._single, data, now)]
+        now = cache(now)
+        found: Sequence[JointMessage | None]
+        try:
+            found = joints.read(data)
+        except RejectedInputError as rejection:
+            found = [rejection] * len(self.actuators)
         taken: _Taken[_Answer] = []
         for (name, state), values in zip(self.actuators.items(), found, strict=True):
             if values is not None:
-                try:
-                    taken.append((name, take(state, values, now)))
-                except RejectedInputError as rejection:
-                    taken.append((name, rejection))
+                taken.append(_outcome(name, take, state, values, now))
             elif joints is self._rotors:
                 state.input.received += 1
                 state.input.of_others += 1
@@ -102,7 +101,7 @@ class ArmState:
         """
         if self._single:
             return self._single.encode(answers[0][1])
-        joined = defaultdict[str, list[_Row]](list)
+        joined: dict[str, list[_Row]] = defaultdict(list)
         encoded: list[tuple[str, bytes]] = []
         for name, answer in answers:
             for topic, template, numbers in self.actuators[name].rows(answer):
@@ -119,7 +118,7 @@ class ArmState:
         self, errors: Iterable[tuple[str, Sequence[ErrorSample]]]
     ) -> list[tuple[str, bytes]]:
         """Return topic and message of transmission errors by actuator, one for each stamp."""
-        by_stamp = defaultdict[int, list[_Row]](list)
+        by_stamp: dict[int, list[_Row]] = defaultdict(list)
         for name, samples in errors:
             state = self.actuators[name]
             for error in samples if state.errors_chosen else ():
@@ -127,6 +126,15 @@ class ArmState:
         return [
             (TRANSMISSION_ERROR, _joined(stamp, by_stamp[stamp])) for stamp in sorted(by_stamp)
         ]
+
+
+def _outcome(
+    name: str, take: _Take[_Answer], state: GearState, data: JointMessage, now: Callable[[], int]
+) -> tuple[str, _Answer | RejectedInputError]:
+    try:
+        return name, take(state, data, now)
+    except RejectedInputError as rejection:
+        return name, rejection
 
 
 def _joined(stamp: int, rows: Sequence[_Row]) -> bytes:

@@ -107,6 +107,11 @@ FAULTS = [
         'elbow.a.cam_phase must be',
         '`elbow.bad`',
     ),
+    (
+        {'shoulder.ring_teeth': 5, 'elbow.output_joint': 'a\nb'},
+        'shoulder: ',
+        'elbow: output_joint must be printable',
+    ),
 ]
 
 

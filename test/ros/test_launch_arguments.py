@@ -38,10 +38,10 @@ def arguments(config, namespace='', frame_prefix='', **above):
 
 
 def test_defaults_start_the_default_actuator():
-    config, parameters, given = arguments(default_config())
+    config, actuators, given = arguments(default_config())
     assert not given
     assert config == default_config()
-    assert parameters == NodeParameters.load()
+    assert actuators == {'': NodeParameters.load()}
 
 
 @pytest.mark.parametrize(
@@ -58,22 +58,27 @@ def test_defaults_start_the_default_actuator():
 )
 def test_parameters_are_those_of_the_node_in_its_namespace(config, above, namespace, node):
     ros_namespace = {} if above is None else {'ros_namespace': above}
-    parameters = arguments(config, namespace, **ros_namespace).parameters
+    parameters = arguments(config, namespace, **ros_namespace).actuators['']
     assert parameters.ring_teeth == NODES[node]
 
 
-def test_given_values_replace_that_of_the_file(config):
-    assert arguments(config, 'left').parameters.frame_prefix == 'own_'
+def test_given_values_replace_that_of_the_file(config, tmp_path):
+    assert arguments(config, 'left').actuators[''].frame_prefix == 'own_'
     found = arguments(config, 'left', 'my_', rotor_joint='0')
-    assert (found.parameters.frame_prefix, found.parameters.rotor_joint) == ('my_', '0')
+    assert (found.actuators[''].frame_prefix, found.actuators[''].rotor_joint) == ('my_', '0')
     assert found.given == {'frame_prefix': 'my_', 'rotor_joint': '0'}
+    arm = tmp_path / 'arm.yaml'
+    arm.write_text('/**: {ros__parameters: {actuators: [shoulder, elbow]}}')
+    assert list(arguments(arm).actuators) == ['shoulder', 'elbow']
+    with pytest.raises(ConfigError, match='frame_prefix of an arm must be given in the file'):
+        arguments(arm, frame_prefix='my_')
 
 
 def test_home_directory_may_be_written_as_in_a_shell(config, tmp_path, monkeypatch):
     monkeypatch.setenv('HOME', str(tmp_path))
     found = arguments('~/nodes.yaml', 'left')
     assert str(found.config) == config
-    assert found.parameters.ring_teeth == NODES['/left/gear_state_publisher']
+    assert found.actuators[''].ring_teeth == NODES['/left/gear_state_publisher']
 
 
 def test_file_that_is_not_there_or_without_parameters_of_the_node_is_refused(config):
