@@ -12,6 +12,7 @@ from blocked_bags import refusal
 
 from gear_kinematics.commands.cli import main
 
+ROOT = Path(__file__).resolve().parents[2]
 FILES = {'ring_gear.stl', 'satellite.stl', 'cam.stl', 'coupling.stl', 'arm.stl'}
 
 
@@ -34,6 +35,16 @@ def test_meshes_are_written_and_named(capsys, tmp_path, monkeypatch):
     names = mesh_names(capsys.readouterr().out)
     assert all(name.startswith('file:///') and ' ' not in name for name in names)
     assert {Path(unquote(urlsplit(name).path)) for name in names} == set(folder.iterdir())
+
+
+def test_meshes_of_an_arm_are_in_a_folder_for_each_actuator(capsys, tmp_path):
+    config = ROOT / 'config/simulated_arm.yaml'
+    assert main(['urdf', '--config', str(config), '--meshes', str(tmp_path)]) == 0
+    written = {(path.parent.name, path.name) for path in tmp_path.rglob('*.stl')}
+    assert written == {(name, file) for name in ('shoulder', 'elbow') for file in FILES}
+    assert mesh_names(capsys.readouterr().out) == {
+        path.as_uri() for path in tmp_path.rglob('*.stl')
+    }
 
 
 def test_meshes_of_the_default_are_the_installed_ones(capsys):

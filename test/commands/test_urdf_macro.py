@@ -115,6 +115,11 @@ def test_joints_of_an_arm_have_the_names_of_its_messages(capsys, tmp_path):
     assert placed['shoulder_stator'] == [0.0, 0.0, 0.0]
     # Beside each other: the ring gears have 80 teeth of 0.5 mm.
     assert placed['elbow_stator'] == pytest.approx([1.5 * 0.04, 0.0, 0.0])
+    macro = printed(capsys, '--config', config, '--macro', '--actuator', 'elbow')
+    assert '<joint name="${output_joint or \'bend\'}" type="continuous">' in macro
+    assert 'choose it with --actuator: elbow, shoulder, wrist' in refusal(
+        'urdf', '--config', config, '--macro'
+    )
     config = write_arm(tmp_path, {'wrist': of_wrist})
     assert 'gear_ratio is -101: only the ratio' in refusal('urdf', '--config', config)
 
