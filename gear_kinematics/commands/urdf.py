@@ -11,7 +11,7 @@ from gear_kinematics.commands.files import write_file
 from gear_kinematics.commands.output import complain
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import meshes
-from gear_kinematics.parameters.arm_urdf import arm_urdf
+from gear_kinematics.parameters.arm import arm_urdf
 from gear_kinematics.shape.solids import STL_HEADER, solids, to_stl
 from gear_kinematics.shape.urdf import MACRO_PREFIX, as_macro
 from gear_kinematics.wire.nearest import listed

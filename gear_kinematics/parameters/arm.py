@@ -25,6 +25,8 @@ from gear_kinematics.parameters.node_parameters import (
 from gear_kinematics.parameters.yaml_file import Dumper
 from gear_kinematics.wire.nearest import among, nearest
 
+_SPACING = 1.5
+"""Distance between neighbours in a URDF, in diameters of the largest ring gear."""
 COMMON = 'actuators', 'executor', 'home_file'
 """Parameters of the node, which cannot differ between actuators."""
 
@@ -61,7 +63,7 @@ def load_actuators(
 
 def actuators_of(given: Mapping[str, Any]) -> dict[str, NodeParameters]:
     """Create the parameters of all actuators from valid values by names in ROS."""
-    return {name: NodeParameters.of(values, name) for name, values in _by_actuator(given).items()}
+    return {name: NodeParameters.of(values, name) for name, values in by_actuator(given).items()}
 
 
 def chosen(actuators: Mapping[str, NodeParameters], name: str) -> dict[str, NodeParameters]:
@@ -88,6 +90,25 @@ def as_file(actuators: Iterable[NodeParameters]) -> str:
     return str(yaml.dump(document, Dumper=Dumper, sort_keys=False))
 
 
+def arm_urdf(actuators: Mapping[str, NodeParameters]) -> tuple[str, list[str]]:
+    """Write the URDF of the actuators whose bodies are known, side by side where they are several.
+
+    Returns:
+        The URDF, and the names of the actuators that are not in it.
+
+    Raises:
+        ValueError: if only the ratios are known, or there is no such mechanism.
+    """
+    from gear_kinematics.shape.urdf import side_by_side  # noqa: PLC0415, of few programs
+
+    shown = {name: each for name, each in actuators.items() if not each.gear_ratio} or actuators
+    urdf, *others = (each.urdf() for each in shown.values())
+    if others:
+        largest = max(each.module * each.ring_teeth for each in shown.values())
+        urdf = side_by_side([urdf, *others], _SPACING * largest)
+    return urdf, [name for name in actuators if name not in shown]
+
+
 def full_name(actuator: str, name: str) -> str:
     """Name in ROS of a parameter of an actuator."""
     return f'{actuator}.{name}' if actuator else name
@@ -98,7 +119,7 @@ def faults_in(given: Mapping[str, Any], others: Iterable[str] = ()) -> list[str]
     names = given.get('actuators', [])
     if fault := PARAMETERS['actuators'].fault('actuators', names):
         return [fault]
-    actuators = _by_actuator(given)
+    actuators = by_actuator(given)
     branches = {name: _branches(values) for name, values in actuators.items()}
     every = [branch for each in branches.values() for branch in each]
     known = {**PARAMETERS} | branch_parameters(every)
@@ -176,7 +197,7 @@ def unknown_parameters(
     return faults
 
 
-def _by_actuator(given: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+def by_actuator(given: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     """The values that hold for each actuator, by names without that of the actuator."""
     names = dict.fromkeys(given.get('actuators') or [''])
     values = {}

@@ -12,7 +12,7 @@ from std_msgs.msg import String
 from visualization_msgs.msg import MarkerArray
 
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.parameters.arm_urdf import arm_urdf
+from gear_kinematics.parameters.arm import arm_urdf
 from gear_kinematics.ros.markers import Markers
 from gear_kinematics.ros.outputs import Outputs, latched
 from gear_kinematics.wire import topics

@@ -21,7 +21,7 @@ from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
 from gear_kinematics.parameters import PARAMETERS, NodeParameters, default_value
-from gear_kinematics.parameters.arm import full_name
+from gear_kinematics.parameters.arm import by_actuator, full_name
 from gear_kinematics.parameters.files import require_any
 from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.ros.node_parameters import declared_actuators, fault_of
@@ -65,7 +65,7 @@ class GearSimulator(PublishingNode):
             {name: replace(each, read_only=True) for name, each in PARAMETERS.items()},
         )
         values = {name: each.value for name, each in self.get_parameters_by_prefix('').items()}
-        own = {name: twin.TwinParameters.of(values, name) for name in actuators}
+        own = {name: twin.TwinParameters.of(each) for name, each in by_actuator(values).items()}
         if len({(each.rate, each.dropout) for each in own.values()}) > 1:
             raise ValueError('rate and dropout are those of all actuators')
         self._gears = [

@@ -8,6 +8,7 @@ from typing import Any, Self
 
 from gear_kinematics import parameters
 from gear_kinematics.parameters import ConfigError
+from gear_kinematics.parameters.arm import by_actuator
 from gear_kinematics.parameters.files import default_values, given_parameters
 from gear_kinematics.parameters.parameter import Parameter, declared_in, faults_of, parameter
 from gear_kinematics.share import share_directory
@@ -59,26 +60,15 @@ class TwinParameters:
     @classmethod
     def load(cls, path: Path, node: str, actuator: str = '') -> Self:
         """Read those of an actuator of a node from a file; ConfigError if a value is invalid."""
-        given = given_parameters(path, node)
-        if faults := faults_of(_own(given, actuator), PARAMETERS):
+        given = by_actuator(given_parameters(path, node))[actuator]
+        if faults := faults_of(given, PARAMETERS):
             raise ConfigError(f'{path}: {"; ".join(faults)}')
-        return cls.of(given, actuator)
+        return cls.of(given)
 
     @classmethod
-    def of(cls, values: Mapping[str, Any], actuator: str = '') -> Self:
-        """Create those of an actuator from valid values by names in ROS.
-
-        Others are those of all actuators, or have their defaults.
-        """
-        own = _own(values, actuator)
-        return cls(**{name: own.get(name, default_value(name)) for name in PARAMETERS})
-
-
-def _own(values: Mapping[str, Any], actuator: str) -> dict[str, Any]:
-    """The values that hold for an actuator, by names without that of the actuator."""
-    prefix = f'{actuator}.'
-    own = {k.removeprefix(prefix): value for k, value in values.items() if k.startswith(prefix)}
-    return {**values, **own}
+    def of(cls, values: Mapping[str, Any]) -> Self:
+        """Create them from valid values by names in ROS; others have their defaults."""
+        return cls(**{name: values.get(name, default_value(name)) for name in PARAMETERS})
 
 
 PARAMETERS: Mapping[str, Parameter] = declared_in(TwinParameters)
