@@ -6,12 +6,4 @@ from gear_kinematics.plotting.mechanism import outlines, scheme
 from gear_kinematics.plotting.motion import output, roses, slides
 from gear_kinematics.plotting.preload import torque_split
 
-__all__ = [
-    'animate',
-    'outlines',
-    'output',
-    'roses',
-    'scheme',
-    'slides',
-    'torque_split',
-]
+__all__ = ['animate', 'outlines', 'output', 'roses', 'scheme', 'slides', 'torque_split']

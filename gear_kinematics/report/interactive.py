@@ -86,11 +86,7 @@ def _y_axis(panel: Panel) -> dict[str, Any]:
 
 
 def _trace(line: Line) -> dict[str, Any]:
-    trace: dict[str, Any] = {
-        'name': line.name,
-        'meta': line.pen,
-        'y': _rounded(line.y),
-    }
+    trace: dict[str, Any] = {'name': line.name, 'meta': line.pen, 'y': _rounded(line.y)}
     if line.points:
         trace |= {'mode': 'markers', 'marker': {'size': 4}}
     if line.pen == Pen.MODEL:

@@ -28,12 +28,7 @@ _VERDICT_STYLES = {
     Verdict.FAIL: 'bold red',
     Verdict.UNUSABLE: 'bold magenta',
 }
-_TONE_STYLES = {
-    Tone.PLAIN: '',
-    Tone.NONE: 'dim',
-    Tone.NOTABLE: 'yellow',
-    Tone.BAD: 'bold red',
-}
+_TONE_STYLES = {Tone.PLAIN: '', Tone.NONE: 'dim', Tone.NOTABLE: 'yellow', Tone.BAD: 'bold red'}
 
 
 def render(document: Document, console: Console, *, brief: bool = False) -> None:

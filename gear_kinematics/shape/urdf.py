@@ -12,14 +12,7 @@ from collections.abc import Iterable
 from xml.etree import ElementTree as ET
 
 from gear_kinematics.kinematics import Gear, Mechanism
-from gear_kinematics.shape.visuals import (
-    Cylinder,
-    Visual,
-    cam_centre,
-    cylinders,
-    meshed,
-    simple,
-)
+from gear_kinematics.shape.visuals import Cylinder, Visual, cam_centre, cylinders, meshed, simple
 
 MACRO_PREFIX = '${prefix}'
 """The `frame_prefix` of a URDF that `as_macro` takes."""
