@@ -52,11 +52,13 @@ class FindingCause(Enum):
     ALL_MOVED_BY_ENCODER = 'all output angles are moved by {angle:.12g} rad, by the output encoder'
     ALL_MOVED_BY_HOMING = 'all output angles are moved by {angle:.12g} rad, as after homing'
     HOMED = 'compared as after homing[, from {moment}]'
-    LAST_ALONE = 'the last output alone is off'
+    LAST_ALONE = 'only the last output is off'
     TURNS_TAKEN = 'the turns of the single-turn encoder are taken from the outputs'
     ENCODER_AGREES = 'the outputs agree with output_encoder'
     ENCODER_DISAGREES = '{disagreement}[, at {moment}]'
-    ENCODER_UNKNOWN = 'the reference is not judged: no recorded output_encoder tells the turns'
+    ENCODER_UNKNOWN = (
+        'the reference is not judged: no recorded output_encoder determines the turns'
+    )
     # The rotor's topic
     JUMPS = (
         '{rotor.jumps} gaps of {rotor.topic} could hide a turn of the rotor: after each, its '
@@ -69,15 +71,17 @@ class FindingCause(Enum):
         '{rotor.overspeed} steps of {rotor.topic} are faster than max_rotor_speed, at most '
         '{rotor.max_speed:.4g} rad/s'
     )
-    OF_OTHERS = '{rotor.of_others} messages of {rotor.topic} are of other joints: no fault'
+    OF_OTHERS = (
+        '{rotor.of_others} messages of {rotor.topic} belong to other joints, which is no fault'
+    )
     ZERO_STAMPS = (
         '{rotor.zero_stamps} messages of {rotor.topic} have no stamp: their outputs have the '
         "node's time, and are matched in their order"
     )
     REPEATED_STAMPS = (
         '{rotor.duplicates} of {rotor.valid} stamps of {rotor.topic} repeat the one before, as if '
-        'their nanoseconds were lost: where messages are missing, outputs are compared with other '
-        'inputs than theirs; record the stamps with their nanoseconds'
+        'their nanoseconds were lost: where messages are missing, outputs are compared with the '
+        'wrong inputs; record the stamps with their nanoseconds'
     )
     MOSTLY_REJECTED = (
         '{rejected} of {rotor.messages} messages of {rotor.topic} were rejected ({causes}): too '

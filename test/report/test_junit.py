@@ -110,7 +110,7 @@ def test_failing_bag_is_red_even_if_no_part_of_it_fails():
             findings=(samples.Finding(samples.FindingCause.LAST_ALONE),),
         )
     )
-    assert outcomes(suite)[0] == ('bag', 'failure: the last output alone is off')
+    assert outcomes(suite)[0] == ('bag', 'failure: only the last output is off')
     (suite,) = parse(samples.EMPTY)
     assert outcomes(suite) == [('bag', 'failure: the bag failed')]
     assert suite.get('failures') == '1'

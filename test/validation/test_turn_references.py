@@ -58,7 +58,7 @@ def recorded(config, *, start=0.2, error=0.0, gap=0.0):
     return outputs
 
 
-UNJUDGED = 'the reference is not judged: no recorded output_encoder tells the turns'
+UNJUDGED = 'the reference is not judged: no recorded output_encoder determines the turns'
 
 
 def judge(messages, config, encoder=ENCODER, **options):
@@ -137,7 +137,7 @@ def never_referenced(config):
 
 
 DISAGREES = 'output_encoder disagrees: {}° by the encoder, {}° by the rotor'.format
-LAST = 'the last output alone is off'
+LAST = 'only the last output is off'
 wrong_turn, wrong_zero = partial(recorded, error=STEP), partial(recorded, error=0.5)
 
 
