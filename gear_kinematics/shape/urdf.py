@@ -137,7 +137,7 @@ def as_macro(urdf: str, joint: str) -> str:
     for element in robot.iterfind(f'joint/{child}'):
         element.set('name', f'${{output_joint or {joint}}}')
     _, _, *elements, end = _text_of(robot).splitlines(keepends=True)
-    # Nobody edits these lines: inertials and visuals have one each.
+    # Nobody edits inertials and visuals, so each is one line.
     joined = re.sub(r'\n {6,}|\n {4}(?=</)', '', ''.join(elements))
     return f'{_MACRO}{joined}</xacro:macro>\n{end}'
 
