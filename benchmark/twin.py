@@ -10,12 +10,12 @@ from collections.abc import Callable
 from gear_kinematics.twin.driver import Command, Driver
 from gear_kinematics.twin.fast_model import FastModel
 from gear_kinematics.twin.gear import TwinGear
-from gear_kinematics.twin.model import Model
+from gear_kinematics.twin.model import TwinModel
 from gear_kinematics.twin.mujoco_model import MujocoModel
 from gear_kinematics.twin.parameters import default_config
 
 MILLISECOND = 1e-3
-MODELS: dict[str, Callable[[TwinGear], Model]] = {'fast': FastModel, 'MuJoCo': MujocoModel}
+MODELS: dict[str, Callable[[TwinGear], TwinModel]] = {'fast': FastModel, 'MuJoCo': MujocoModel}
 
 
 def main() -> None:
@@ -55,7 +55,7 @@ def main() -> None:
         print(f'| {name} | {cost:.0f} µs | {100 * share:.1f} % | {ratio:.1f} × |')
 
 
-def alone(model: Model, steps: int) -> float:
+def alone(model: TwinModel, steps: int) -> float:
     """CPU time over simulated time of a model under a load, with the rotor locked."""
     model.rotor_locked = True
     start = time.process_time()
@@ -64,7 +64,7 @@ def alone(model: Model, steps: int) -> float:
     return (time.process_time() - start) / (steps * MILLISECOND)
 
 
-def driven(model: Model, steps: int) -> float:
+def driven(model: TwinModel, steps: int) -> float:
     """The same of a model whose rotor is driven at a speed, with both encoders read."""
     driver = Driver(model, max_torque=1.0)
     driver.follow(Command(None, 20.0, None))

@@ -30,7 +30,7 @@ from gear_kinematics.twin import parameters as twin
 from gear_kinematics.twin.driver import Command, Driver
 from gear_kinematics.twin.fast_model import FastModel
 from gear_kinematics.twin.gear import TwinGear
-from gear_kinematics.twin.model import Model
+from gear_kinematics.twin.model import TwinModel
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.cdr import SECOND, JointStateTemplate
 from gear_kinematics.wire.nearest import among
@@ -189,7 +189,7 @@ class SimulatedGear:
     name: str  # of the actuator; '' of the only one
     joint: str  # of the rotor; '' takes the only one of a command
     output_joint: str
-    model: Model
+    model: TwinModel
     driver: Driver
     load: float = 0.0  # N·m
 
@@ -221,7 +221,7 @@ class SimulatedGear:
         return f'{self.name}: {text}' if self.name else text
 
 
-def _lock(model: Model, shaft: str, request: SetBool.Request, response: Any) -> Any:
+def _lock(model: TwinModel, shaft: str, request: SetBool.Request, response: Any) -> Any:
     setattr(model, f'{shaft}_locked', request.data)
     return _told(response, f'the {shaft} is {"locked" if request.data else "free"}')
 
@@ -232,7 +232,7 @@ def _power_cycle(driver: Driver, _: Trigger.Request, response: Any) -> Any:
     return _told(response, f'the driver is on again: the rotor is free, at {position:.3f} rad')
 
 
-def _make_model(kind: str, gear: TwinGear) -> Model:
+def _make_model(kind: str, gear: TwinGear) -> TwinModel:
     """Make the model that the parameter `model` selects; raises ImportError if it is missing.
 
     MuJoCo needs the bodies, which are unknown of a gear known by its ratio alone.

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.twin.fast_model import inertias
-from gear_kinematics.twin.model import Model
+from gear_kinematics.twin.model import TwinModel
 
 _PERIOD = 2e-4  # s, of the servo loop
 _BANDWIDTH = 30.0  # Hz, ω/2π; less if the inertia of the output needs it
@@ -51,7 +51,7 @@ class Driver:
 
     def __init__(
         self,
-        model: Model,
+        model: TwinModel,
         *,
         max_torque: float,
         rotor_counts: int = 0,

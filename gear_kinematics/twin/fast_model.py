@@ -23,7 +23,7 @@ _FASTEST = 1.0 / _STEP
 
 
 class FastModel:
-    """Implements `Model` without MuJoCo; it begins at rest, without load, at φ2 = 0.
+    """Implements `TwinModel` without MuJoCo; it begins at rest, without load, at φ2 = 0.
 
     Raises:
         MechanismError: if the gear is too stiff for its inertias.
@@ -60,7 +60,7 @@ class FastModel:
         self.branch_torques, self._friction = self._torques(self.rotor_angle, self.output_angle)
 
     def advance(self, duration: float, rotor_torque: float, load_torque: float) -> None:
-        """Advance the time; see `Model`."""
+        """Advance the time; see `TwinModel`."""
         steps = math.ceil(duration / _STEP - 1e-6)
         h = duration / steps
         rotor_gain = 0.0 if self.rotor_locked else h / self._rotor_inertia

@@ -6,7 +6,7 @@ from typing import Protocol
 from gear_kinematics.twin.gear import TwinGear
 
 
-class Model(Protocol):
+class TwinModel(Protocol):
     """Moves a gear through time; angles count turns, and are those of the kinematics."""
 
     gear: TwinGear

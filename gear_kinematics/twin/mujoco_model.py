@@ -12,7 +12,7 @@ mujoco.set_mju_user_warning(lambda _: None)  # else MUJOCO_LOG.TXT in the curren
 
 
 class MujocoModel:
-    """Implements `Model` with MuJoCo; it begins at rest, without load, at φ2 = 0.
+    """Implements `TwinModel` with MuJoCo; it begins at rest, without load, at φ2 = 0.
 
     Raises:
         MechanismError: as `mjcf`.
@@ -37,7 +37,7 @@ class MujocoModel:
         self._read()
 
     def advance(self, duration: float, rotor_torque: float, load_torque: float) -> None:
-        """Advance the time, to the nearest time step of MuJoCo; see `Model`."""
+        """Advance the time, to the nearest time step of MuJoCo; see `TwinModel`."""
         self._lock(self._rotor, self._rotor_lock, self.rotor_locked)
         self._lock(self._output, self._output_lock, self.output_locked)
         self.data.qfrc_applied[self._rotor] = rotor_torque

@@ -19,7 +19,7 @@ from gear_kinematics.commands.cli import main
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.twin.driver import Command, Driver
 from gear_kinematics.twin.gear import TwinGear
-from gear_kinematics.twin.model import Model
+from gear_kinematics.twin.model import TwinModel
 
 MILLISECOND = 1e-3  # s, between the samples of a recording
 RATED = 10.0  # N·m
@@ -27,7 +27,7 @@ OUTPUT_COUNTS, ROTOR_COUNTS = 2**20, 2**16  # of a turn
 STEP = TURN / OUTPUT_COUNTS  # rad
 NOISE = 0.01  # N·m, of the torque sensor: 0.1 % of the rated torque
 
-Simulate = Callable[[TwinGear], Model]
+Simulate = Callable[[TwinGear], TwinModel]
 
 
 class Figure(NamedTuple):
@@ -71,7 +71,7 @@ def report(*arguments: object) -> dict:
     return json.loads(out.getvalue())
 
 
-def driver_of(model: Model) -> Driver:
+def driver_of(model: TwinModel) -> Driver:
     """Switch on a driver of the rotor."""
     return Driver(
         model,
@@ -94,7 +94,7 @@ class Bench:
     _STIFFNESS, _DAMPING = 300.0, 0.5  # N·m/rad, N·m·s/rad
     _PERIODS = 5  # of the sensor in a sample
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: TwinModel) -> None:
         self._model, self._ahead, self._torque = model, 0.0, 0.0
         self.torque: list[float] = []
         self.angle: list[float] = []

@@ -25,7 +25,7 @@ from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.twin.fast_model import FastModel
 from gear_kinematics.twin.gear import TwinGear
 from gear_kinematics.twin.measured import measured
-from gear_kinematics.twin.model import Model
+from gear_kinematics.twin.model import TwinModel
 from gear_kinematics.twin.parameters import TwinParameters
 
 PRINTED = 'dual_encoders/transmission_stiffness_sspg.csv'
@@ -96,7 +96,7 @@ def loops(gear: TwinGear, ramps: Ramps) -> Loops:
     )
 
 
-def ramped(model: Model, high: float, low: float) -> tuple[np.ndarray, np.ndarray]:
+def ramped(model: TwinModel, high: float, low: float) -> tuple[np.ndarray, np.ndarray]:
     """Torque of the gear and its wind-up, (2, n), from peak to peak and back."""
     model.rotor_locked = True
     ways = []

@@ -15,7 +15,7 @@ from gear_kinematics.kinematics.preload import Preload, Stiffness
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.twin.fast_model import FastModel
 from gear_kinematics.twin.gear import TwinGear
-from gear_kinematics.twin.model import Model
+from gear_kinematics.twin.model import TwinModel
 from gear_kinematics.twin.parameters import TwinParameters
 
 VALUES = {'play': 1e-3, 'friction': 0.0, 'rotor_damping': 0.0, 'output_inertia': 0.005}
@@ -38,7 +38,7 @@ def branch(**values) -> TwinGear:
     return gear({'branches': ['a'], 'preload': 0.0}, play=0.0, **values)
 
 
-def ramp(model: Model, *loads: float, seconds: float = 1.0, rotor: float = 0.0) -> None:
+def ramp(model: TwinModel, *loads: float, seconds: float = 1.0, rotor: float = 0.0) -> None:
     """Ramp the load from each value to the next."""
     steps = round(1000 * seconds)
     for begin, end in pairwise(loads):
