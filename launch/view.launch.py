@@ -11,7 +11,7 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackagePrefix, FindPackageShare
 
-from gear_kinematics.parameters.arm_urdf import arm_urdf
+from gear_kinematics.parameters.arm import arm_urdf
 from gear_kinematics.ros.launch_arguments import node_arguments, reads_description_topic
 
 

@@ -2,6 +2,7 @@
 """Rooms of the package: what they may import, what a listing shows, and that each has tests."""
 
 import ast
+import importlib.util
 import sys
 from pathlib import Path
 
@@ -200,3 +201,20 @@ def test_commands_import_nothing_of_each_other(imports):
     others = [f'gear_kinematics.commands.{name}' for name in (*commands, 'cli')]
     for name in (*commands, *shared):
         assert not imports[f'commands/{name}.py'].intersection(others), name
+
+
+@pytest.mark.parametrize('folder', ['launch', 'examples', 'benchmark', 'fuzz', 'docs'])
+def test_what_is_imported_from_the_package_is_there(folder):
+    """Launch files run on a whole ROS alone, and the others seldom."""
+    sources = [path.read_text('utf-8') for path in (ROOT / folder).rglob('*.py')]
+    names = {
+        (node.module, alias.name)
+        for source in sources
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.ImportFrom) and within(str(node.module), 'gear_kinematics')
+        for alias in node.names
+    }
+    assert names
+    for module, name in names:
+        there = hasattr(importlib.import_module(module), name)
+        assert there or importlib.util.find_spec(f'{module}.{name}'), f'{module}.{name}'
