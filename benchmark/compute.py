@@ -75,7 +75,7 @@ def _run(way: Callable[[Path], None], target: Path) -> None:
 
 def _compute(storage: str, source: Path, target: Path) -> None:
     with Bag(source) as bag:
-        compute(bag, target, NodeParameters.load(), storage=storage)
+        compute(bag, target, {'': NodeParameters.load()}, storage=storage)
 
 
 def _copy(storage: str, source: Path, target: Path) -> None:

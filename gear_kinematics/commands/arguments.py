@@ -3,7 +3,7 @@
 
 import argparse
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -45,6 +45,10 @@ def group(parser: argparse.ArgumentParser, title: str) -> argparse._ArgumentGrou
     """Return the group of options under a heading of --help, and create it if it is missing."""
     known = (group for group in parser._action_groups if group.title == title)  # noqa: SLF001
     return next(known, None) or parser.add_argument_group(title)
+
+
+ALL = 'of several `actuators` in the file, the one that is meant (default: all)'
+"""The help on `--actuator` where a command works on all of them."""
 
 
 def add_config(
@@ -147,6 +151,20 @@ def load_configs(
         names = ', '.join(replacing)
         raise ValueError(f'{names} can be replaced for one actuator: choose it with --actuator')
     return {name: replace(config, **replacing) for name, config in found.items()}
+
+
+def check_of_one(options: argparse.Namespace, actuators: Collection[str], *names: str) -> None:
+    """Check that options that apply to one gear are not given for several actuators.
+
+    Raises:
+        ValueError: naming the option and the actuators.
+    """
+    for name in names if len(actuators) > 1 else ():
+        if getattr(options, name, None):
+            option = f'--{name.replace("_", "-")}'
+            raise ValueError(
+                f'{option} is for one of {", ".join(actuators)}: choose it with --actuator'
+            )
 
 
 def _replacing(options: argparse.Namespace) -> dict[str, Any]:

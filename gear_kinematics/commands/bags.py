@@ -2,7 +2,7 @@
 """Arguments about bags and the files in their folders, shared by several commands."""
 
 import argparse
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -14,6 +14,7 @@ from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.fleet import processes
 from gear_kinematics.fleet.cluster import on_cluster
 from gear_kinematics.parameters import NodeParameters, default_config
+from gear_kinematics.parameters.arm import as_file
 
 CALIBRATION = 'calibration.yaml'
 """Name of a calibration in the folder of a bag."""
@@ -58,10 +59,13 @@ def add_calibration(parser: argparse.ArgumentParser) -> None:
 def calibration_path(
     options: argparse.Namespace, config: NodeParameters, bag: Path | None
 ) -> Path | None:
-    """Choose the given calibration, or that of the parameters, or the one in the bag's folder."""
+    """Choose the given calibration, or that of the parameters, or the one in the bag's folder.
+
+    Those of an arm are all in its parameters.
+    """
     if given := options.calibration or config.calibration:
         return Path(given)
-    return arguments.in_bag_folder(bag, CALIBRATION) if bag else None
+    return arguments.in_bag_folder(bag, CALIBRATION) if bag and not config.actuator else None
 
 
 def load_calibration(
@@ -77,14 +81,16 @@ def load_calibration(
 
 
 def files_of(
-    options: argparse.Namespace, config: NodeParameters, bag: Path | None
+    options: argparse.Namespace, configs: Mapping[str, NodeParameters], bag: Path | None
 ) -> dict[str, bytes]:
-    """Return the parameters and the calibration as files that are found beside a new recording."""
-    files = {}
-    if calibration := calibration_path(options, config, bag):
-        files[CALIBRATION] = calibration.read_bytes()
-    used = replace(config, calibration=CALIBRATION if calibration else '', home_file='')
-    return {default_config().name: used.as_file().encode(), **files}
+    """Return parameters and calibrations as files that are found beside a new recording."""
+    files, used = dict[str, bytes](), list[NodeParameters]()
+    for actuator, config in configs.items():
+        name = f'{actuator}_{CALIBRATION}' if actuator else CALIBRATION
+        if calibration := calibration_path(options, config, bag):
+            files[name] = calibration.read_bytes()
+        used.append(replace(config, calibration=name if calibration else '', home_file=''))
+    return {default_config().name: as_file(used).encode(), **files}
 
 
 def add_jobs(ways: argparse._MutuallyExclusiveGroup) -> None:
@@ -102,8 +108,10 @@ def results(
     work: processes.Work[Any, processes.Report],
     tasks: Sequence[Any],
     unit: str,
-) -> dict[Path, processes.Report]:
-    """Return the reports on tasks by their `bag`; with `--jobs`, several processes compute them.
+) -> dict[tuple[Path, str], processes.Report]:
+    """Return the reports on tasks by their `bag` and the name of the actuator in `parameters`.
+
+    With `--jobs`, several processes compute them.
 
     Several processes have one progress bar in the unit; otherwise, each recording has its own.
     """
@@ -114,12 +122,17 @@ def results(
             done = processes.on_this_machine(work, tasks, options.jobs)
         with progress(unit, quiet=options.quiet) as bars:
             tracked = bars.track(done, total=len(tasks), description=unit)
-            return {task.bag: report for task, report in tracked}
+            return {key(task): report for task, report in tracked}
     reports = {}
     for task in tasks:
         with message_progress(task.bag.name, quiet=options.quiet) as report_progress:
-            reports[task.bag] = work.run(task, report_progress)
+            reports[key(task)] = work.run(task, report_progress)
     return reports
+
+
+def key(task: Any) -> tuple[Path, str]:
+    """Return the key of the report on a task in `results`."""
+    return task.bag, task.parameters.actuator
 
 
 @contextmanager

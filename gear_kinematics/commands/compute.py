@@ -24,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('bag', type=Path, metavar='BAG')
     parser.add_argument('out', type=Path, metavar='OUT', help='folder to create')
     bags.add_rotor(parser)
-    arguments.add_config(parser)
+    arguments.add_config(parser, actuator=arguments.ALL)
     bags.add_calibration(parser)
     output = arguments.group(parser, 'output')
     output.add_argument(
@@ -37,58 +37,75 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Write the bag and its parameters, and print the number of its messages."""
-    config = arguments.load_config(options, options.bag)
-    calibration = bags.load_calibration(options, config, options.bag)
+    configs = arguments.load_configs(options, options.bag)
+    arguments.check_of_one(options, configs, 'calibration')
+    calibrations = {
+        name: bags.load_calibration(options, config, options.bag)
+        for name, config in configs.items()
+    }
     with (
         bags.naming(options.bag, options.out),
         Bag(options.bag) as bag,
         message_progress(options.bag.name, quiet=options.quiet) as progress,
     ):
-        rotor = options.rotor_topic or find_rotor_topic(bag, joint=config.rotor_joint)
-        taken = config.rotor_joint
-        if options.joint is None and taken:
-            taken = only_joint(bag, rotor, taken)
-        used = replace(config, rotor_joint=taken)
+        first = next(iter(configs.values())).rotor_joint
+        rotor = options.rotor_topic or find_rotor_topic(bag, joint=first)
+        taken = first
+        if options.joint is None and first and '' in configs:
+            taken = only_joint(bag, rotor, first)
+            configs = {'': replace(configs[''], rotor_joint=taken)}
+        absolute = any(config.absolute for config in configs.values())
         result = compute(
             bag,
             options.out,
-            used,
+            configs,
             topics=outputs_of(bag, rotor),
-            encoder_topic=find_encoder_topic(bag, rotor) if config.absolute else '',
-            calibration=calibration,
+            encoder_topic=find_encoder_topic(bag, rotor) if absolute else '',
+            calibrations=calibrations,
             others=options.topics,
-            files=bags.files_of(options, used, options.bag),
+            files=bags.files_of(options, configs, options.bag),
             storage=options.storage,
             compression=options.compression,
             progress=progress,
         )
     if not options.quiet:
         _print_summary(options.out, result)
-        if taken != config.rotor_joint:
+        if taken != first:
             print(printable(f'{taken}, the only joint on {rotor}, is taken'))
-    if result.rotor_input.mostly_rejected:
-        missing = result.rotor_input.missing_joint
-        joints = f': {missing}' if missing else ''
-        complain(f'{options.bag}: most messages on {rotor} were rejected{joints}')
-        return ExitCode.FAILED
-    return ExitCode.DONE
+    code = ExitCode.DONE
+    for name, read in result.inputs.items():
+        if read.mostly_rejected:
+            missing = f': {read.missing_joint}' if read.missing_joint else ''
+            of = f' for {name}' if name else ''
+            complain(f'{options.bag}: most messages on {rotor} were rejected{of}{missing}')
+            code = ExitCode.FAILED
+    return code
 
 
 def _print_summary(out: Path, result: ComputeResult) -> None:
-    rotor = result.rotor_input
-    rejected = ', '.join(f'{cause} {number}' for cause, number in rotor.rejected.items())
+    inputs = result.inputs
+    # A message of other joints is one of another actuator, if there are several.
+    states = max(rotor.received - rotor.of_others * ('' in inputs) for rotor in inputs.values())
+    rejected = ', '.join(
+        f'{f"{name}: " if name else ""}{cause} {number}'
+        for name, rotor in inputs.items()
+        for cause, number in rotor.rejected.items()
+    )
     print(
-        f'{out}: {result.computed} outputs for {rotor.received - rotor.of_others} rotor states'
+        f'{out}: {result.computed} outputs for {states} rotor states'
         + (f' (rejected: {rejected})' if rejected else '')
         + f', {result.copied} other messages copied'
     )
     if result.left_out:
         print(printable(f'left out: {listed(result.left_out)}'))
-    doubts = (
-        rotor.plausibility.jumped,
-        rotor.velocity_field.meaning,
-        'the effort is 0 throughout the motion, and left out' if rotor.effort_field.absent else '',
-        '' if rotor.referenced else 'the turns of the rotor are not known at the end',
-    )
-    for doubt in filter(None, doubts):
-        complain(f'{out}: {doubt}')
+    for name, rotor in inputs.items():
+        doubts = (
+            rotor.plausibility.jumped,
+            rotor.velocity_field.meaning,
+            'the effort is 0 throughout the motion, and left out'
+            if rotor.effort_field.absent
+            else '',
+            '' if rotor.referenced else 'the turns of the rotor are not known at the end',
+        )
+        for doubt in filter(None, doubts):
+            complain(f'{out}: {name}: {doubt}' if name else f'{out}: {doubt}')

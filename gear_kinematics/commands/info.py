@@ -2,7 +2,7 @@
 """`gearkin info`: what is in recordings."""
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from rich.text import Text
 
@@ -23,6 +23,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument('bags', nargs='+', metavar='BAG', help='file, directory or glob')
     bags.add_rotor(parser, configured=False)
+    arguments.add_config(
+        parser,
+        default='none; its joints are examined',
+        actuator='of several `actuators` in FILE, the one whose joint is examined (default: all)',
+    )
     arguments.add_quiet(parser)
     arguments.add_verbose(parser, 'also list every topic with its type')
 
@@ -31,11 +36,14 @@ def run(options: argparse.Namespace) -> ExitCode:
     """Print a line on each recording, even if others cannot be read."""
     found = find_bags(options.bags)
     faults = list(found.faults.values())
+    joints = [options.joint] if options.joint else []
+    if options.config:
+        joints = [config.rotor_joint for config in arguments.load_configs(options).values()]
     for path in found.bags:
         try:
             with Bag(path) as bag, message_progress(path.name, quiet=options.quiet) as progress:
-                summary = summarise(bag, options.rotor_topic, options.joint or '', progress)
-                asked = [*_questions(bag, summary, options.joint or '')]
+                summary = summarise(bag, options.rotor_topic, next(iter(joints), ''), progress)
+                asked = [*_questions(bag, summary, joints)]
         except (ValueError, OSError) as error:
             faults.append(str(error))
             continue
@@ -48,12 +56,18 @@ def run(options: argparse.Namespace) -> ExitCode:
     return ExitCode.UNUSABLE if faults else ExitCode.DONE
 
 
-def _questions(bag: Bag, summary: Summary, joint: str) -> Iterator[str]:
-    """Yield what seems to be wrong with the messages of the rotor, if it is known which it is."""
+def _questions(bag: Bag, summary: Summary, joints: Sequence[str]) -> Iterator[str]:
+    """Yield what seems to be wrong with the messages of the rotors, if it is known which.
+
+    Of joints that are not given, the only one of a topic is known.
+    """
     for topic in summary.topics:
-        if topic.part == 'rotor' and (joint or len(topic.joints) == 1):
-            for question in recorded_questions(bag, topic.name, joint or topic.joints[0]):
-                yield f'{topic.name}: {question}'
+        if topic.part != 'rotor':
+            continue
+        for joint in joints or topic.joints * (len(topic.joints) == 1):
+            name = f'{topic.name}: {joint}' if len(joints) > 1 else topic.name
+            for question in recorded_questions(bag, topic.name, joint):
+                yield f'{name}: {question}'
 
 
 def _print_summary(name: str, summary: Summary, asked: list[str], *, verbose: bool) -> None:

@@ -5,15 +5,17 @@ import argparse
 import math
 import sys
 from importlib import import_module
+from pathlib import Path
 
 from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.encoders import add_columns, sources
 from gear_kinematics.commands.output import complain
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
+from gear_kinematics.measurement.formats import is_table
 from gear_kinematics.measurement.loads.document import WORK, document
 from gear_kinematics.measurement.loads.recorded import LoadTask
-from gear_kinematics.parameters import default_config
+from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.report.document import Verdict, printable
 
 
@@ -21,7 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument('bags', nargs='+', metavar='RECORDING', help='file, directory or glob')
     bags.add_rotor(parser)
-    arguments.add_config(parser)
+    arguments.add_config(parser, actuator=arguments.ALL)
     add_columns(parser, 'rotor', 'angle', 'torque')
     gear = arguments.group(parser, 'gear')
     gear.add_argument(
@@ -52,9 +54,9 @@ def run(options: argparse.Namespace) -> ExitCode:
     tasks = [
         LoadTask(
             bag,
-            arguments.load_config(options, bag),
+            config,
             options.rotor_topic,
-            options.joint is None,
+            options.joint is None and not config.actuator,
             options.cam_rating,
             options.slot_friction,
             by_default=arguments.config_path(options, bag) == default_config(),
@@ -62,9 +64,11 @@ def run(options: argparse.Namespace) -> ExitCode:
             debug=options.debug,
         )
         for bag in found.bags
+        for config in _configs(options, bag)
     ]
+    arguments.check_of_one(options, {task.parameters.actuator for task in tasks}, 'plot')
     results = bags.results(options, WORK, tasks, 'recordings')
-    reports = [results[bag] for bag in found.bags]
+    reports = [results[bags.key(task)] for task in tasks]
     faults = [*found.faults.values(), *(report.error for report in reports if report.error)]
     for fault in faults:
         complain(fault)
@@ -76,3 +80,11 @@ def run(options: argparse.Namespace) -> ExitCode:
     if faults:
         return ExitCode.UNUSABLE
     return ExitCode.FAILED if joined.verdict == Verdict.FAIL else ExitCode.DONE
+
+
+def _configs(options: argparse.Namespace, bag: Path) -> list[NodeParameters]:
+    """Return the parameters of the gear in a table, or of all actuators whose bodies are known."""
+    if is_table(bag):
+        return [arguments.load_config(options, bag)]
+    configs = [*arguments.load_configs(options, bag).values()]
+    return [config for config in configs if not config.gear_ratio] or configs

@@ -12,14 +12,16 @@ from gear_kinematics.wire.nearest import listed
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument('out', type=Path, metavar='OUT', help='folder to create')
-    arguments.add_config(parser, default='none; a copy of FILE is kept in OUT, for validate')
+    arguments.add_config(
+        parser, default='none; a copy of FILE is kept in OUT, for validate', actuator=arguments.ALL
+    )
     parser.set_defaults(calibration=None)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Record until interrupted; ValueError if nothing was heard."""
-    config = arguments.load_config(options)
-    files = bags.files_of(options, config, None) if options.config else {}
+    configs = arguments.load_configs(options)
+    files = bags.files_of(options, configs, None) if options.config else {}
     warn_of_shared_memory(participants=1)
     # These need ROS, unlike most commands, and the last one rosbags.
     from gear_kinematics.ros.live import replay_node  # noqa: PLC0415
@@ -32,7 +34,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         for name, content in files.items():
             bag.add_file(name, content)
         with replay_node('') as node:
-            loads = bool(options.config and config.preload)
+            loads = bool(options.config and any(each.preload for each in configs.values()))
             recorder = Recorder(node, bag, options.node, loads=loads)
             show_recording(recorder, Console(), stopped)
         heard = recorder.heard

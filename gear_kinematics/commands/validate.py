@@ -15,7 +15,7 @@ from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.document import document
 from gear_kinematics.validation.report import BagReport, unusable
 from gear_kinematics.validation.task import QUANTITIES, Task, Tolerances
-from gear_kinematics.validation.validate_bag import WORK, validate_bag
+from gear_kinematics.validation.validate_bag import WORK, of_arm, validate_bag
 
 _EXIT_CODES = {
     Verdict.PASS: ExitCode.DONE,
@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('bags', nargs='+', metavar='BAG', help='file, directory or glob')
     bags.add_rotor(parser)
     bags.add_outputs(parser)
-    arguments.add_config(parser)
+    arguments.add_config(parser, actuator=arguments.ALL)
     bags.add_calibration(parser)
     limits = arguments.group(parser, 'limits')
     for unit, quantity in QUANTITIES.items():
@@ -76,6 +76,8 @@ def run(options: argparse.Namespace) -> ExitCode:
             faults[bag] = str(error)
     if not tasks:
         complain('; '.join(dict.fromkeys(faults.values())))
+    for task in tasks:
+        arguments.check_of_one(options, [t.parameters.actuator for t in task.actuators], 'plot')
     if options.live and tasks:
         warn_of_shared_memory(participants=2)
     judged = {path: unusable(path, fault) for path, fault in faults.items()}
@@ -92,24 +94,30 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _task(bag: Path, tolerances: Tolerances, options: argparse.Namespace) -> Task:
-    config, node = arguments.load_config(options, bag), options.node
-    file = arguments.config_path(options, bag)
-    calibration = bags.calibration_path(options, config, bag)
-    return Task(
-        bag,
-        replace(config, calibration=str(calibration or '')),
-        config=str(file),
-        tolerances=tolerances,
-        strict=options.strict,
-        independent=options.independent,
-        only_joint=options.joint is None,
-        rotor_topic=options.rotor_topic,
-        output_topic=options.output_topic,
-        poses_topic=options.poses_topic,
-        namespace=f'/{node.strip("/")}'.rpartition('/')[0] if '/' in node else None,
-        calibration=bags.load_calibration(options, config, bag),
-        debug=options.debug,
-    )
+    configs, node = arguments.load_configs(options, bag), options.node
+    arguments.check_of_one(options, configs, 'calibration', 'poses_topic', 'live')
+    if options.live:  # by a node of this gear alone
+        (config,) = configs.values()
+        configs = {'': replace(config, actuator='', actuators=())}
+    tasks = [
+        Task(
+            bag,
+            replace(config, calibration=str(bags.calibration_path(options, config, bag) or '')),
+            config=str(arguments.config_path(options, bag)),
+            tolerances=tolerances,
+            strict=options.strict,
+            independent=options.independent,
+            only_joint=options.joint is None,
+            rotor_topic=options.rotor_topic,
+            output_topic=options.output_topic,
+            poses_topic=options.poses_topic,
+            namespace=f'/{node.strip("/")}'.rpartition('/')[0] if '/' in node else None,
+            calibration=bags.load_calibration(options, config, bag),
+            debug=options.debug,
+        )
+        for config in configs.values()
+    ]
+    return of_arm(tasks)
 
 
 def _validated(options: argparse.Namespace, tasks: Sequence[Task]) -> dict[Path, BagReport]:
@@ -119,4 +127,4 @@ def _validated(options: argparse.Namespace, tasks: Sequence[Task]) -> dict[Path,
 
         work = replace(work, run=partial(validate_bag, play=live_messages))
     reports = bags.results(options, work, tasks, 'bags')
-    return {bag: replace(report, bag=str(bag)) for bag, report in reports.items()}  # as given
+    return {bag: replace(report, bag=str(bag)) for (bag, _), report in reports.items()}  # as given

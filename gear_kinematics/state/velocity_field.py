@@ -88,7 +88,7 @@ class VelocityField:
             The velocities, (n,); NaN where they are found to contradict the positions.
         """
         velocity, start = values[:, 1].copy(), 0
-        while (row := int(np.searchsorted(stamps, self.due))) < len(stamps):
+        while (row := int(stamps.searchsorted(self.due))) < len(stamps):
             if self.contradicts:
                 velocity[start:row] = np.nan
             start = row

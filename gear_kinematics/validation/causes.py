@@ -89,6 +89,15 @@ class FindingCause(Enum):
     )
     JOINT_MISSING = '{topic}: {detail}'
     ONLY_JOINT = '{joint}, the only joint on {topic}, is taken'
+    # The messages that the actuators of an arm share
+    OF_ACTUATOR = '{actuator}: {sentence}'
+    JOINT_LEFT_OUT = 'the joint is missing although its rotor is valid: {messages}' + _FIRST
+    OTHER_JOINTS = 'the joints are not those of the actuators, but {joints}: {messages}' + _FIRST
+    JOINTS_DISORDERED = (
+        'the joints are not in the order of `actuators`, but {joints}: {messages}' + _FIRST
+    )
+    ARRAY_SIZE = '{field} has not a value for each of {joints}: {messages}' + _FIRST
+    NAN_FOR_ALL = '{field} is NaN for all of {joints}, and should be empty: {messages}' + _FIRST
     # The recorder
     RECORDER_LOST = 'the recorder says that it lost {messages}'
     ENDED_EARLY = '{output} ends {seconds:.3f} s before {topic}: the node may have ended'

@@ -1,7 +1,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Compute the node's outputs for a recorded rotor topic into a new bag, without ROS."""
 
-from collections.abc import Collection, Mapping
+from collections import defaultdict
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -9,12 +10,13 @@ from typing import Literal
 
 import numpy as np
 
-from gear_kinematics.bag import Bag, BagError, ReportProgress, TopicError
+from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, TopicError
 from gear_kinematics.bag.roles import Topics, in_namespace
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.wire.batches import join_joint_states
 from gear_kinematics.wire.topics import (
     BODY_POSES,
     CORRECTED_TOPICS,
@@ -22,6 +24,8 @@ from gear_kinematics.wire.topics import (
     LOAD_TOPICS,
     OUTPUT_STATE,
     TOPICS,
+    base_name,
+    topic_of,
 )
 
 _TOPICS = Topics()
@@ -31,8 +35,9 @@ _TOPICS = Topics()
 class ComputeResult:
     """Numbers of messages that were computed and copied."""
 
-    rotor_input: RotorInput
-    """Input that has counted the messages on the rotor's topic, and the rejected ones."""
+    inputs: Mapping[str, RotorInput]
+    """Inputs by actuator, which have counted the messages on the rotor's topic, and the rejected
+    ones."""
     computed: int
     """Messages written on each output topic."""
     copied: int
@@ -44,11 +49,11 @@ class ComputeResult:
 def compute(
     source: Bag,
     target: Path,
-    parameters: NodeParameters,
+    actuators: Mapping[str, NodeParameters],
     *,
     topics: Topics = _TOPICS,
     encoder_topic: str = '',
-    calibration: Calibration | None = None,
+    calibrations: Mapping[str, Calibration | None] = MappingProxyType({}),
     others: Collection[str] | None = None,
     files: Mapping[str, bytes] = MappingProxyType({}),
     storage: Literal['mcap', 'sqlite3'] = 'mcap',
@@ -57,7 +62,8 @@ def compute(
 ) -> ComputeResult:
     """Copy a bag and add or replace the output topics: `output_state` alone with `gear_ratio`.
 
-    With a preload, the loads are outputs too.
+    With a preload, the loads are outputs too, and with a calibration CORRECTED_TOPICS beside the
+    topic of the output. The actuators of an arm have the topics that they have in the node.
 
     Each output directly follows its rotor message and has its time of reception. The same input
     gives the same bytes. From mcap to mcap, copies keep their times of publication. If this fails
@@ -69,11 +75,11 @@ def compute(
     Args:
         source: an open bag.
         target: the folder to create.
-        parameters: of the node.
+        actuators: parameters of each actuator by name, '' for one gear.
         topics: names of the input and the node's outputs in the bag.
         encoder_topic: name of the output encoder in the bag, if it references the rotor; it is
             copied too.
-        calibration: of the gear, to compute CORRECTED_TOPICS in the namespace of the output.
+        calibrations: of the actuators that have one.
         others: other topics to copy; None copies all.
         files: contents of further files of the target, by name.
         storage: of the target, see `BagWriter`.
@@ -87,17 +93,14 @@ def compute(
     """
     from gear_kinematics.bag.writing import BagWriter  # noqa: PLC0415, needs an extra
 
-    gear, rotor_topic = GearState(parameters, calibration), topics.rotor
-    topic_of = {OUTPUT_STATE: topics.output, BODY_POSES: topics.poses}
-    topic_of = {state: topic_of[state] for state in topic_of if state in gear.topics}
-    if calibration:
-        topic_of |= in_namespace(CORRECTED_TOPICS, topics.output)
-    if parameters.preload:
-        topic_of |= in_namespace(LOAD_TOPICS, topics.output)
-    gear.choose(topic_of)
-    if len(set(all_names := (rotor_topic, *topic_of.values()))) < len(all_names):
+    gears = {name: GearState(each, calibrations.get(name)) for name, each in actuators.items()}
+    inputs_of = {name: gear.input for name, gear in gears.items()}
+    rotor_topic = topics.rotor
+    names = _choose(gears, topics)
+    all_names = [rotor_topic, *names.values()]
+    if len(set(all_names)) < len(all_names):
         raise ValueError(f'{", ".join(all_names)}: the names must differ')
-    outputs = {topic: TOPICS[name].type for name, topic in topic_of.items()}
+    outputs = {topic: TOPICS[base_name(name)].type for name, topic in names.items()}
     inputs = {rotor_topic, encoder_topic} if encoder_topic else {rotor_topic}
     chosen = {*inputs, *(source.topics if others is None else others)}
     _check_topics(source, rotor_topic, chosen, outputs)
@@ -119,25 +122,57 @@ def compute(
             writer.add_topic(topic, message_type)
         for batch in source.batches({*kept, *outputs}, progress, publish_times=True):
             messages = [message for message in batch if message[0] not in outputs]
-            answers = gear.batch(messages, rotor_topic, encoder_topic)
-            answered = answers.samples.row.tolist()
-            computed += len(answered)
             copied += sum(topic != rotor_topic for topic, *_ in messages)
+            answers = _answers(gears, messages, rotor_topic, encoder_topic)
+            computed += len(answers[OUTPUT_STATE])
             # A stable sort by these puts each output directly after its rotor message.
-            places, received = [*range(len(messages))], [messages[place][1] for place in answered]
-            for state, encoded in gear.encode_batch(answers).items():
-                known = [k for k, data in enumerate(encoded) if data]
-                places += [answered[k] for k in known]
-                messages += [(topic_of[state], received[k], encoded[k]) for k in known]
+            places, received = [*range(len(messages))], [message[1] for message in messages]
+            for name, found in answers.items():
+                places += found
+                messages += [(names[name], received[place], found[place]) for place in found]
             writer.write_all([messages[k] for k in np.argsort(places, kind='stable').tolist()])
         if not computed:
-            raise BagError(_nothing_computed(source, rotor_topic, gear.input))
+            raise BagError(_nothing_computed(source, rotor_topic, [*inputs_of.values()]))
     return ComputeResult(
-        gear.input,
+        inputs_of,
         computed,
         copied,
         left_out=tuple(sorted(source.topics.keys() - {*kept, *outputs})),
     )
+
+
+def _choose(gears: Mapping[str, GearState], topics: Topics) -> dict[str, str]:
+    """Choose what the gears encode; return the topics in the bag by their names in the node."""
+    given = {OUTPUT_STATE: topics.output, BODY_POSES: topics.poses}
+    names: dict[str, str] = {}
+    for actuator, gear in gears.items():
+        chosen = [state for state in given if state in gear.topics]
+        if gear.calibration:
+            chosen += CORRECTED_TOPICS
+        if gear.parameters.preload:
+            chosen += LOAD_TOPICS
+        gear.choose(chosen)
+        names |= in_namespace((topic_of(actuator, state) for state in chosen), topics.output)
+    return names | {name: topic for name, topic in given.items() if name in names}
+
+
+def _answers(
+    gears: Mapping[str, GearState], messages: Sequence[Message], rotor: str, encoder: str
+) -> dict[str, dict[int, bytes]]:
+    """Return the outputs by their names in the node and by the place of the rotor's message."""
+    found = defaultdict[str, list[dict[int, bytes]]](list)
+    for actuator, gear in gears.items():
+        answers = gear.batch(messages, rotor, encoder)
+        for state, encoded in gear.encode_batch(answers).items():
+            rows = zip(answers.samples.row.tolist(), encoded, strict=True)
+            found[topic_of(actuator, state)].append({row: data for row, data in rows if data})
+    joined = {}
+    for name, parts in found.items():
+        places = sorted({place for part in parts for place in part})
+        columns = [[part.get(place, b'') for place in places] for part in parts]
+        data = columns[0] if len(columns) == 1 else join_joint_states(columns)
+        joined[name] = dict(zip(places, data, strict=True))
+    return joined
 
 
 def _check_topics(
@@ -153,8 +188,11 @@ def _check_topics(
             raise BagError(f'{source.path}: {topic} is of type {found}, not {message_type}')
 
 
-def _nothing_computed(source: Bag, topic: str, rotor_input: RotorInput) -> str:
-    if not rotor_input.received:
+def _nothing_computed(source: Bag, topic: str, inputs: Sequence[RotorInput]) -> str:
+    if not inputs[0].received:
         return f'{source.path}: no messages on {topic}'
-    joint, why = rotor_input.parameters.rotor_joint, rotor_input.why_rejected
-    return f'{source.path}: no valid state of the joint {joint!r} on {topic}: {why}'
+    states = [
+        f'of the joint {each.parameters.rotor_joint!r} on {topic}: {each.why_rejected}'
+        for each in inputs
+    ]
+    return f'{source.path}: no valid state {"; ".join(states)}'

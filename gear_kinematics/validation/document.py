@@ -56,7 +56,8 @@ Row = tuple[Cell, ...]
 
 
 def document(reports: Sequence[BagReport]) -> Document:
-    """Return the document of a validation, with a section for each bag."""
+    """Return the document of a validation, with a section for each bag and each actuator."""
+    parts = [part for report in reports for part in (report, *report.actuators)]
     count = {verdict: sum(report.verdict == verdict for report in reports) for verdict in Verdict}
     counts = ', '.join(f'{count[verdict]} {OUTCOME[verdict]}' for verdict in Verdict)
     # No bags at all count as unusable.
@@ -64,7 +65,7 @@ def document(reports: Sequence[BagReport]) -> Document:
     columns = 'bag', 'verdict', 'compared', 'largest error', 'tolerance', 'first finding'
     return Document(
         'gearkin validate',
-        tuple(map(_section, reports)),
+        tuple(map(_section, parts)),
         {
             'schema': _SCHEMA,
             'version': _VERSION,
@@ -72,13 +73,14 @@ def document(reports: Sequence[BagReport]) -> Document:
             'bags': [_bag(report) for report in reports],
         },
         verdict,
-        Table(columns, tuple(map(_summary, reports)), words=('', 'verdict', 'first finding')),
+        Table(columns, tuple(map(_summary, parts)), words=('', 'verdict', 'first finding')),
         f'{counted(len(reports), "bag")}: {counts}' if len(reports) != 1 else '',
     )
 
 
 def _name(report: BagReport) -> str:
-    return printable(report.bag) or '(no name)'
+    bag = printable(report.bag) or '(no name)'
+    return f'{bag}: {report.actuator}' if report.actuator else bag
 
 
 def _section(report: BagReport) -> Section:
@@ -98,9 +100,13 @@ def _section(report: BagReport) -> Section:
 
 def _bag(report: BagReport) -> dict[str, Any]:
     """Return the JSON content about a bag; docs/report.schema.json describes it."""
-    content = asdict(replace(report, series=(), mechanism=None))
-    for left_out in ('series', 'mechanism', 'module', 'elapsed'):
+    content = asdict(replace(report, series=(), mechanism=None, actuators=()))
+    for left_out in ('series', 'mechanism', 'module', 'elapsed', 'actuators'):
         del content[left_out]
+    if report.actuators:
+        content['actuators'] = [_bag(each) for each in report.actuators]
+    if not report.actuator:
+        del content['actuator']
     content['findings'] = [one.text for one in findings(report) if one.kind == 'finding']
     content['causes'] = [sentence(finding, report) for finding in report.causes]
     for topic, written in zip(report.topics, content['topics'], strict=True):
@@ -149,7 +155,7 @@ def _summary(report: BagReport) -> Row:
     return (
         Cell(_name(report)),
         Cell(OUTCOME[report.verdict], Tone.PLAIN if report.passed else Tone.BAD),
-        Cell(str(sum(topic.compared for topic in report.topics))),
+        Cell(str(sum(topic.compared for topic in report.every_topic))),
         _measured(error, unit),
         _measured(tolerance, unit),
         Cell('' if report.passed else next((found.text for found in findings(report)), '')),

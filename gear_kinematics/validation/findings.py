@@ -28,7 +28,16 @@ def findings(report: BagReport) -> list[Sentence]:
     """
     damage = [] if report.error is None else [Sentence('error', printable(report.error))]
     notes = [found for found in report.findings if not (found.fails or found.explains)]
-    wrong = sorted((*report.causes, *faults(report)), key=lambda found: found.cause in LESS_GRAVE)
+    gravest = [
+        Finding(
+            FindingCause.OF_ACTUATOR,
+            values={'actuator': each.actuator, 'sentence': findings(each)[0].text},
+        )
+        for each in report.actuators
+        if not each.passed
+    ]
+    wrong = [*report.causes, *gravest, *faults(report)]
+    wrong.sort(key=lambda found: found.cause in LESS_GRAVE)
     return damage + [
         Sentence(
             'finding',
@@ -41,7 +50,10 @@ def findings(report: BagReport) -> list[Sentence]:
 
 def explain(report: BagReport) -> str:
     """Return all that is wrong with a bag, a line each."""
-    return '\n'.join(found.text for found in findings(report))
+    lines = [found.text for found in findings(report)]
+    for each in report.actuators:
+        lines += [f'{each.actuator}: {found.text}' for found in findings(each)[not each.passed :]]
+    return '\n'.join(lines)
 
 
 def sentence(found: Finding, report: BagReport | None = None) -> str:
@@ -66,25 +78,29 @@ def _in_words(value: Any) -> Any:
 
 def answer(report: BagReport) -> str:
     """Return in one line how much was compared, and the largest error with its tolerance."""
-    if not report.rotor:
+    parts = report.actuators or (report,)
+    rotors = [each.rotor for each in parts if each.rotor]
+    if not rotors:
         return ''
-    outputs = sum(topic.compared for topic in report.topics)
-    wrong = sum(topic.wrong for topic in report.topics)
+    outputs = sum(topic.compared for topic in report.every_topic)
+    wrong = sum(topic.wrong for topic in report.every_topic)
     compared = counted(outputs, 'output')
     judged = f'{wrong} of {compared} wrong' if wrong else f'{compared} compared'
-    text = f'{counted(report.rotor.valid, "input")}, {judged}'
+    text = f'{counted(sum(rotor.valid for rotor in rotors), "input")}, {judged}'
+    if report.actuators:
+        text = f'{counted(len(parts), "actuator")}, {text}'
     if not (worst := worst_field(report)):
         return text
     error, unit = worst.max_error, printable(f' {worst.unit}')
     largest = f'largest error {number(error)}{unit if error else ""}'
     text = f'{text}, {largest} (tolerance {number(worst.tolerance)}{unit if error else ""})'
-    wild = sum(field.non_finite for topic in report.topics for field in topic.fields)
+    wild = sum(field.non_finite for topic in report.every_topic for field in topic.fields)
     return f'{text}, {counted(wild, "value")} not finite' if wild else text
 
 
 def worst_field(report: BagReport) -> FieldReport | None:
     """Return the field that used most of its tolerance, if any was compared; a NaN is the most."""
-    fields = [field for topic in report.topics for field in topic.fields if field.compared]
+    fields = [field for topic in report.every_topic for field in topic.fields if field.compared]
     return max(
         fields,
         key=lambda field: math.inf if math.isnan(field.budget_used) else field.budget_used,

@@ -99,27 +99,27 @@ class Independent:
         """Prepare for a recording; where `strict`, outputs of another zero are wrong."""
         self._parameters, self._topics, self._strict = parameters, topics, strict
         self._ratio, self._direction = parameters.gear.gear_ratio, parameters.rotor_direction
+        self._joint = parameters.output_name if parameters.actuator else ''  # the only one
         self._limits = {name: getattr(limits, QUANTITIES[unit]) for name, unit in _UNITS.items()}
         self._errors: dict[str, float] = {}
         self._wrong: list[int] = []
         self._inputs: dict[int, list[_State]] = defaultdict(list)
         self._angles: dict[int, float] = {}  # of the rotor, rad, by the stamps of outputs
-        self._outputs: list[_State] = []
-        self._poses: list[tuple[int, Any]] = []
+        self._outputs, self._poses = list[_State](), list[tuple[int, Any]]()
         self._last: tuple[int, float] | None = None  # stamp and position of the last output
         self._offset: float | None = None  # rad, from positions to rotor angles
         self._given = self._compared = self._taken = 0
 
     def take(self, messages: Iterable[Message]) -> None:
         """Take the next messages, in the order of their reception."""
-        for topic, _, data in messages:
+        for topic, data in ((m[0], m[2]) for m in messages if m[0] in self._topics):
             self._given += topic in (self._topics.output, self._topics.poses)
             with suppress(ValueError, IndexError, struct.error):  # it cannot be decoded
                 cdr = _Cdr(data)
                 if topic == self._topics.rotor:
                     self._inputs[cdr.stamp].append(cdr.joint(self._parameters.rotor_joint))
                 elif topic == self._topics.output:
-                    self._outputs.append(cdr.joint(''))
+                    self._outputs.append(cdr.joint(self._joint))
                 elif topic == self._topics.poses:
                     self._poses.append((cdr.stamp, cdr.array(7)))
         self._compare()

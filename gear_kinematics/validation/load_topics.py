@@ -31,6 +31,8 @@ class LoadTopic(OutputTopic):
         """Take the loads of the node, for one of LOAD_TOPICS."""
         self._topic, self._loads, self._template = topic, loads, loads.templates[topic]
         self.layout = self._template.layout
+        if topic == BRANCH_LOADS:
+            self.joints = self.layout(bytes(self._template.blank)).texts[1:]
         super().__init__(name, '', expectation, _UNITS[topic])
 
     def answered(self, samples: Array) -> Array:

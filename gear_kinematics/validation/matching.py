@@ -25,6 +25,7 @@ from gear_kinematics.validation.fields import (
 from gear_kinematics.validation.recorder import NO_INPUT, Missing, RecordedInputs
 from gear_kinematics.validation.report import Finding, TopicReport
 from gear_kinematics.validation.task import Tolerances
+from gear_kinematics.wire.batches import JointStateBatch
 from gear_kinematics.wire.cdr import MessageLayout
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
@@ -192,6 +193,8 @@ class OutputTopic:
 
     layout: Callable[[bytes], MessageLayout]
     """Returns the layout of a message, of which the last text is the label."""
+    joints: Sequence[bytes] = ()
+    """The joints in its messages, if they can be among those of the other actuators of an arm."""
 
     def __init__(
         self, name: str, label: str, expectation: Expectation, units: Mapping[str, str]
@@ -220,13 +223,21 @@ class OutputTopic:
         self._late: tuple[list[bytes], list[int]] = [], []
         self.unstamped = False
         """Whether the node gave its own time to some inputs, which had no stamp."""
+        self.shared = False
+        """Whether its messages have the joints of several actuators: NaN is an absent value."""
 
     def take(
         self, messages: list[bytes], received: list[int], window: Array, inputs: RecordedInputs
     ) -> None:
         """Compare new messages, and when they were received, ns, with the latest samples, (n,)."""
-        late = len(self._late[0])
-        messages, received = self._late[0] + messages, self._late[1] + received
+        if late := len(self._late[0]):
+            messages, received = self._late[0] + messages, self._late[1] + received
+        if self.shared and self.joints:
+            if not isinstance(messages, JointStateBatch):
+                messages = JointStateBatch(messages)
+            rows, messages = messages.view(self.joints)
+            if len(rows) < len(received):
+                received = [received[row] for row in rows.tolist()]
         stamps, malformed = self._decode(messages)
         self.matcher.see(stamps[late:])
         times = np.array(received, np.int64)

@@ -40,6 +40,7 @@ class JointStateTopic(OutputTopic):
 
     def __init__(self, name: str, joint: str, expectation: Expectation) -> None:
         super().__init__(name, joint, expectation, self.units)
+        self.joints = (joint.encode(),)
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
         self._states = decode_joint_states(messages, self.label)
@@ -54,6 +55,8 @@ class JointStateTopic(OutputTopic):
         # Any value between them is as expected.
         expected = np.where(np.isfinite(recorded), np.clip(recorded, least, most), least)
         wanted, there = ~np.isnan(expected), states.present[rows, : len(self.units)]
+        if self.shared:  # a field that others have; but a position cannot be absent
+            there[:, 1:] &= ~np.isnan(recorded[:, 1:])
         error = np.where(wanted & there, finite_or_infinite(recorded - expected), np.nan)
         return [
             FieldSamples(

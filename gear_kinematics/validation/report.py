@@ -6,9 +6,9 @@ Stamps are ns, times s, angles rad, lengths m; a `first_...` is the stamp of the
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.report.document import Verdict
@@ -184,6 +184,8 @@ class BagReport:
     verdict: Verdict
     config: str = ''
     """The parameter file."""
+    actuator: str = ''
+    """Which actuator of an arm it is about; '' of one gear, and of the arm as a whole."""
     gear_ratio: str = ''
     """Gear ratio, such as `-19` or `-58/3`."""
     error: str | None = None
@@ -205,6 +207,19 @@ class BagReport:
     """Module of its teeth, m, for the drawing."""
     elapsed: float = field(default=0.0, compare=False, repr=False)
     """How long the validation took, s."""
+    actuators: 'tuple[BagReport, ...]' = ()
+    """The reports on the actuators of an arm, of which the verdict is the worst."""
+
+    def adding(self, *findings: Finding) -> Self:
+        """Return the report with further findings, each of which may fail it."""
+        fails = self.passed and any(finding.fails for finding in findings)
+        verdict = Verdict.FAIL if fails else self.verdict
+        return replace(self, verdict=verdict, findings=(*self.findings, *findings))
+
+    @property
+    def every_topic(self) -> tuple[TopicReport, ...]:
+        """The topics, and those of all actuators."""
+        return (*self.topics, *(topic for each in self.actuators for topic in each.topics))
 
     @property
     def causes(self) -> list[Finding]:
@@ -214,7 +229,8 @@ class BagReport:
 
     def seconds(self, stamp: int) -> float | None:
         """Return the time of a stamp since the first stamp of the input, s, if there is one."""
-        first = self.rotor.first_stamp if self.rotor else None
+        rotors = (each.rotor for each in (self, *self.actuators) if each.rotor)
+        first = min((r.first_stamp for r in rotors if r.first_stamp is not None), default=None)
         return None if first is None else (stamp - first) / 1e9
 
     @property

@@ -56,5 +56,7 @@ class Task:
     """Namespace of the node, to choose among several sets of topics."""
     calibration: Calibration | None = None
     """That of `parameters.calibration`; without it, the corrected output is not judged."""
+    actuators: 'tuple[Task, ...]' = ()
+    """A task for each actuator of an arm; empty for one gear."""
     debug: bool = False
     """Whether to print tracebacks of unexpected errors to stderr."""

@@ -25,14 +25,23 @@ from gear_kinematics.bag.schedule import count_due
 from gear_kinematics.fleet.processes import Work
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.parameters.arm import load_actuators
 from gear_kinematics.report.document import Verdict
+from gear_kinematics.validation.arm import ArmValidator
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.independent import Independent
 from gear_kinematics.validation.report import BagReport, Finding, unusable
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validator import Validator, agrees
 from gear_kinematics.wire.cdr import MalformedMessageError, messages_lost
-from gear_kinematics.wire.topics import CORRECTED_TOPICS, LOAD_TOPICS, OUTPUT_ENCODER
+from gear_kinematics.wire.topics import (
+    BODY_POSES,
+    CORRECTED_TOPICS,
+    LOAD_TOPICS,
+    OUTPUT_ENCODER,
+    TOPICS,
+    topic_of,
+)
 
 _LOSSES = (
     'rosbag2_interfaces/msg/MessagesLostEvent'  # type of the events of recorders since Lyrical
@@ -54,10 +63,18 @@ def validate(
         ConfigError: if the file cannot be used.
         MechanismError: if the parameters describe no mechanism.
     """
-    if not isinstance(parameters, NodeParameters):
+    if isinstance(parameters, NodeParameters):
+        actuators = {parameters.actuator: parameters}
+    else:
         options.setdefault('config', str(parameters))
-        parameters = NodeParameters.load(Path(parameters))
-    return validate_bag(Task(Path(bag), parameters, **options))
+        actuators = load_actuators(Path(parameters))
+    return validate_bag(of_arm([Task(Path(bag), each, **options) for each in actuators.values()]))
+
+
+def of_arm(tasks: Sequence[Task]) -> Task:
+    """Return the task of one gear itself, or those of the actuators of an arm as one."""
+    first, *_ = tasks
+    return replace(first, actuators=tuple(tasks)) if first.parameters.actuator else first
 
 
 def validate_bag(
@@ -79,7 +96,10 @@ def validate_bag(
     begun = time.monotonic()
     try:
         with Bag(task.bag) as bag:
-            report = _judged(task, bag, progress, play)
+            if task.actuators:
+                report = _judged_arm(task, bag, progress)
+            else:
+                report = _judged(task, bag, progress, play)
     except BagError as error:
         report = unusable(task.bag, str(error), task.config)
     except Exception as error:
@@ -136,11 +156,7 @@ def _judged(
     except BagError as error:
         damage = str(error)
     lost = Counter[str]() if play else _recorded_losses(bag)
-    report = with_proof(validator.report(damage, lost), proof)
-    losses = [
-        Finding(FindingCause.RECORDER_LOST, name, count=lost[name]) for name in names if lost[name]
-    ]
-    report = replace(report, findings=(*report.findings, *losses))
+    report = with_proof(validator.report(damage, lost), proof).adding(*_losses(lost, names))
     if found != joint:
         taken = Finding(FindingCause.ONLY_JOINT, values={'joint': found, 'topic': topics.rotor})
         return replace(report, findings=(taken, *report.findings))
@@ -152,6 +168,51 @@ def _judged(
                 whose = Finding(FindingCause.OTHER_JOINT, values=values, explains=True)
                 return replace(report, findings=(whose, *report.findings))
     return report
+
+
+def _judged_arm(task: Task, bag: Bag, progress: ReportProgress | None) -> BagReport:
+    """Validate what is recorded of several actuators."""
+    first, *_ = task.actuators
+    topics = find_topics(
+        bag,
+        {'rotor': task.rotor_topic, 'output': task.output_topic},
+        poses=False,
+        joint=first.parameters.rotor_joint,
+        namespace=task.namespace,
+    )
+    namespace, _, _ = topics.output.rpartition('/')
+    validators, proofs = list[Validator](), list[Independent | None]()
+    for each in task.actuators:
+        parameters = each.parameters
+        loads = LOAD_TOPICS if isinstance(parameters.gear, Mechanism) else ()
+        names = {
+            name: f'{namespace}/{topic_of(parameters.actuator, name)}'
+            for name in (BODY_POSES, *CORRECTED_TOPICS, *loads)
+        }
+        own = {n: topic for n, topic in names.items() if bag.topics.get(topic) == TOPICS[n].type}
+        of = topics._replace(poses=each.poses_topic or own.pop(BODY_POSES, ''))
+        encoder = find_encoder_topic(bag, topics.rotor) if parameters.absolute else ''
+        validators.append(Validator(each, of, own, encoder=encoder))
+        proofs.append(independent_of(each, of) if task.independent else None)
+    arm, damage = ArmValidator(validators), None
+    recorded = sorted(arm.topics - {''})
+    batches: Iterable[Sequence[Message]] = bag.batches(recorded, progress)
+    for proof in filter(None, proofs):
+        batches = _seen(proof, batches)
+    try:
+        arm.feed(batches)
+    except BagError as error:
+        damage = str(error)
+    lost = _recorded_losses(bag)
+    reports = [*map(with_proof, arm.reports(damage, lost), proofs)]
+    return arm.report(task, reports).adding(*_losses(lost, recorded))
+
+
+def _losses(lost: Counter[str], topics: Iterable[str]) -> Iterator[Finding]:
+    """Yield what the recorder says that it lost of topics."""
+    for topic in topics:
+        if lost[topic]:
+            yield Finding(FindingCause.RECORDER_LOST, topic, count=lost[topic])
 
 
 def _recorded_losses(bag: Bag) -> Counter[str]:
@@ -187,12 +248,7 @@ def with_proof(report: BagReport, proof: Independent | None) -> BagReport:
         values={'independent': found},
         fails=not found.passed,
     )
-    return replace(
-        report,
-        verdict=report.verdict if found.passed else Verdict.FAIL,
-        independent=found,
-        findings=(*report.findings, finding),
-    )
+    return replace(report, independent=found).adding(finding)
 
 
 def _lost(task: Task, cause: str) -> BagReport:

@@ -46,7 +46,7 @@ from gear_kinematics.wire.topics import LOAD_TOPICS
 _FRAME = 'stator'
 _TOPICS = Topics()
 _NONE: Mapping[str, str] = MappingProxyType({})
-_Batch = Mapping[str, TopicMessages]
+Batch = Mapping[str, TopicMessages]
 """Messages by the names of their topics."""
 
 
@@ -74,9 +74,11 @@ class Validator:
         Raises:
             ValueError: if the parameters describe no gear.
         """
-        self._task = task
+        self.task = task
         self._parameters = parameters = task.parameters
         self._topics, self._further, self._encoder = topics, further, encoder
+        self.topics = *topics, *further.values(), encoder
+        """Names of all topics that it takes; empty ones are not recorded."""
         self._corrected = [name for topic, name in further.items() if topic in CORRECTED]
         self._gear = gear = parameters.gear
         self._state = GearState(parameters, task.calibration)
@@ -115,11 +117,13 @@ class Validator:
                 groups.append([CORRECTED[topic](name, joint, self._expectation)])
         self._groups = [(Completeness(topics.rotor, of, strict=task.strict), of) for of in groups]
         """Outputs that are recorded from the same time on: a node publishes the first ones all."""
+        for output in self.outputs:
+            output.shared = bool(parameters.actuator)
         if self._loads:
             columns.append(('acceleration', np.float64))
         self._window = np.zeros(0, columns)
         """The latest samples."""
-        self._prefix_open = not parameters.frame_prefix
+        self._prefix_open = not (parameters.frame_prefix or parameters.actuator)
         self._findings: list[Finding] = []
 
     def feed(self, batches: Iterable[Sequence[Message]]) -> None:
@@ -129,7 +133,7 @@ class Validator:
             batches: of messages, in the order of their reception.
         """
         for batch in batches:
-            self._take(self._sorted(batch))
+            self.take(by_topic(batch, self.topics))
 
     @np.errstate(all='ignore')  # recorded numbers are arbitrary; overflows fail
     def report(
@@ -154,7 +158,7 @@ class Validator:
         rotor = self._health.report(self._state.input, self._topics.rotor)
         topics = tuple(
             output.report()
-            for output in self._outputs
+            for output in self.outputs
             # Without a calibration, the node publishes nothing on the topics of the correction.
             if (output.matcher.messages or output.name in self._topics) and output.name in judged
         )
@@ -170,11 +174,11 @@ class Validator:
             repeated = Finding(FindingCause.REPEATED_STAMPS, values=values, explains=not passed)
             findings = repeated, *findings
         start = rotor.first_stamp or 0
-        series = (output.series.series(output.name, start) for output in self._outputs)
+        series = (output.series.series(output.name, start) for output in self.outputs)
         return BagReport(
-            bag=str(self._task.bag),
+            bag=str(self.task.bag),
             verdict=Verdict.UNUSABLE if error else Verdict.PASS if passed else Verdict.FAIL,
-            config=self._task.config,
+            config=self.task.config,
             gear_ratio=str(self._gear.gear_ratio),
             error=error,
             messages=rotor.messages + sum(topic.messages for topic in topics),
@@ -192,32 +196,34 @@ class Validator:
         return TurnReferences(self._state) if self._parameters.absolute else None
 
     @property
-    def _outputs(self) -> list[OutputTopic]:
+    def outputs(self) -> list[OutputTopic]:
+        """The output topics that are compared."""
         return [output for _, outputs in self._groups for output in outputs]
 
     @np.errstate(all='ignore')
-    def _take(self, batch: _Batch) -> None:
+    def take(self, batch: Batch) -> None:
+        """Process messages on the topics, and perhaps on others."""
         if self._prefix_open and any(messages.data for messages in batch.values()):
             self._find_prefix(batch)
-        for topic, messages in batch.items():
-            if messages.received:
-                self._begun.setdefault(topic, messages.received[0])
+        for topic in self.topics:
+            if received := batch[topic].received:
+                self._begun.setdefault(topic, received[0])
         segments = self._add_samples(batch)
         self.output.unstamped = bool(self._state.input.zero_stamps)
-        for output in self._outputs:
+        for output in self.outputs:
             messages = batch[output.name]
             output.take(messages.data, messages.received, self._window, self._inputs)
             if output is self.output:
                 self._window['turns_known'] |= output.matcher.matched
                 self._correct(segments)
-        done = np.all([output.answered(self._window) for output in self._outputs], axis=0)
+        done = np.all([output.answered(self._window) for output in self.outputs], axis=0)
         answered = len(done) if done.all() else int(np.argmin(done))
         self._drop(max(answered, len(done) - WINDOW))
 
-    def _add_samples(self, batch: _Batch) -> Array:
+    def _add_samples(self, batch: Batch) -> Array:
         """Add the rotor's samples to the window, and return their unbroken segments, (n,)."""
         messages = batch[self._topics.rotor]
-        samples = self._state.samples(messages.data, messages.received)
+        self.samples = samples = self._state.samples(messages.data, messages.received)
         self._inputs.update(samples.received, samples.stamp, samples.rejected)
         self._health.update(samples.stamp, TURN * samples.turns + samples.angle)
         columns = {name: getattr(samples, name) for name, _ in SAMPLES[2:]}
@@ -236,7 +242,7 @@ class Validator:
         if self._references and self._encoder:
             self._references.take_encoder(batch[self._encoder])
         self._window = np.concatenate([self._window, new])
-        for output in self._outputs:
+        for output in self.outputs:
             output.matcher.extend(len(new))
         return segments
 
@@ -267,7 +273,7 @@ class Validator:
             counted = oldest.copy()
             self._changes.move(counted)
             self._references.take_rotor(counted)
-        for output in self._outputs:
+        for output in self.outputs:
             output.matcher.drop(count)
         self._window = self._window[count:]
 
@@ -288,7 +294,7 @@ class Validator:
                         self._given_segment = segment
         return withheld
 
-    def _find_prefix(self, batch: _Batch) -> None:
+    def _find_prefix(self, batch: Batch) -> None:
         """Adopt the frame prefix of the first output, if any."""
         for output in filter(None, (self.poses, self.output)):
             with suppress(MalformedMessageError, IndexError):
@@ -298,14 +304,11 @@ class Validator:
                     self._prefix_open = False
                     if prefix := label.removesuffix(output.label):
                         self._parameters = replace(self._parameters, frame_prefix=prefix)
-                        for each in self._outputs:
+                        for each in self.outputs:
                             each.label = prefix + each.label
                         taken = Finding(FindingCause.PREFIX_TAKEN, values={'prefix': prefix})
                         self._findings.append(taken)
                     return
-
-    def _sorted(self, messages: Iterable[Message]) -> _Batch:
-        return by_topic(messages, (*self._topics, *self._further.values(), self._encoder))
 
     def _found(self) -> Iterator[Finding]:
         """Yield with what the outputs are compared, what explains their faults, and the rest."""
@@ -316,7 +319,7 @@ class Validator:
         yield from self._changes.notes()
         if self._references:
             yield self._references.finding()
-        for output in self._outputs:
+        for output in self.outputs:
             yield from output.causes()
         if self._state.input.mostly_rejected and self._state.input.missing_joint:
             values = {'topic': rotor, 'detail': self._state.input.missing_joint}

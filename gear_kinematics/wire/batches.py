@@ -5,9 +5,9 @@ Messages of the same layout have everything at the same place, so a batch of the
 bytes. A recording has few layouts per topic; more only cost time.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from gear_kinematics.wire.cdr import (
     SECOND,
     STAMP_OFFSET,
+    JointStateTemplate,
     MalformedMessageError,
     MessageLayout,
     Template,
@@ -27,6 +28,53 @@ from gear_kinematics.wire.joint_reader import describe_missing
 
 Array = NDArray[Any]
 FIELDS = ('position', 'velocity', 'effort')
+
+
+Table = tuple[Array, MessageLayout, Array]
+"""Rows of a batch that have the same layout, the layout, and their bytes, (rows, size)."""
+
+
+class JointStateBatch(list[bytes]):
+    """Messages sensor_msgs/JointState, divided by layout once for readers of several joints."""
+
+    def __init__(self, messages: Sequence[bytes], tables: Sequence[Table] | None = None) -> None:
+        """Take messages, and their tables if they are known."""
+        super().__init__(messages)
+        self.tables = [*_tables(messages, joint_state_layout)] if tables is None else tables
+
+    def view(self, joints: Collection[bytes]) -> tuple[Array, Self]:
+        """Return the rows of messages with any of the joints, or malformed, and these messages.
+
+        Their tables are those of messages that have these joints alone.
+        """
+        tables, kept = list[Table](), np.ones(len(self), bool)
+        for rows, layout, table in self.tables:
+            frame, *names = layout.texts
+            found = [k for k, name in enumerate(names) if name in joints]
+            kept[rows] = bool(found)
+            if found:
+                own = slice(found[0], found[0] + len(found))
+                arrays = tuple(
+                    (offset + 8 * own.start, max(min(own.stop, size) - own.start, 0))
+                    for offset, size in layout.arrays
+                )
+                part = layout._replace(texts=(frame, *names[own]), arrays=arrays)
+                tables.append((rows, part, table))
+        chosen = np.flatnonzero(kept)
+        if len(chosen) == len(self):
+            return chosen, type(self)(self, tables)
+        place = np.cumsum(kept) - 1
+        moved = [(place[rows], layout, table) for rows, layout, table in tables]
+        return chosen, type(self)([self[row] for row in chosen.tolist()], moved)
+
+    def contents(self) -> Iterator[tuple[Array, tuple[bytes, ...], Array, list[Array]]]:
+        """Yield the rows of each table, their joints, stamps, ns, (rows,), and fields, (rows, m).
+
+        The fields are FIELDS; m is 0 where one is empty.
+        """
+        for rows, layout, table in self.tables:
+            fields = [_doubles(table, layout, *array) for array in layout.arrays]
+            yield rows, layout.texts[1:], _stamps(table, layout)[0], fields
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -75,18 +123,19 @@ def decode_joint_states(messages: Sequence[bytes], joint: str) -> JointStates:
     present, values = np.zeros((count, 3), bool), np.full((count, 3), np.nan)
     without = ''
     for rows, layout, table in _tables(messages, joint_state_layout):
-        malformed[rows] = False
-        stamp[rows], nanoseconds = _stamps(table, layout)
-        unnormalised[rows] = nanoseconds >= SECOND
+        at: Any = rows if len(rows) < count else slice(None)  # which is faster
+        malformed[at] = False
+        stamp[at], nanoseconds = _stamps(table, layout)
+        unnormalised[at] = nanoseconds >= SECOND
         index = joint_index(layout, joint.encode())
         if index is None:
             without = without or describe_missing(joint, messages[rows[0]])
             continue
-        joint_found[rows], fit[rows] = True, arrays_fit(layout)
+        joint_found[at], fit[at] = True, arrays_fit(layout)
         for field, (offset, size) in enumerate(layout.arrays):
             if index < size:
-                present[rows, field] = True
-                values[rows, field] = _doubles(table, layout, offset + 8 * index, 1)[:, 0]
+                present[at, field] = True
+                values[at, field] = _doubles(table, layout, offset + 8 * index, 1)[:, 0]
     return JointStates(stamp, unnormalised, malformed, joint_found, fit, present, values, without)
 
 
@@ -154,12 +203,56 @@ def encode(template: Template, stamps: Array, numbers: Sequence[Array | float]) 
     return [data[start : start + size] for start in range(0, len(data), size)]
 
 
+def join_joint_states(parts: Sequence[Sequence[bytes]]) -> list[bytes]:
+    """Join messages sensor_msgs/JointState of the same stamps into one each.
+
+    A joined message has the joints of all parts in their order. A field that no part has is empty;
+    one that some lack is NaN there.
+
+    Args:
+        parts: each with n messages, b'' where it has none.
+
+    Returns:
+        The n messages, b'' where no part has one.
+    """
+    count = len(parts[0])
+    found = [[*JointStateBatch(part).contents()] for part in parts]
+    kinds = np.zeros((count, len(parts)), np.intp)
+    place = np.zeros_like(kinds)  # of messages in their tables
+    for k, tables in enumerate(found):
+        for kind, (rows, *_) in enumerate(tables, 1):
+            kinds[rows, k], place[rows, k] = kind, np.arange(len(rows))
+    joined = [b''] * count
+    for kind in np.unique(kinds, axis=0):
+        rows = np.flatnonzero((kinds == kind).all(axis=1))
+        own = [(found[k][n - 1], place[rows, k]) for k, n in enumerate(kind.tolist()) if n]
+        if not own:
+            continue
+        names = [name.decode() for (_, joints, *_), _ in own for name in joints]
+        there = [any(fields[k].shape[1] for (*_, fields), _ in own) for k in range(3)]
+        numbers = [
+            column
+            for k in np.flatnonzero(there)
+            for (_, joints, _, fields), at in own
+            for column in (fields[k][at].T if fields[k].size else [np.nan] * len(joints))
+        ]
+        (_, _, stamps, _), at = own[0]
+        template = JointStateTemplate(names, velocity=there[1], effort=there[2])
+        encoded = encode(template, stamps[at], numbers)
+        for row, message in zip(rows.tolist(), encoded, strict=True):
+            joined[row] = message
+    return joined
+
+
 def _tables(
     messages: Sequence[bytes], find_layout: Callable[[bytes], MessageLayout]
-) -> Iterator[tuple[Array, MessageLayout, Array]]:
-    """Yield each layout with its rows and their bytes, (rows, size), without malformed ones."""
+) -> Iterator[Table]:
+    """Yield the tables of messages, without malformed ones."""
+    if isinstance(messages, JointStateBatch):
+        yield from messages.tables
+        return
     sizes = np.fromiter(map(len, messages), np.intp, len(messages))
-    for size in np.unique(sizes):
+    for size in np.unique(sizes[sizes > 0]):
         rows = np.flatnonzero(sizes == size)
         all_alike = len(rows) == len(messages)
         chosen = messages if all_alike else [messages[row] for row in rows.tolist()]

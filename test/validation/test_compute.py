@@ -39,7 +39,7 @@ def of_topic(messages, topic) -> list[bytes]:
 def run(source: Path, target: Path, settings=None, **options) -> ComputeResult:
     target.parent.mkdir(exist_ok=True)
     with Bag(source) as bag:
-        return compute(bag, target, settings or config_of(source.name), **options)
+        return compute(bag, target, {'': settings or config_of(source.name)}, **options)
 
 
 def digests(folder: Path) -> dict[str, str]:
@@ -122,8 +122,8 @@ def test_the_computed_outputs_are_those_that_the_node_published(
     recorded = read_bag(BAGS / name)
     source = BAGS / name
     if not recorded_outputs:
-        rotor = [message for message in recorded if message[0] == '/rotor_state']
-        source = write_bag(tmp_path / 'source', rotor, {'/rotor_state': TYPES['/rotor_state']})
+        states = [message for message in recorded if message[0] == '/rotor_state']
+        source = write_bag(tmp_path / 'source', states, {'/rotor_state': TYPES['/rotor_state']})
     form = {'storage': storage, 'compression': compression}
     result = run(source, tmp_path / 'computed', config_of(name), **form)
     with Bag(tmp_path / 'computed') as bag:
@@ -132,8 +132,8 @@ def test_the_computed_outputs_are_those_that_the_node_published(
     assert Counter(topic for topic, *_ in computed) == counts
     for topic in TYPES:
         assert of_topic(computed, topic) == of_topic(recorded, topic)
-    assert (result.rotor_input.received, result.computed, result.copied) == (received, valid, 0)
-    rotor = result.rotor_input
+    rotor = result.inputs['']
+    assert (rotor.received, result.computed, result.copied) == (received, valid, 0)
     assert rotor.rejected.total() + rotor.of_others == received - valid
 
 
@@ -153,7 +153,7 @@ def test_an_input_without_a_stamp_gets_the_time_of_its_reception(tmp_path):
     times = [5 * SECOND, 2**31 * SECOND - 1, 2**31 * SECOND, 2**63 - 1]
     messages = [('/rotor_state', time, rotor_bytes(0, position=[1.0])) for time in times]
     result = run(write_bag(tmp_path / 'source', messages), tmp_path / 'computed', config())
-    assert (result.computed, result.rotor_input.rejected) == (2, {'stamp out of range': 2})
+    assert (result.computed, result.inputs[''].rejected) == (2, {'stamp out of range': 2})
     computed = read_bag(tmp_path / 'computed')
     assert len(of_topic(computed, '/rotor_state')) == 4
     for topic in OUTPUTS:

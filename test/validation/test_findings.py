@@ -58,6 +58,9 @@ VALUES = {
     'seconds': 1.23456,
     'lost': {'/output_state': 2, '/a': 1},
     'complete': ['/body_poses', '/b'],
+    'actuator': 'elbow',
+    'sentence': 'the last output alone is off',
+    'joints': 'wrist, elbow',
     'independent': SimpleNamespace(text='40 outputs agree with the matrix method'),
 }
 

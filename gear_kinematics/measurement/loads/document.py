@@ -77,7 +77,9 @@ def report(task: LoadTask, progress: ReportProgress | None = None) -> LoadReport
 
 
 def _lost(task: LoadTask, cause: str) -> LoadReport:
-    return LoadReport(None, {}, cause if str(task.bag) in cause else f'{task.bag}: {cause}')
+    actuator = f'{task.parameters.actuator}: ' if task.parameters.actuator else ''
+    told = cause if str(task.bag) in cause else f'{task.bag}: {actuator}{cause}'
+    return LoadReport(None, {}, told)
 
 
 WORK = Work(report, _lost)
@@ -93,8 +95,9 @@ def _report(task: LoadTask, loads: RecordedLoads) -> LoadReport:
         answer = f'{answer[:-1]}; {question}.'
     if preload and (moments or not question):
         verdict = Verdict.FAIL if moments else Verdict.PASS
+    name, actuator = printable(task.bag.name), task.parameters.actuator
     section = Section(
-        printable(task.bag.name),
+        f'{name}: {actuator}' if actuator else name,
         (_table(forces),),
         verdict,
         tuple(_findings(answer, moments)),
@@ -105,6 +108,7 @@ def _report(task: LoadTask, loads: RecordedLoads) -> LoadReport:
     )
     data = {
         'name': task.bag.name,
+        **({'actuator': actuator} if actuator else {}),
         'answer': answer,
         'verdict': verdict,
         'duration': float(loads.time[-1]),

@@ -1,0 +1,199 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Validates the recording of an arm: each actuator by its own joints, and the joined messages.
+
+The actuators of an arm share the messages of rotors and outputs. A `Validator` for each takes the
+joints of its actuator from them. What is left to judge is the order of the joints, which of them
+belong together in a message, and which fields of it are empty.
+"""
+
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from gear_kinematics.bag import Message, by_topic
+from gear_kinematics.report.document import Verdict
+from gear_kinematics.validation.causes import FindingCause
+from gear_kinematics.validation.fields import Array, Occurrences
+from gear_kinematics.validation.load_topics import LoadTopic
+from gear_kinematics.validation.matching import WINDOW
+from gear_kinematics.validation.report import BagReport, Finding
+from gear_kinematics.validation.task import Task
+from gear_kinematics.validation.validator import Validator
+from gear_kinematics.wire.batches import FIELDS, JointStateBatch
+
+_BITS = 63
+"""Number of bits of a positive int64."""
+_Fault = tuple[int | None, FindingCause, str, str]
+"""An actuator or none, what is wrong, and with which field and joints."""
+
+
+class JoinedMessages:
+    """Judges which joints the messages of a topic have, in which order, and which empty fields."""
+
+    def __init__(
+        self, joints: Mapping[bytes, int], needed: Collection[int], count: int, *, others: bool
+    ) -> None:
+        """Start without messages.
+
+        Args:
+            joints: all joints that can be in them, in their order, with the numbers of their
+                actuators.
+            needed: the actuators with a joint in a message whenever their rotor is valid.
+            count: number of all actuators.
+            others: whether there are joints of others, about which nothing is known.
+        """
+        self._actuators, self._order, self._others = joints, list(joints), others
+        # A set of actuators is a number, with a bit for each.
+        self._bits = np.array(
+            [1 << k for k in range(count)], np.int64 if count <= _BITS else object
+        )
+        self._needed = self._set_of(needed)
+        self._inputs = np.zeros((2, 0), self._bits.dtype)
+        """Stamps and sets of the latest inputs."""
+        self._waiting = self._inputs
+        """Stamps and sets of messages whose inputs may come with the next batch."""
+        self._faults: defaultdict[_Fault, Occurrences] = defaultdict(Occurrences)
+
+    def take(self, messages: JointStateBatch, stamps: Array, valid: Array) -> None:
+        """Judge the next messages.
+
+        Args:
+            messages: of the topic.
+            stamps: of the next inputs, ns, (n,).
+            valid: whether they have a valid state of each actuator, (n, actuators).
+        """
+        sets = valid.astype(self._bits.dtype) @ self._bits
+        inputs = np.stack([stamps, sets & self._needed])
+        self._inputs = np.hstack([self._inputs[:, -WINDOW:], inputs])
+        outputs = [self._waiting]
+        for _, names, stamp, fields in messages.contents():
+            if not self._others:
+                self._judge(names, stamp, fields)
+            there = self._set_of({self._actuators.get(name, -1) for name in names} - {-1})
+            outputs.append(np.stack([stamp, np.full_like(stamp, there & self._needed)]))
+        self._compare(np.hstack(outputs), waited=self._waiting.shape[1])
+
+    def findings(self, topic: str, actuator: int | None = None) -> Iterator[Finding]:
+        """Yield what is wrong with the messages as a whole, or with the joints of an actuator."""
+        for (of, cause, field, joints), found in self._faults.items():
+            if found.count and of == actuator:
+                values = {'field': field, 'joints': joints}
+                yield Finding(cause, topic, found.first, found.count, values, fails=True)
+
+    def _set_of(self, actuators: Collection[int]) -> int:
+        return sum(1 << k for k in actuators)
+
+    def _judge(self, names: Sequence[bytes], stamp: Array, fields: Sequence[Array]) -> None:
+        """Judge messages with the same names."""
+        places = [self._order.index(name) for name in names if name in self._actuators]
+        joints = ', '.join(name.decode(errors='replace') for name in names) or 'none'
+        if len(places) < len(names) or not names:
+            self._faults[None, FindingCause.OTHER_JOINTS, '', joints].add(stamp)
+        elif places != sorted(set(places)):
+            self._faults[None, FindingCause.JOINTS_DISORDERED, '', joints].add(stamp)
+        for field, values in zip(FIELDS, fields, strict=True):
+            if (count := values.shape[1]) not in {0, len(names)}:
+                self._faults[None, FindingCause.ARRAY_SIZE, field, joints].add(stamp)
+            elif count and field != FIELDS[0]:
+                empty = stamp[np.isnan(values).all(axis=1)]
+                self._faults[None, FindingCause.NAN_FOR_ALL, field, joints].add(empty)
+
+    def _compare(self, outputs: Array, waited: int) -> None:
+        """Look for messages that lack joints of an input, and are those of no other input."""
+        stamps, sets = outputs
+        order = np.argsort(self._inputs[0], kind='stable')
+        in_stamps, in_sets = self._inputs[:, order]
+        first = np.searchsorted(in_stamps, stamps)
+        last = np.searchsorted(in_stamps, stamps, 'right')
+        rows = np.flatnonzero((last - first != 1) | (in_sets.take(first, mode='clip') != sets))
+        self._waiting = outputs[:, rows[(first == last)[rows] & (rows >= waited)]]
+        for row in rows.tolist():
+            there, wanted = int(sets[row]), [*map(int, in_sets[first[row] : last[row]])]
+            more = [each & ~there for each in wanted if not there & ~each]
+            lacking = 0 if there in wanted else next(iter(more), 0)
+            for k in range(len(self._bits)):
+                if lacking >> k & 1:
+                    fault = k, FindingCause.JOINT_LEFT_OUT, '', ''
+                    self._faults[fault].add(stamps[row : row + 1])
+
+
+class ArmValidator:
+    """Validates the actuators of an arm from the same messages."""
+
+    def __init__(self, validators: Sequence[Validator]) -> None:
+        """Take the validators of all actuators in their order."""
+        self._validators = validators
+        self.topics = {topic for each in validators for topic in each.topics}
+        """Names of all topics, among them '' for those that are not recorded."""
+        self._rotor = validators[0].topics[0]
+        self._messages = 0
+        joints: defaultdict[str, dict[bytes, int]] = defaultdict(dict)
+        needed: defaultdict[str, set[int]] = defaultdict(set)
+        outputs = {each.output.joints[0]: k for k, each in enumerate(validators)}
+        for k, validator in enumerate(validators):
+            withholds = validator.task.parameters.unreferenced_outputs == 'withhold'
+            for output in validator.outputs:
+                if isinstance(output, LoadTopic):
+                    joints[output.name] |= dict.fromkeys(output.joints, k)
+                elif output.joints:
+                    joints[output.name] = outputs
+                    needed[output.name] |= set() if withholds else {k}
+        count = len(validators)
+        others = count < len(validators[0].task.parameters.actuators)
+        self._joined = {
+            topic: JoinedMessages(of, needed[topic], count, others=others)
+            for topic, of in joints.items()
+            if of
+        }
+
+    def feed(self, batches: Iterable[Sequence[Message]]) -> None:
+        """Process messages, up to an exception of the iterable, if any; see `Validator.feed`."""
+        for batch in batches:
+            messages = by_topic(batch, self.topics)
+            self._messages += len(batch)
+            states = {
+                topic: JointStateBatch(messages[topic].data)
+                for topic in (self._rotor, *self._joined)
+            }
+            for topic, data in states.items():
+                messages[topic].data = data
+            stamps = np.zeros(len(messages[self._rotor].data), np.int64)
+            valid = np.zeros((len(stamps), len(self._validators)), bool)
+            for rows, _, stamp, _ in states[self._rotor].contents():
+                stamps[rows] = stamp
+            for k, validator in enumerate(self._validators):
+                validator.take(messages)
+                valid[validator.samples.row, k] = True
+            for topic, joined in self._joined.items():
+                joined.take(states[topic], stamps, valid)
+
+    def reports(self, error: str | None, lost: Mapping[str, int]) -> list[BagReport]:
+        """Return the report on each actuator; see `Validator.report`."""
+        return [
+            replace(
+                validator.report(error, lost).adding(*self._findings(k)),
+                actuator=validator.task.parameters.actuator,
+            )
+            for k, validator in enumerate(self._validators)
+        ]
+
+    def report(self, task: Task, reports: Sequence[BagReport]) -> BagReport:
+        """Return the report on the arm, from those on its actuators."""
+        errors = {report.actuator: report.error for report in reports if report.error}
+        common = len(errors) == len(reports) and len({*errors.values()}) == 1
+        named = [error if common else f'{name}: {error}' for name, error in errors.items()]
+        report = BagReport(
+            str(task.bag),
+            max((each.verdict for each in reports), key=list(Verdict).index),
+            task.config,
+            error='; '.join(dict.fromkeys(named)) or None,
+            messages=self._messages,
+            actuators=tuple(reports),
+        )
+        return report.adding(*self._findings())
+
+    def _findings(self, actuator: int | None = None) -> Iterator[Finding]:
+        for topic, joined in self._joined.items():
+            yield from joined.findings(topic, actuator)

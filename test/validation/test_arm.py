@@ -1,0 +1,167 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The recording of an arm is judged joint by joint, and by what its messages have in common."""
+
+import json
+import math
+
+import jsonschema
+import pytest
+from arm_recordings import OUTPUT, RATIOS, ROTOR, Joints, config, recording
+from blocked_bags import BAGS, gearkin_here, refusal
+from shipped_bags import JOINT_STATE, write_bag
+
+from gear_kinematics.bag import in_batches
+from gear_kinematics.parameters.arm import load_actuators
+from gear_kinematics.report.document import Verdict
+from gear_kinematics.validation import Task, explain
+from gear_kinematics.validation.arm import ArmValidator
+from gear_kinematics.validation.validate_bag import of_arm
+from gear_kinematics.validation.validator import Validator
+
+PAIR, WRIST, ALL = 40, 41, 42
+"""Numbers of the messages of two drivers with the same stamp, and of one with all joints."""
+
+
+def judged(path, messages, size: int = 10_000):
+    """The report on messages that come in batches of a size."""
+    actuators = load_actuators(config(path / 'arm.yaml'))
+    task = of_arm([Task(path, each) for each in actuators.values()])
+    arm = ArmValidator([Validator(each) for each in task.actuators])
+    arm.feed(in_batches(messages, size))
+    return arm.report(task, arm.reports(None, {}))
+
+
+def test_messages_of_all_joints_and_of_several_drivers_pass_in_batches_of_any_size(tmp_path):
+    whole = judged(tmp_path, recording())
+    assert whole.passed, explain(whole)
+    assert [(each.actuator, each.gear_ratio) for each in whole.actuators] == [
+        (name, str(ratio)) for name, ratio in RATIOS.items()
+    ]
+    for each in whole.actuators:
+        assert each.rotor.valid == each.topics[0].compared == 60
+    velocities = [each.topics[0].fields[1].compared for each in whole.actuators]
+    assert velocities == [60, 60, 0]
+    assert [each.topics[0].fields[2].compared for each in whole.actuators] == [40, 0, 0]
+    for size in (1, 7):
+        assert judged(tmp_path, recording(), size).passed
+
+
+def without(joints: Joints, name: str) -> Joints:
+    k = joints.names.index(name)
+    return Joints(*([*values[:k], *values[k + 1 :]] for values in joints))
+
+
+def reverse(joints: Joints) -> list[Joints]:
+    return [Joints(*(values[::-1] for values in joints))]
+
+
+def change(field: str, name: str, value):
+    def edit(joints: Joints) -> list[Joints]:
+        values, k = [*getattr(joints, field)], joints.names.index(name)
+        values[k] = value(values[k]) if callable(value) else value
+        return [joints._replace(**{field: values})]
+
+    return edit
+
+
+MISSING = '/output_state: the joint is missing although its rotor is valid: 1 message'
+
+
+@pytest.mark.parametrize(
+    ('number', 'edit', 'at_fault', 'text'),
+    [
+        (ALL, lambda joints: [without(joints, 'elbow')], 'elbow', MISSING),
+        (
+            ALL,
+            lambda joints: [
+                without(joints, 'elbow'),
+                without(without(joints, 'shoulder'), 'wrist'),
+            ],
+            'elbow',
+            MISSING,
+        ),
+        (PAIR, lambda joints: [without(joints, 'shoulder')], 'shoulder', MISSING),
+        (ALL, reverse, '', 'not in the order of `actuators`, but wrist, elbow, shoulder'),
+        (
+            WRIST,
+            lambda joints: [joints._replace(names=['thumb'])],
+            '',
+            'the joints are not those of the actuators, but thumb',
+        ),
+        (
+            WRIST,
+            lambda joints: [joints._replace(velocity=[math.nan])],
+            '',
+            'velocity is NaN for all of wrist, and should be empty',
+        ),
+        (
+            ALL,
+            lambda joints: [joints._replace(effort=joints.effort[:2])],
+            '',
+            'effort has not a value for each of shoulder, elbow, wrist',
+        ),
+        (
+            ALL,
+            change('velocity', 'wrist', 0.0),
+            'wrist',
+            'velocity: 1 value without a counterpart',
+        ),
+        (ALL, change('velocity', 'elbow', math.nan), 'elbow', 'velocity: 1 value without a'),
+        (ALL, change('position', 'elbow', math.nan), 'elbow', 'position: 1 value not finite'),
+        (ALL, change('position', 'wrist', lambda x: x + 2e-9), 'wrist', 'exceeds the tolerance'),
+        (
+            PAIR,
+            lambda joints: [
+                Joints(*map(list.__add__, joints, (['wrist'], [1 / 30], [math.nan], [])))
+            ],
+            'wrist',
+            '1 message too many',
+        ),
+    ],
+)
+def test_a_fault_in_one_message_is_found_and_fails_the_actuator_or_the_arm(
+    number, edit, at_fault, text, tmp_path
+):
+    def edited(k, joints):
+        return edit(joints) if k == number else [joints]
+
+    report = judged(tmp_path, recording(edit=edited), 5)
+    assert report.verdict == Verdict.FAIL
+    if not at_fault:
+        assert text in explain(report).splitlines()[0]
+        return
+    (found,) = (each for each in report.actuators if each.actuator == at_fault)
+    assert found.verdict == Verdict.FAIL
+    assert text in explain(found)
+    assert f'{at_fault}: ' in explain(report)
+
+
+def test_the_command_reports_each_actuator_and_narrows_to_one(tmp_path):
+    changed = change('position', 'elbow', lambda x: x + 2e-9)
+    messages = recording(edit=lambda k, joints: changed(joints) if k == ALL else [joints])
+    bag = write_bag(tmp_path / 'bag', messages, {ROTOR: JOINT_STATE, OUTPUT: JOINT_STATE})
+    options = ['validate', bag, '--config', config(tmp_path / 'arm.yaml'), '--independent']
+    done = gearkin_here(*options)
+    assert done.returncode == 1
+    lines = [line.removeprefix(f'{bag}: ') for line in done.stdout.splitlines()]
+    assert lines[0].startswith('verdict: failed: elbow: 60 outputs differ from the matrix method')
+    assert '; 3 actuators, 180 inputs, 1 of 180 outputs wrong, largest error 2e-9 rad' in lines[0]
+    verdicts = [line.split(';')[0][:30] for line in lines if 'verdict' in line][1:]
+    assert verdicts == [
+        'elbow: verdict: failed: 60 out', 'shoulder: verdict: passed', 'wrist: verdict: passed',
+    ]  # fmt: skip
+    content = json.loads(gearkin_here(*options, '--json', '-').stdout)
+    schema = json.loads((BAGS.parent / 'docs' / 'report.schema.json').read_text('utf-8'))
+    jsonschema.validate(content, schema)
+    (arm,) = content['bags']
+    assert (arm['verdict'], arm['rotor'], arm['messages']) == ('fail', None, 160)
+    assert [each['actuator'] for each in arm['actuators']] == list(RATIOS)
+    assert [each['verdict'] for each in arm['actuators']] == ['pass', 'fail', 'pass']
+    assert [each['independent']['compared'] for each in arm['actuators']] == [60] * 3
+    assert not arm['actuators'][1]['independent']['passed']
+    narrowed = gearkin_here(*options, '--actuator', 'wrist', '--json', '-')
+    assert narrowed.returncode == 0
+    (arm,) = json.loads(narrowed.stdout)['bags']
+    assert [each['actuator'] for each in arm['actuators']] == ['wrist']
+    for option in (['--plot', tmp_path / 'x.png'], ['--live'], ['--joint', 'wrist']):
+        assert '--actuator' in refusal(*options, *option)
