@@ -114,6 +114,11 @@ def full_name(actuator: str, name: str) -> str:
     return f'{actuator}.{name}' if actuator else name
 
 
+def labelled(actuator: str, text: str) -> str:
+    """A text on an actuator, with its name before it if it has one."""
+    return f'{actuator}: {text}' if actuator else text
+
+
 def faults_in(given: Mapping[str, Any], others: Iterable[str] = ()) -> list[str]:
     """List the faults of values by names in ROS, and of these names; the node has `others` too."""
     names = given.get('actuators', [])
@@ -149,14 +154,14 @@ def shared_names(actuators: Mapping[str, NodeParameters]) -> list[str]:
         try:
             joints.update(each.joint_names)
         except ValueError as error:
-            faults.append(f'{name}: {error}')
+            faults.append(labelled(name, str(error)))
     for (parameter, value), names in owners.items():
         if len(actuators) > 1 and not value and parameter in _JOINTS:
             every = ' and '.join(full_name(name, parameter) for name in names)
-            faults.append(f'{every} must name a joint, as there are several actuators')
+            faults.append(f'{every} must name a joint of several, or be left out')
         elif len(names) > 1:
-            text = f'{parameter} {value!r} belongs to {" and ".join(names)}: give each its own'
-            faults.append(text)
+            which = f'{parameter} {value!r} belongs to {" and ".join(names)}'
+            faults.append(f'{which}: give each its own, or leave it out')
     twice = [name for name, count in joints.items() if count > 1]
     if twice and not faults:
         faults = [f'two actuators have a joint {name!r}: change an output_joint' for name in twice]

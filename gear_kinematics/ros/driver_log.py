@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from rclpy.node import Node
 
 from gear_kinematics.kinematics import RotorSample
+from gear_kinematics.parameters.arm import labelled
 from gear_kinematics.ros.graph import Graph
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.nearest import listed
@@ -41,7 +42,7 @@ class DriverLog:
         jumps = self._jumped()
         for name, each in self._inputs.items():
             if jumps[name] > self._jumps[name]:
-                self._log.warning(f'{_of(name)}{each.plausibility.jumped}: {_HOME}')
+                self._log.warning(labelled(name, f'{each.plausibility.jumped}: {_HOME}'))
         self._jumps = jumps
         looked, self._looked = self._looked, not publishers
         if self.awaited:
@@ -67,14 +68,10 @@ class DriverLog:
             moved = sample.position.since(before.get(name, sample).position)
             if abs(moved) > _ELSEWHERE:
                 turned = f'the rotor is {math.degrees(moved):.0f}° from where it was'
-                elsewhere.append(f'{_of(name)}{turned}')
+                elsewhere.append(labelled(name, turned))
         if elsewhere:
             self._jumps = self._jumped()
             at = '; '.join(elsewhere)
             self._log.warning(f'{self._topic} is heard again, but {at}: {_HOME}')
         else:
             self._log.info(f'{self._topic} is heard now')
-
-
-def _of(name: str) -> str:
-    return f'{name}: ' if name else ''

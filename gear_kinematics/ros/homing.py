@@ -14,7 +14,7 @@ from std_srvs.srv import Trigger
 from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.parameters.arm import full_name
+from gear_kinematics.parameters.arm import full_name, labelled
 from gear_kinematics.parameters.home_file import read_home, write_home
 from gear_kinematics.state.diagnostics import InputMonitor
 from gear_kinematics.state.rotor_input import RotorInput
@@ -157,7 +157,7 @@ class Homing:
             try:
                 found[name] = self._shafts[name].zero()
             except _RefusedError as error:
-                refused.append(_of(name, str(error)))
+                refused.append(labelled(name, str(error)))
         if refused:
             none = 'no shaft was homed: ' if len(names) > 1 else ''
             return False, none + '; '.join(refused)
@@ -172,9 +172,5 @@ class Homing:
             shaft.input.home(rotor_angle)
             zero, moved = found[name]
             kept = f'rotor_zero {zero:.3f} rad, {shaft.monitor.zero_kept}'
-            texts.append(_of(name, f'{moved} ({kept})'))
+            texts.append(labelled(name, f'{moved} ({kept})'))
         return True, '; '.join(texts)
-
-
-def _of(name: str, text: str) -> str:
-    return f'{name}: {text}' if name else text

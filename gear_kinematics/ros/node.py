@@ -22,7 +22,7 @@ from std_msgs.msg import Bool
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.kinematics import Gear, Mechanism
 from gear_kinematics.parameters import NODE, PARAMETERS, NodeParameters
-from gear_kinematics.parameters.arm import full_name, shared_names
+from gear_kinematics.parameters.arm import full_name, labelled, shared_names
 from gear_kinematics.parameters.files import require_any
 from gear_kinematics.ros.actuator import Actuator
 from gear_kinematics.ros.diagnostics import diagnostic_array, find_faults
@@ -76,7 +76,7 @@ class GearStatePublisher(PublishingNode):
                 calibration = self._calibration(each.calibration, each.gear)
                 self._actuators[name] = Actuator(homed, calibration)
             except ValueError as error:
-                raise ValueError(f'{name}: {error}' if name else str(error)) from error
+                raise ValueError(labelled(name, str(error))) from error
         self._named = {full_name(name, key): (name, key) for name in given for key in PARAMETERS}
         self._known = {full: PARAMETERS[key] for full, (_, key) in self._named.items()}
         self._arm = ArmState({name: each.state for name, each in self._actuators.items()})
@@ -131,8 +131,7 @@ class GearStatePublisher(PublishingNode):
             gear, known = each.gear, 'bodies unknown'
             if isinstance(gear, Mechanism):
                 known = f'ring {gear.ring_teeth}, satellite {gear.satellite_teeth} teeth'
-            of = f'{name}: ' if name else ''
-            texts.append(f'{of}gear ratio {gear.gear_ratio} ({known})')
+            texts.append(labelled(name, f'gear ratio {gear.gear_ratio} ({known})'))
             joints.append(f'joint {each.rotor_joint!r}' if each.rotor_joint else 'the only joint')
         self.get_logger().info(
             f'{", ".join(texts)}, listening for {", ".join(joints)} '
@@ -291,7 +290,7 @@ class GearStatePublisher(PublishingNode):
     def _publish_diagnostics(self) -> None:
         now = time.monotonic()
         reports = {
-            f'{name}: {subject}' if name else subject: report
+            labelled(name, subject): report
             for name, each in self._actuators.items()
             for subject, report in each.reports(now).items()
         }
