@@ -46,6 +46,7 @@ _MESSAGE_TYPES = {
     topics.WRENCHES: MultiDOFJointState,
 }
 _REPORT_PERIOD = 1.0  # s
+_SHOWN = 'frame_prefix', 'output_joint'  # live parameters in the URDF, which takes 3 ms a gear
 
 
 class GearStatePublisher(PublishingNode):
@@ -191,9 +192,9 @@ class GearStatePublisher(PublishingNode):
         """Apply what was prepared, after every change."""
         for name, prepared in self._prepared.items():
             self._arm.apply(name, *prepared)
-        if self._display:
-            self._display.update(self._shown())
         named = [self._named.get(parameter.name, ('', '')) for parameter in changed]
+        if self._display and any(key in _SHOWN for _, key in named):
+            self._display.update(self._shown())
         if homed := [name for name, key in named if key == 'rotor_zero']:
             self._homing.keep(homed)
 

@@ -13,7 +13,12 @@ from wire import micro_ros_bytes
 
 from gear_kinematics.wire.batches import decode_joint_states
 from gear_kinematics.wire.cdr import MalformedMessageError
-from gear_kinematics.wire.joint_reader import GREATEST, JointReader, RejectedInputError
+from gear_kinematics.wire.joint_reader import (
+    GREATEST,
+    JointReader,
+    JointsReader,
+    RejectedInputError,
+)
 
 decode_joint_state = harness('messages').decode_joint_state
 LARGEST = 2**51 * math.tau  # rad: beyond it a position is too large
@@ -85,6 +90,23 @@ def test_any_layout_is_read_after_any_other(sequence, joint):
         for stamp in (message['stamp'], 5):  # the second time with the layout of the first
             data = rotor_bytes(**message | {'stamp': stamp}, little_endian=little_endian)
             assert read(reader, data) == expected(data, joint)
+
+
+@pytest.mark.slow
+@settings(max_examples=80)
+@given(st.lists(messages, max_size=8), st.lists(names, min_size=1, max_size=3))
+def test_several_joints_are_read_as_each_alone(sequence, joints):
+    reader = JointsReader(joints)
+    for message in sequence * 2:
+        data = rotor_bytes(**message)
+        alone = [expected(data, joint) for joint in joints]
+        found = read(reader, data)
+        if isinstance(found, str):
+            assert {found} == {*alone}
+        else:
+            found = [str(one) if isinstance(one, Exception) else one for one in found]
+            assert found == [None if one == 'joint missing' else one for one in alone]
+            assert any(found)
 
 
 @pytest.mark.slow
