@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What a recording shows in sentences: the answer, what limits say of it, and remarks."""
+"""Sentences on a recording: the answer, the judgement by limits, and remarks."""
 
 import math
 from collections.abc import Iterator

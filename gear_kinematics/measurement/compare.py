@@ -34,7 +34,7 @@ from gear_kinematics.report.document import (
 )
 
 _TORQUES = 300
-"""Of half a loop in a plot."""
+"""Points of half a loop in a plot."""
 _WITHIN = 'Record each state several times, and compare with --group: recordings scatter more'
 
 

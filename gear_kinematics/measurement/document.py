@@ -37,7 +37,7 @@ _COLUMNS = 2
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Comparison:
-    """Of recordings at a common torque."""
+    """Comparison of recordings at a common torque."""
 
     section: Section
     sentence: str

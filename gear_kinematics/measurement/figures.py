@@ -47,7 +47,7 @@ class MeasuredStiffness:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class GearFigures:
-    """Of a gear: angles in rad, torques in N·m."""
+    """Figures of a gear: angles in rad, torques in N·m."""
 
     rated_torque: float
     angle_step: float
@@ -156,7 +156,7 @@ def _hysteresis(loops: Sequence[Loop], angle_step: float) -> Estimate:
 
 
 def _drifted(loops: Sequence[Loop]) -> Component:
-    """What a zero that drifts evenly adds to the angle between the halves of a loop, rad."""
+    """Angle that an even drift of the zero adds between the halves of a loop, rad."""
     middles = [loop.middle(0.0) for loop in loops]
     if len(loops) < 3:  # noqa: PLR2004, no line with a scatter
         return Component(0.0)

@@ -14,11 +14,11 @@ from scipy.spatial import ConvexHull
 Array = NDArray[np.float64]
 
 _MIN_ROWS = 25
-"""Of a half cycle."""
+"""Least number of rows of a half cycle."""
 _MIN_SIGNAL_TO_NOISE = 5.0
-"""Of the torque in a half cycle, in standard deviations of the noise."""
+"""Least greatest torque of a half cycle, in standard deviations of the noise."""
 _MIN_SHARE = 0.01
-"""Of the largest torque, that a half cycle exceeds."""
+"""Share of the largest torque that a half cycle has to exceed."""
 _EQUAL_TORQUES = 3.0
 """Standard deviations of the noise within which two torques count as equal."""
 _SMOOTHED = 0.01

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What a recording tells of a gear: the figures of torque ramps, and the transmission error."""
+"""Measurement of a gear from a recording: figures of torque ramps, and the transmission error."""
 
 from dataclasses import dataclass, replace
 
@@ -30,7 +30,7 @@ class LostMotion:
     remarks: tuple[str, ...] = ()
     """Sentences about what was found."""
     wrong_ratio: str = ''
-    """What is wrong with the ratio, in a sentence; empty if nothing shows."""
+    """Sentence on what is wrong with the ratio; empty if nothing shows."""
 
     @property
     def main_figures(self) -> tuple[Measured, ...]:

@@ -24,7 +24,7 @@ class Measured(NamedTuple):
     """SI."""
     value: Estimate | Backlash | None
     at: str = ''
-    """Where it was read, to follow the name."""
+    """Condition under which it was read, in words that follow the name."""
 
     @property
     def cell(self) -> Cell:

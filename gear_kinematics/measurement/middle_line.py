@@ -82,7 +82,7 @@ class Backlash(NamedTuple):
 
 @dataclass(frozen=True, eq=False, slots=True)
 class MiddleLine:
-    """Of one loop: angle, rad, load on the spring and friction, N·m, (n,) each, by the angle."""
+    """Middle line of a loop, in the order of the angle: (n,) each, rad and N·m."""
 
     angle: Array
     load: Array

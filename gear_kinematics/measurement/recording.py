@@ -98,7 +98,7 @@ class Encoders:
     rotor_step: Step
     """rad of the rotor, between readings of its encoder."""
     output_step: Step
-    """rad, the same of the output's encoder."""
+    """rad, between readings of the output's encoder."""
     unmatched: Mapping[str, int] = field(default_factory=dict)
     """Measured angles without a rotor angle, by cause."""
 
@@ -218,7 +218,7 @@ def match(
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """What was read: angles under torque, both encoders, or all of it."""
+    """Content of a recording: angles under torque, both encoders, or all of it."""
 
     path: Path
     name: str
@@ -238,7 +238,7 @@ class Recording:
 
     @property
     def sentences(self) -> list[str]:
-        """What cannot be true, was left out or assumed, and what damage ended the reading."""
+        """Sentences on what cannot be true, was left out or assumed, and on damage."""
         damage = [f'{self.damage}; what is before it is used'] if self.damage else []
         return [f'{clause}.' for clause in (*self.faults, *self.remarks, *damage)]
 

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What the velocities and efforts in a driver's messages seem to be, if no rad/s and N·m."""
+"""Guesses at the units of a driver's velocities and efforts that are not in rad/s and N·m."""
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction

@@ -22,7 +22,7 @@ class TransmissionFigures:
     """Results from a recording of both encoders: angles in rad."""
 
     travel: float
-    """From the least to the greatest output angle."""
+    """Range of the output angle."""
     offset: float
     """The mean error: the offset of the encoders' zeros."""
     forward: Estimate | None
@@ -31,8 +31,8 @@ class TransmissionFigures:
     reversals: Estimate | None
     """Error of the backward minus the forward run at the same angles; None without any."""
     lost_motion: Estimate | None
-    """The same at no speed; None where it cannot be told from a delay. Neither is told whose ±
-    exceeds itself and the whole error in one direction."""
+    """This error without what a delay adds; None where the two cannot be told apart. Both are None
+    if their ± exceeds themselves and the whole error in one direction."""
     delay: Estimate | None
     """s, or rows of a file without times, by which the stamps of the output are late; None if it
     cannot be told. The other figures are without it."""
@@ -128,6 +128,6 @@ def transmission_figures(
 
 
 def _told(lost: Estimate | None, error: float) -> Estimate | None:
-    """A difference between directions, unless its ± exceeds it and the error in either."""
+    """Return a difference between directions, unless its ± exceeds it and the error in either."""
     beyond = lost and math.inf > lost.expanded > max(abs(lost.value), error)
     return None if beyond else lost

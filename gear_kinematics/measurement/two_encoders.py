@@ -34,10 +34,11 @@ _MOST = 10_000
 _MEANS = 115
 """Means of successive samples, at least, whose scatter tells how far errors are correlated."""
 _ORDERS = 48, 4
-"""Of output and rotor: as 1/k, they add up to a random walk, as of pitch errors. With 24, 3 of 200
-simulated recordings of 340° were outside of twice the interval."""
+"""Greatest numbers of cycles per turn of output and rotor. With amplitudes of 1/k they add up to a
+random walk, as pitch errors do. With 24, 3 of 200 simulated recordings of 340° were outside of
+twice the interval."""
 _ROTOR_SHARE = 0.1
-"""Of the error, at the output, that the gear may have once per turn of the rotor."""
+"""Share of `ENCODER_ERROR` that the gear may add at the output once per turn of the rotor."""
 _TO_STANDARD = math.sqrt(-2.0 * math.log(0.05))
 """Amplitude that 95 % do not exceed, over the standard deviation of its sine and cosine."""
 _PLAY, _DELAY = 0.1, 0.05

@@ -20,7 +20,7 @@ from gear_kinematics.statistics.uncertainty import Estimate
 from gear_kinematics.wire.cdr import SECOND
 
 _STEP = 0.01  # s before and after a sample, for its speed
-_PER_TURN = 'once', 'twice', '3 times', '4 times'  # the orders of output and rotor that are told
+_PER_TURN = 'once', 'twice', '3 times', '4 times'  # orders of output and rotor that are tried
 _MOST = 0.5  # share of the variance that makes an order what is left of the error
 
 
@@ -29,21 +29,21 @@ class Judgement:
     """A calibration compared with a recording; arrays are (n,), of the measured angles, in rad."""
 
     name: str
-    """Of the recording."""
+    """Name of the recording."""
     holds: bool
     """Whether the error is less with the correction, and within its interval."""
     fits: bool
     """Whether it is within its interval."""
     rms_before: float
-    """rad, of the error without the correction."""
+    """Root mean square error without the correction, rad."""
     rms_after: float
-    """rad, of the error with it."""
+    """Root mean square error with the correction, rad."""
     rms_before_with_delay: float
-    """rad, with the delay left in."""
+    """Root mean square error without the correction if the delay is left in, rad."""
     rms_after_with_delay: float
-    """rad, the same."""
+    """Root mean square error with the correction if the delay is left in, rad."""
     delay: Estimate | None
-    """s: by how much the output's angles are late; taken out if clear; None if not known."""
+    """Delay of the output's angles, s, taken out if it exceeds its ±; None if it is not known."""
     within_interval: float
     """Share of the samples."""
     within_interval_uncertainty: float
@@ -52,7 +52,7 @@ class Judgement:
     """Share of samples in conditions that were not calibrated, or with an unknown history."""
     samples: int
     left_order: tuple[float, str] | None
-    """What is left of the error if it is mostly one order: amplitude, rad, and how often."""
+    """Order that makes up most of the remaining error: amplitude, rad, and how often."""
     remarks: Sequence[str]
     output: Array
     """Ideal output angle."""
@@ -119,7 +119,7 @@ def judge(recording: Recording, encoders: Encoders, calibration: Calibration) ->
 
 
 def _left_order(samples: Samples, left: Array) -> tuple[float, str] | None:
-    """What is left of the error if it is mostly one order: its amplitude, rad, and how often."""
+    """Find the order that makes up most of the remaining error: amplitude, rad, and how often."""
     found = [(_MOST * np.var(left), 0.0, '')]
     for body, angle in (('output', samples.output), ('rotor', TURN * samples.rotor_turns)):
         for multiple, often in enumerate(_PER_TURN, start=1):

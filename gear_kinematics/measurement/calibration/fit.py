@@ -50,13 +50,13 @@ class FittedTerm:
 
     name: str
     cycles: Fraction | None
-    """Of an order: per turn of the rotor."""
+    """Cycles of an order per turn of the rotor."""
     radius: float | None
-    """Of a stop operator, rad."""
+    """Radius of a stop operator, rad."""
     amplitude: Estimate
-    """rad; of a stop operator and of the wind-up with its sign."""
+    """Amplitude, rad; that of a stop operator or of the wind-up has a sign."""
     cause: str
-    """The likely one, in words."""
+    """Likely cause, in words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +65,7 @@ class FittedRecording:
 
     used: UsedRecording
     delay: Estimate | None
-    """s: by how much the output's angles are late; taken out if clear; None if not separable."""
+    """Delay of the output's angles, s, taken out if it exceeds its ±; None if not separable."""
     remarks: Sequence[str]
 
 
@@ -84,9 +84,9 @@ class Fit:
     output: Array
     """Ideal output angle."""
     before: Array
-    """Error less zero and delay, without the correction."""
+    """Error without the correction; zero and delay are taken out."""
     after: Array
-    """The same with the correction that was fitted without the part that holds the sample."""
+    """Error with the correction that was fitted without the part that holds the sample."""
 
 
 def fit(
@@ -204,7 +204,7 @@ def _result(
 
 
 def _span(columns: Sequence[Array | None], margin: float) -> tuple[float, float] | None:
-    """From the least to the greatest value, and a share of that beyond; None if one lacks."""
+    """Return the range of all columns, wider by a share of itself; None if a column is missing."""
     known = [column for column in columns if column is not None]
     if len(known) < len(columns):
         return None

@@ -55,7 +55,7 @@ class GearModel:
         self._equations = NormalEquations(self._products)
         fits = self._equations.solve(range(self._common + len(own)))
         self.coefficients, self._own = np.split(fits, [self._common], axis=1)
-        """Of the terms' columns, of all blocks and without each, (fits, columns)."""
+        """Coefficients of the terms, fitted to all blocks and without each, (fits, columns)."""
         self._of = np.array([recording for recording, _, _ in blocks])
         self._counts = np.array([end - begin for _, begin, end in blocks])
 
@@ -76,7 +76,7 @@ class GearModel:
         ]
 
     def zero(self, recording: int) -> float:
-        """What the zero of a recording's encoder adds, rad."""
+        """Offset of the error of a recording, which is due to the zero of its encoder, rad."""
         return self.samples[recording].offset + float(self._own[0, 2 * recording])
 
     def helps(self) -> bool:

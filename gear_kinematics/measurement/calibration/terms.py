@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What the linear model needs of a recording, and the terms of the model.
+"""Samples of a recording as the linear model needs them, and the terms of the model.
 
 A column of a term is in the unit of the calibration file, so that a coefficient is what the file
 contains.
@@ -147,9 +147,9 @@ class Term(NamedTuple):
 
     name: str
     cause: str
-    """The likely one, in words; empty where none is."""
+    """Likely cause, in words; empty where none is."""
     entry: Order | Stop | Compliance
-    """In a calibration file; the coefficients are 0 until they are fitted."""
+    """Entry in a calibration file; the coefficients are 0 until they are fitted."""
     unit: float = 1.0
     """The greatest value of its columns, or their standard deviation."""
     is_trend: bool = False
@@ -157,7 +157,7 @@ class Term(NamedTuple):
 
     @property
     def cycles(self) -> Fraction | None:
-        """Of an order: per turn of the rotor."""
+        """Cycles of an order per turn of the rotor; None for other terms."""
         return self.entry.cycles if isinstance(self.entry, Order) else None
 
     @property

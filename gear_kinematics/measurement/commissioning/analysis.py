@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What recordings of both encoders determine of a gear, and what they leave open.
+"""Parameters of a gear that recordings of both encoders determine, and those they leave open.
 
 The ratio between the encoders is that of the gear, with the other sign where one of them counts
 backwards.
@@ -30,11 +30,11 @@ _FASTER = 2.0
 _ONE_TURN = 1.05
 """Turns beyond which positions count turns: one, and room for noise."""
 _MOST_TEETH, _SHOWN = 200, 10
-"""Of the ring gears that are named, as any pair can be multiplied; and pairs."""
+"""Most teeth of the ring gears that are named, as any pair can be multiplied; number of pairs."""
 
 
 class Channel(NamedTuple):
-    """Where an encoder is heard; without names in a CSV file."""
+    """Topic and joint of an encoder; both empty for a table."""
 
     topic: str
     joint: str
@@ -42,18 +42,18 @@ class Channel(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Request:
-    """What is known, and what is asked for."""
+    """Facts that are known about the gear, and what is to be found."""
 
     rotor: Channel
     output: Channel
     ratio: GearRatio | None = None
-    """Of the gear, with its sign, to be confirmed."""
+    """Ratio of the gear, with its sign, to be confirmed."""
     teeth: tuple[int, int] | None = None
-    """Of ring gear and satellite, which have this ratio."""
+    """Teeth of ring gear and satellite, which have this ratio."""
     zero_here: float | Literal['START', 'END'] | None = None
-    """When the output is at its angle 0, by the stamps of the last recording, s."""
+    """Time at which the output is at its angle 0, by the stamps of the last recording, s."""
     file: NodeParameters | None = None
-    """To be judged: its zeros are kept where they agree."""
+    """Parameters to be judged; their zeros are kept where they agree."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,20 +62,20 @@ class Value:
 
     name: str
     value: str | int | float | None
-    """None if it is open."""
+    """Value; None if it is open."""
     evidence: str
-    """In one line; of what is open, what is known, and what to do."""
+    """Evidence in one line; for an open value, what is known and what to do."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Commissioning:
-    """What recordings determine."""
+    """Result of a commissioning."""
 
     request: Request
     joints: tuple[Joint, ...]
     """One for each recording."""
     longest: Joint
-    """That of most travel, which tells the ratio."""
+    """Recording with the most travel, which determines the ratio."""
     ratio: RatioEstimate | None
     """Between the encoders; None where it cannot be estimated."""
     between: GearRatio | None
@@ -89,7 +89,7 @@ class Commissioning:
     """Clauses on fields of the rotor's messages that seem to be wrong."""
 
     def changes(self, parameters: NodeParameters) -> dict[str, tuple[Any, Any]]:
-        """What parameters have, and what it has to be, by names."""
+        """Return the old and the new value of each parameter that has to change, by name."""
         has = parameters.values() | {'gear_ratio': str(parameters.gear.gear_ratio)}
         pairs = ((v.name, has.get(v.name), v.value) for v in self.values)
         return {name: (old, new) for name, old, new in pairs if new not in (None, old)}

@@ -26,7 +26,7 @@ _DECIMALS, _BY_CHANCE = 3, 0.05
 
 
 def count_wraps(values: Array, turn: float, error: float = 1.0) -> int:
-    """Count the wraps of positions (n,), in the order of time, in a unit; error: of its turn."""
+    """Count the wraps of positions (n,), in the order of time; `error` is a share of the turn."""
     size = np.abs(np.diff(values)) / turn
     low, high = _UNCLEAR
     wraps = np.flatnonzero(size >= high)

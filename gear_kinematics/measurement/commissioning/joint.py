@@ -25,8 +25,8 @@ _MIN_LEVELS, _ROUNDING = 4, 1e-5
 """Whole numbers that show counts, as fewer may be chance; and the distance from them, of counts up
 to 10^10 that were divided into turns and a rest."""
 _MIN_BITS, _POWER = 6, 1e-4
-"""Of an encoder with 2^n steps in a turn: least n, and its distance from a whole number, so that a
-step is by chance such a one in another unit with a probability of 4e-4."""
+"""An encoder with 2^n steps in a turn is recognised: least n, and its greatest distance from a
+whole number. A step in another unit looks like that by chance with a probability of 4e-4."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -37,11 +37,11 @@ class Joint:
     encoders: Encoders
     """Angles without wraps, rad."""
     turned: Array
-    """(n,), rad, of the rotor, at the output's angles `encoders.measured`."""
+    """Angle of the rotor at the output's angles `encoders.measured`, (n,), rad."""
     rotor_wraps: int
     output_wraps: int
     rotor_range: float
-    """rad, after which the rotor's position repeats; 0 if it does not."""
+    """Angle after which the rotor's position repeats, rad; 0 if it does not."""
 
     @classmethod
     def of(cls, recording: Recording, encoders: Encoders) -> 'Joint':
@@ -74,7 +74,7 @@ class Joint:
 
     @property
     def travel(self) -> float:
-        """rad at the output."""
+        """Travel of the output, rad."""
         return float(np.ptp(self.encoders.measured))
 
     def row_at(self, moment: float | Literal['START', 'END']) -> int:

@@ -51,7 +51,7 @@ class LoadReport(NamedTuple):
     error: str
     """In one line that names the recording: of damage, up to which it was read, too."""
     taken: str = ''
-    """What was taken of a table."""
+    """Columns that were taken from a table."""
 
 
 def document(reports: Sequence[LoadReport]) -> Document:

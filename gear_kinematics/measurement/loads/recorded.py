@@ -28,7 +28,7 @@ from gear_kinematics.wire.cdr import SECOND, JointStateTemplate
 Array = NDArray[Any]
 
 ANGLE_BINS = 72
-"""Of a turn of the rotor: 5° each."""
+"""Bins of a turn of the rotor, of 5° each."""
 _JOINTS = 'mesh', 'cam', 'slot'
 _BEARING_EXPONENT = 3.0  # of ball bearings, ISO 281:2007, 4; roller bearings live longer
 _STEPS = 64  # of the range of a force, below one of which a cycle is not counted
@@ -51,7 +51,7 @@ class LoadTask:
     by_default: bool = False
     """Whether the parameters are those of the installed default file."""
     sources: Sources | None = None
-    """What is known of the columns of a table."""
+    """Columns of a table that are named by options."""
     debug: bool = False
     """Whether to print tracebacks of unexpected errors to stderr."""
 
@@ -67,7 +67,7 @@ class Moment(NamedTuple):
     least_margin: float
     """N·m, less than 0."""
     stamp: int
-    """Of the first sample, ns."""
+    """Stamp of the first sample, ns."""
 
 
 class Force(NamedTuple):
@@ -109,7 +109,7 @@ class RecordedLoads:
     damage: str
     """At which reading ended, if any."""
     taken: str = ''
-    """What was taken of a table."""
+    """Columns that were taken from a table."""
 
     @cached_property
     def time(self) -> Array:
