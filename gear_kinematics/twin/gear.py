@@ -104,6 +104,8 @@ class TwinGear:
     """Preload T0 of two branches, N·m; negative if branch A pushes in the negative direction."""
     dead_bands: tuple[tuple[float, float], ...] = field(init=False)
     """Least and greatest x_k without torque, for each branch, rad."""
+    _waves: tuple[tuple[float, float, float], ...] = field(init=False, repr=False, compare=False)
+    """Cycles per turn of the rotor, cos and sin of each order, in plain floats."""
 
     def __post_init__(self) -> None:
         """Check the gear, and place its dead bands."""
@@ -118,6 +120,8 @@ class TwinGear:
         if len(self.stiffness) == _BRACED:
             torque = Preload(self.loop, self.interference).torque
             bands = self._braced_bands(torque)
+        waves = tuple((float(each.cycles), each.cos, each.sin) for each in self.errors)
+        object.__setattr__(self, '_waves', waves)
         object.__setattr__(self, 'ratio', float(self.parameters.gear.gear_ratio))
         object.__setattr__(self, 'preload', math.copysign(torque, self.parameters.preload))
         object.__setattr__(self, 'dead_bands', bands)
@@ -234,9 +238,9 @@ class TwinGear:
     def error(self, rotor_angle: float) -> float:
         """Compute the deviation of the output angle, rad."""
         deviation = 0.0
-        for order in self.errors:
-            phase = float(order.cycles) * rotor_angle
-            deviation += order.cos * math.cos(phase) + order.sin * math.sin(phase)
+        for cycles, cos, sin in self._waves:
+            phase = cycles * rotor_angle
+            deviation += cos * math.cos(phase) + sin * math.sin(phase)
         return deviation
 
     def _braced_bands(self, torque: float) -> tuple[tuple[float, float], ...]:

@@ -59,7 +59,7 @@ class MujocoModel:
     def _bound(self) -> None:
         """Keep the speed within what MuJoCo follows: all velocities at once, as the loops ask."""
         data, fastest = self.data, _FASTEST / self.model.opt.timestep
-        if any(stat.number for stat in data.warning):
+        if data.warning.number.any():
             self.notice = 'the motion was beyond what MuJoCo follows, and has begun anew'
             mujoco.mj_resetData(self.model, data)
         elif (speed := abs(data.qvel[self._rotor])) > fastest:
