@@ -96,6 +96,10 @@ def parameters(*names: str) -> list:
         return asking.parameters_of(AsyncParameterClient(asking.node, NODE), *names)
 
 
+JUDGED = r'verdict: (passed|failed: /\S+: \d+ messages? missing)'
+"""Of a recording that has no wrong number, and may lack what a busy machine lost on the way."""
+
+
 class WatcherStandIn:
     """Shows one view, answers every command, and notes what it is asked for."""
 
