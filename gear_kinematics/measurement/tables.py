@@ -87,6 +87,7 @@ def read_rotor(path: Path, sources: Sources, ratio: Fraction) -> tuple[Array, Ar
             raise ValueError(
                 'no times or no torque: name them with --time-column, --torque-column'
             )
+        _steps(found, series, sources, timed=True)
         role = 'rotor' if 'rotor' in found else 'angle'
         one, torque = series[role], _torque(found, series, series[role], ratio) / float(ratio)
         on_rotor = role == 'rotor' or found[role].on_rotor
@@ -201,18 +202,7 @@ def _measured(
     timed: bool,
 ) -> tuple[Encoders | None, Loading | None]:
     """Both encoders, or angles under torque; ValueError if what is assumed cannot be."""
-    values = {role: series[role].values[role] for role in found}
-    steps = {}
-    for role in found:
-        if role != 'torque':
-            counts = sources.output_counts if role == 'output' else sources.rotor_counts
-            steps[role] = step_of(counts, values[role])
-        if not found[role].unit and (
-            cause := _against(series[role], role, steps.get(role), timed=timed)
-        ):
-            option = f"as in --torque-column '{found[role].name} [Nmm]'"
-            how = option if role == 'torque' else 'with --angle-unit'
-            raise ValueError(f'{found[role].name} has {cause}: give its unit {how}')
+    steps = _steps(found, series, sources, timed=timed)
     main = series.get('rotor') or series['angle']
     torque = _torque(found, series, main, ratio) if 'torque' in found else None
     if torque is not None and 'angle' in found:
@@ -227,7 +217,7 @@ def _measured(
                 'locked, or the unit is another, which --angle-unit gives'
             )
         return None, locked
-    rotor, output = values['rotor'], values['output']
+    rotor, output = (series[role].values[role] for role in ('rotor', 'output'))
     if not sources.as_recorded:
         rotor, output = _unwrapped(main, 'rotor', period), _unwrapped(series['output'], 'output')
     rows = len(output)
@@ -248,6 +238,24 @@ def _measured(
             'in rad, as in degrees: give the unit with --angle-unit'
         )
     return both, None
+
+
+def _steps(
+    found: Mapping[str, Column], series: Mapping[str, _Series], sources: Sources, *, timed: bool
+) -> dict[str, Step]:
+    """Steps of the encoders by role; ValueError if what is assumed of a unit cannot be."""
+    steps = {}
+    for role, column in found.items():
+        if role != 'torque':
+            counts = sources.output_counts if role == 'output' else sources.rotor_counts
+            steps[role] = step_of(counts, series[role].values[role])
+        if not column.unit and (
+            cause := _against(series[role], role, steps.get(role), timed=timed)
+        ):
+            option = f"as in --torque-column '{column.name} [Nmm]'"
+            how = option if role == 'torque' else 'with --angle-unit'
+            raise ValueError(f'{column.name} has {cause}: give its unit {how}')
+    return steps
 
 
 def _torque(

@@ -86,6 +86,15 @@ def test_overloads_are_found_to_the_sample(tmp_path, config, capsys, write):
     )
 
 
+def test_loads_of_angles_that_cannot_be_rad_are_refused(tmp_path, config, capsys):
+    path = table(tmp_path)
+    path.write_text(
+        path.read_text('utf-8').replace(' [deg]', '').replace('[mNm]', '[Nm]'), 'utf-8'
+    )
+    assert main(['loads', str(path), '--config', str(config)]) == 2
+    assert 'as in degrees: give its unit with --angle-unit' in capsys.readouterr().err
+
+
 def test_moments_are_links_to_the_mechanism_with_its_forces(tmp_path, config):
     pytest.importorskip('plotly')
     page = tmp_path / 'loads.html'
