@@ -86,7 +86,8 @@ def wrong_ratio(encoders: Encoders, assumed: Fraction) -> str:
             meant = 'the speed of the rotor by that of the output'
             return f'{measured}, which is upside down: give --ratio={ratio}, {meant}'
     if not found:
-        return ''
+        more = np.ptp(np.unwrap(encoders.measured)) > np.ptp(encoders.rotor.turned)
+        return 'the output turns more than the rotor: exchange the two' if more else ''
     measured = f'the recorded ratio is {found.plus_minus}, not {assumed}'
     if found.fits(-assumed):
         return f'{measured}: an encoder counts backwards, or --ratio={-assumed} is right'

@@ -11,6 +11,7 @@ from gear_recordings import write_csv
 from gear_kinematics.measurement.calibration import fit
 from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.gate import gated
+from gear_kinematics.measurement.recording import RecordingError
 from gear_kinematics.measurement.tables import read_table
 
 RATIO = Fraction(-19)
@@ -114,3 +115,10 @@ def test_a_calibration_does_not_help_where_the_error_rises(shared_path):
     path = shared_path('data/faults/one_corrupt_rotor_reading_calibrate.csv')
     recording = read_table(path, Sources(), RATIO)  # without the gate
     assert not fit([(recording, recording.encoders)], RATIO).helps
+
+
+def test_exchanged_columns_are_named(shared_path):
+    path = shared_path('data/faults/both_encoders_clean.csv')
+    exchanged = read_table(path, Sources(rotor='output_rad', output='rotor_rad'), RATIO)
+    with pytest.raises(RecordingError, match='more than the rotor: exchange the two'):
+        fit([(exchanged, exchanged.encoders)], RATIO)
