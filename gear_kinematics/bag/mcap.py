@@ -24,10 +24,7 @@ _PADDING = bytes(_MESSAGE_START.size)  # appended to the last record, which may 
 _CUT_OFF = 'cut off within a record; mcap recover makes a sound file of what is before'
 _LATEST = 2**63 - 1  # ns
 _PIECE, _PIECE_SIZE = 4096, 2**22  # messages outside of chunks that are read at once; bytes
-_MAX_OPEN, _PER_CHUNK = (
-    2**28,
-    2**18,
-)  # bytes of open chunks that overlap in time; bytes added for each
+_MAX_OPEN, _PER_CHUNK = 2**28, 2**18  # bytes of open chunks, and those added for each
 _RECEIVED = itemgetter(1)
 
 

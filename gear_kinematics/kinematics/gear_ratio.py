@@ -86,9 +86,7 @@ class GearRatio(Fraction):
         if not few:  # whole turns of the output as well
             cycles = xp.trunc(turns / cycle)
             turns = turns - cycle * cycles
-        whole = xp.floor(
-            (turns + angle / TURN) * self._inverse + 0.5
-        )  # nearest, except for rounding
+        whole = xp.floor((turns + angle / TURN) * self._inverse + 0.5)  # nearest, up to rounding
         rest = (TURN * (p * turns - q * whole) + p * angle) / q
         whole, rest = nearest_turn(whole, rest, xp)
         if not few:

@@ -99,9 +99,8 @@ def _loaded(gear: TwinGear, data: Report, notes: list[str]) -> TwinGear:
         )
     notes.append(f'play of the flanks: {gear.play:.4g} rad, as configured')
     first = data['stiffness'][0]
-    notes.append(
-        f'stiffness beyond {first["high"]:.4g} N·m: as below'
-    )  # there, one branch alone may be in mesh
+    # Beyond, one branch alone may be in mesh.
+    notes.append(f'stiffness beyond {first["high"]:.4g} N·m: as below')
     branch, shaft = first['value'] / count, gear.shaft_stiffness
     if gear.has_shaft:
         branch += math.hypot(branch, shaft) - shaft

@@ -27,9 +27,7 @@ _MILLISECOND = 1e-3  # s
 _LONGEST_STEP = 1e-4  # s
 _PHASE = 0.7  # rad by which the fastest oscillation may advance in a step; beyond 2, it grows
 _UNREACHED_WIND_UP = 1e6  # rad, greater than all wind-ups
-_ARM_DAMPING = (
-    0.05  # of critical damping: the arm comes to rest in ms, and slower motions hardly change
-)
+_ARM_DAMPING = 0.05  # of critical: the arm comes to rest in ms; slower motions hardly change
 
 
 def mjcf(

@@ -15,9 +15,7 @@ Array = NDArray[np.float64]
 
 _MIN_GAP = 5.0  # median periods
 _MAX_LISTED = 10  # listed gaps
-_MANY_REPEATED = (
-    0.25  # share of all stamps; drivers that now and then send a state twice have fewer
-)
+_MANY_REPEATED = 0.25  # share of all stamps, which drivers do not reach by repeating a few
 
 
 class InputHealth:

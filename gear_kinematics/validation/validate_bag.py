@@ -43,9 +43,7 @@ from gear_kinematics.wire.topics import (
     topic_of,
 )
 
-_LOSSES = (
-    'rosbag2_interfaces/msg/MessagesLostEvent'  # type of the events of recorders since Lyrical
-)
+_LOSSES = 'rosbag2_interfaces/msg/MessagesLostEvent'  # of recorders since Lyrical
 _BATCH = 8192  # messages of a live node that are validated together
 
 

@@ -251,9 +251,8 @@ class Validator:
         if self._corrector and len(segments):
             latest = self._window[-len(segments) :].copy()
             self._changes.move(latest)
-            latest['segment'] = (
-                segments + self._changes.count
-            )  # after a change, the state of play is unknown
+            # After a change, the state of play is unknown.
+            latest['segment'] = segments + self._changes.count
             names = 'stamp', 'turns', 'angle', 'velocity', 'effort', 'segment'
             found = self._corrector.correct_batch(
                 *(latest[name] for name in names), referenced=latest['referenced']
