@@ -230,10 +230,7 @@ BAGS: dict[str, tuple[str, Maker]] = {
         EXPANDS,
         lambda p: compressed(mcap(p, 300 * chunk((record(0x80, bytes(MB)), 33)))),
     ),
-    '65 535 topics': (
-        'no outputs in it|more than 4000 topics',
-        wide_mcap,
-    ),
+    '65 535 topics': ('no outputs in it|more than 4000 topics', wide_mcap),
     'metadata of 100 000 topics': (
         'metadata.yaml: longer than 4194304 bytes',
         lambda p: metadata(p, (f'/{number}' for number in range(100_000))),

@@ -33,10 +33,7 @@ for module in pkgutil.walk_packages(gear_kinematics.__path__, 'gear_kinematics.'
     if not module.name.endswith(('__main__', *NEED_ROSBAGS)):
         importlib.import_module(module.name)
 """
-NEED_ROSBAGS = (
-    'bag.ros1',
-    'bag.writing',
-)
+NEED_ROSBAGS = ('bag.ros1', 'bag.writing')
 GEARKIN = """
 from gear_kinematics.commands.cli import main
 

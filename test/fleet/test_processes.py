@@ -12,15 +12,7 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import pytest
-from blocked_bags import (
-    BAGS,
-    DEADLINE,
-    GEARKIN,
-    BlockedBag,
-    gearkin,
-    running_gearkin,
-    wait_until,
-)
+from blocked_bags import BAGS, DEADLINE, GEARKIN, BlockedBag, gearkin, running_gearkin, wait_until
 from shipped_bags import ROTOR, TYPES, write_bag
 
 from gear_kinematics.bag import Bag, BagError

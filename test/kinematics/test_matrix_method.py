@@ -5,14 +5,7 @@ import math
 
 import numpy as np
 from hypothesis import given, settings
-from properties import (
-    LENGTHS,
-    assert_close,
-    field_names,
-    mechanisms,
-    motions,
-    speed_up,
-)
+from properties import LENGTHS, assert_close, field_names, mechanisms, motions, speed_up
 
 from gear_kinematics.kinematics import matrix_method, motion
 from gear_kinematics.kinematics.transforms import rotation_z, translation

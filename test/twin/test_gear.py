@@ -30,13 +30,7 @@ def default() -> TwinGear:
 def braced(default) -> TwinGear:
     """A preload of 3 N·m twists it by 3/3000 + 3/2000 + 3/1000 rad."""
     kA, kB, ks = STIFFNESS
-    return replace(
-        default,
-        stiffness=(kA, kB),
-        shaft_stiffness=ks,
-        interference=5.5e-3,
-        play=1e-3,
-    )
+    return replace(default, stiffness=(kA, kB), shaft_stiffness=ks, interference=5.5e-3, play=1e-3)
 
 
 def mirrored(gear: TwinGear) -> TwinGear:
