@@ -39,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     arguments.group(parser, 'gear').add_argument(
         '--arm',
         action='store_true',
-        help='set up each joint of the topic as an actuator of an arm, which has its name',
+        help='set up all joints of the topic as actuators of an arm, named like the joints',
     )
     add_new_config(parser)
 
