@@ -36,6 +36,7 @@ from gear_kinematics.state.reach import FLOOR, STALEST
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.state.turn_reference import TurnReference
+from gear_kinematics.validation.findings import sentence
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validator import Validator
 from gear_kinematics.wire.batches import decode_joint_states
@@ -524,7 +525,7 @@ def recorded(recording: Recording, messages: Sequence[Sent], node: Node) -> set[
     validator.feed([sorted(rotor + outputs, key=lambda each: each[1])])
     report = validator.report()
     health = report.rotor
-    texts = {finding.text for finding in report.findings}
+    texts = {sentence(finding, report) for finding in report.findings}
     if health:
         texts |= {*health.rejected, health.jumped, health.velocity_is, health.beyond_limits}
     return {str(text).split(':')[0] for text in texts if text} | {str(report.verdict)}

@@ -18,7 +18,7 @@ from gear_kinematics.kinematics.loads import Bodies
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.loads import LoadEstimator, PreloadMonitor
 from gear_kinematics.state.state_messages import state_messages
-from gear_kinematics.wire.topics import BODY_POSES, OUTPUT_STATE
+from gear_kinematics.wire.topics import BODY_POSES, LOAD_TOPICS, OUTPUT_STATE
 
 _MESSAGES = 500
 _MOST = 8.0  # µs
@@ -40,17 +40,17 @@ def main() -> None:
         if sample is samples[-1]:
             monitor.report()
 
+    def encoded(of: LoadEstimator, sample: RotorSample) -> list[bytes]:
+        rows = of.rows(of.follow(sample, 0), LOAD_TOPICS)
+        return [template.encode(sample.stamp, numbers) for _, template, numbers in rows]
+
     jobs: dict[str, Callable[[RotorSample], object]] = {
         'output_state and body_poses': lambda sample: list(
             messages.encode(sample, (OUTPUT_STATE, BODY_POSES))
         ),
         'margin of the preload': margin,
-        'branch_loads and joint_loads': lambda sample: list(
-            braced.encode(sample.stamp, braced.follow(sample, 0))
-        ),
-        'both, of bodies with mass': lambda sample: list(
-            heavy.encode(sample.stamp, heavy.follow(sample, 0))
-        ),
+        'branch_loads and joint_loads': lambda sample: encoded(braced, sample),
+        'both, of bodies with mass': lambda sample: encoded(heavy, sample),
     }
     samples = [
         RotorSample(k * 1_000_000, split_turns(0.1 * k), 100.0, math.sin(0.01 * k))

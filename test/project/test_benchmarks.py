@@ -24,6 +24,10 @@ ACTUATOR = oracle.Numbers(80, 76, 0.0011, ((0.0, 0.04), (math.pi, -0.04)))
         ['validation.py', '--messages', '300', '--rounds', '1', '--memory', '300'],
         ['calibration.py', '--gears', '1', '--duration', '20', '--scenario', 'usual'],
         ['twin.py', '--seconds', '0.05', '--rounds', '1'],
+        pytest.param(
+            ['arm.py', '--kinds', 'arm', '--joints', '2', '--seconds', '0.1', '--rounds', '1'],
+            marks=pytest.mark.live,
+        ),
     ],
     ids=lambda arguments: arguments[0],
 )
