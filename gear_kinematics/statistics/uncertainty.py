@@ -149,7 +149,7 @@ def jackknife(
         together: numbers of neighbouring blocks that `standard_error` takes as one.
     """
     whole, without = float(fits[0]), np.asarray(fits[1:])
-    if not len(without):
+    if len(without) <= 1:
         return Estimate(whole, None, 0.0, 1)
     pseudo_values = len(without) * whole - (len(without) - 1) * without
     scatter = Component(*standard_error(pseudo_values, together))
