@@ -61,7 +61,7 @@ def separate(difference: Array, speed: Array) -> Reversals | None:
     rows = np.array([np.sqrt(len(part)) * part.mean(axis=0) for part in parts])
     equations = NormalEquations(rows[:, :, None] * rows[:, None, :])
     mean = jackknife(equations.solve([0])[:, 0])
-    if len(parts) <= _LEAST or not tells_delay(speed, rows[:, 1] / rows[:, 0]):
+    if not tells_delay(speed, rows[:, 1] / rows[:, 0]):
         return Reversals(mean, None, None)
     return Reversals(mean, *(jackknife(fits) for fits in equations.solve([0, 1]).T))
 
@@ -71,6 +71,8 @@ def tells_delay(speed: Array, means: Array) -> bool:
 
     Otherwise a delay cannot be told from lost motion.
     """
+    if len(means) <= _LEAST:
+        return False
     # In second differences, hardly anything of a motion is left.
     noise = np.var(np.diff(speed, 2)) / 6.0 * len(means) / len(speed)
     variance = np.var(means)

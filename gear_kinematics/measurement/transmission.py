@@ -65,11 +65,8 @@ class _Motion:
 
     def fits(self, encoders: Encoders, ratio: Fraction) -> list[EncoderFit]:
         """Fit both encoders, and again if a delay can be told; none if too few samples move."""
-        time, output = (
-            encoders.seconds * (1.0 if encoders.timed else STEP),
-            self.angle + self.error,
-        )
-        angles = self.angle * float(ratio), output, time, self.direction
+        time = encoders.seconds * (1.0 if encoders.timed else STEP)
+        angles = self.angle * float(ratio), self.angle + self.error, time, self.direction
         try:
             fit = EncoderFit(*angles, float(1 / ratio))
             return [fit, fit.refined().refined()] if fit.tells_delay else [fit]
@@ -79,13 +76,9 @@ class _Motion:
     def accuracy(self, way: int, reading: Component) -> Estimate | None:
         """Estimate the peak-to-peak error of the runs in a direction that repeat the longest."""
         runs = [rows for sign, rows in self.runs() if sign == way]
-        travels = [float(np.ptp(self.angle[rows])) for rows in runs]
-        pairs = zip(runs, travels, strict=True)
-        values = [
-            float(np.ptp(self.error[rows]))
-            for rows, travel in pairs
-            if travel >= _MIN_SHARE * max(travels)
-        ]
+        sizes = [(np.ptp(self.angle[rows]), float(np.ptp(self.error[rows]))) for rows in runs]
+        least = _MIN_SHARE * max(sizes)[0] if sizes else 0.0
+        values = [error for travel, error in sizes if travel >= least]
         return Estimate.of_mean(values, reading) if values else None
 
 
@@ -118,8 +111,8 @@ def transmission_figures(
         float(np.mean(motion.error)),
         forward,
         backward,
-        _told(difference, error),
-        _told(lost_motion, error),
+        _meaningful(difference, error),
+        _meaningful(lost_motion, error),
         delay,
         motion.error,
         motion.angle,
@@ -127,7 +120,7 @@ def transmission_figures(
     )
 
 
-def _told(lost: Estimate | None, error: float) -> Estimate | None:
+def _meaningful(lost: Estimate | None, error: float) -> Estimate | None:
     """Return a difference between directions, unless its ± exceeds it and the error in either."""
     beyond = lost and math.inf > lost.expanded > max(abs(lost.value), error)
     return None if beyond else lost

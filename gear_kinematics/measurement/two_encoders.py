@@ -75,13 +75,16 @@ class EncoderFit:
         self._angles = rotor, output, time, way
         kept = np.flatnonzero(way * (time - late >= time[0]) * (time - late <= time[-1]))
         kept = kept[:: -(-len(kept) // _MOST) or 1]
-        if len(kept) < _MEANS:
+        if len(kept) < 2 * _BLOCKS:
             raise RecordingError(f'{len(kept)} samples in motion are too few')
         around = (time[kept] - late + k * STEP for k in (-2, -1, 0, 1, 2))
         first, early, at, after, last = (np.interp(when, time, rotor) for when in around)
         speed = slope * (after - early) / (2.0 * STEP)
-        means = [part.mean() for part in np.array_split(way[kept] * speed, _MEANS)]
-        self.tells_delay = tells_delay(way[kept] * speed, np.array(means))
+        # Beside a reversal, the speed is not that of the sample.
+        beside = (np.interp(time[kept] - late + k * STEP, time, way) for k in (-1, 1))
+        steady = (way[kept] * speed)[np.all([each == way[kept] for each in beside], axis=0)]
+        parts = np.array_split(steady, max(1, min(_MEANS, len(steady))))
+        self.tells_delay = tells_delay(steady, np.array([np.mean(part) for part in parts]))
         """Whether a delay can be told from play."""
         self.travel = float(np.ptp(at))
         # The measured angle must not explain itself: errors are periodic in that of the rotor.
