@@ -101,7 +101,9 @@ def _print_summary(out: Path, result: ComputeResult) -> None:
     for name, rotor in inputs.items():
         doubts = (
             rotor.plausibility.jumped,
+            rotor.plausibility.beyond_limits,
             rotor.velocity_field.meaning,
+            result.questions[name],
             'the effort is 0 throughout the motion, and left out'
             if rotor.effort_field.absent
             else '',

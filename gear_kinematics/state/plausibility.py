@@ -114,8 +114,8 @@ class Plausibility:
         last = self._last
         before, changed, former, _ = last
         step = position - before
-        even, shortest, longest = self._even
-        if step and -even <= step - former <= even:
+        even, square, shortest, longest = self._even
+        if 0.0 < step * step <= square and -even <= step - former <= even:
             span = stamp - changed
             if shortest <= span <= longest:
                 self._former = last
@@ -172,6 +172,7 @@ class Plausibility:
         for each in (span[1:-1], np.diff(changed)):
             regular &= np.abs(each - usual) <= REGULAR * usual
         regular &= np.abs(steps - step[1:-1]) <= self.limits.even_step(usual)
+        regular &= np.abs(steps) <= self.limits.speed * 1e-9 * np.diff(changed)
         for k in np.flatnonzero(~regular).tolist():
             ends = (
                 (0.0, int(changed[k]), float(step[k + 1]), int(span[k + 1])),
@@ -190,9 +191,10 @@ class Plausibility:
         return True
 
     def _look_always(self) -> None:
-        self._even = -1.0, 0, 0
-        """rad, ns, ns: a step that differs from the last by at most so much, in a time within
-        these limits, is in reach, and tells no more of the resolution."""
+        self._even = -1.0, 0.0, 0, 0
+        """rad, rad², ns, ns: a step that differs from the last by at most so much, and whose
+        square is no greater, in a time within these limits, is in reach, and tells no more of the
+        resolution."""
 
     def _look_closer(self, position: float, step: float, stamp: int) -> Belief:
         """Judge a reading by all that is known."""
@@ -234,7 +236,8 @@ class Plausibility:
                 even = self.limits.even_step(usual) if known else _EQUAL
                 if self.period:
                     even = min(even, 0.25 * self.period)
-                self._even = even, math.ceil(shortest), int(longest)
+                most = self.limits.speed * shortest * 1e-9
+                self._even = even, most * most, math.ceil(shortest), int(longest)
         return BELIEVED
 
     def _hold(self, position: float, stamp: int) -> Belief:

@@ -14,6 +14,7 @@ from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, TopicErr
 from gear_kinematics.bag.roles import Topics, in_namespace
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.effort_field import questioned
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.batches import join_joint_states
@@ -42,6 +43,8 @@ class ComputeResult:
     """Messages written on each output topic."""
     copied: int
     """Messages copied from other topics."""
+    questions: Mapping[str, str]
+    """Says of each actuator if its efforts are hardly torques of a rotor, N·m; else ''."""
     left_out: tuple[str, ...]
     """Topics that were not copied: those not chosen, and those that a rosbag2 cannot hold."""
 
@@ -105,6 +108,7 @@ def compute(
     chosen = {*inputs, *(source.topics if others is None else others)}
     _check_topics(source, rotor_topic, chosen, outputs)
     kept, computed, copied = list[str](), 0, 0
+    efforts = dict.fromkeys(gears, 0.0)
     with BagWriter(target, storage=storage, compression=compression) as writer:
         for name, content in files.items():
             writer.add_file(name, content)
@@ -123,7 +127,7 @@ def compute(
         for batch in source.batches({*kept, *outputs}, progress, publish_times=True):
             messages = [message for message in batch if message[0] not in outputs]
             copied += sum(topic != rotor_topic for topic, *_ in messages)
-            answers = _answers(gears, messages, rotor_topic, encoder_topic)
+            answers = _answers(gears, messages, rotor_topic, encoder_topic, efforts)
             computed += len(answers[OUTPUT_STATE])
             # A stable sort by these puts each output directly after its rotor message.
             places, received = [*range(len(messages))], [message[1] for message in messages]
@@ -137,6 +141,7 @@ def compute(
         inputs_of,
         computed,
         copied,
+        {name: questioned(effort) for name, effort in efforts.items()},
         left_out=tuple(sorted(source.topics.keys() - {*kept, *outputs})),
     )
 
@@ -157,12 +162,21 @@ def _choose(gears: Mapping[str, GearState], topics: Topics) -> dict[str, str]:
 
 
 def _answers(
-    gears: Mapping[str, GearState], messages: Sequence[Message], rotor: str, encoder: str
+    gears: Mapping[str, GearState],
+    messages: Sequence[Message],
+    rotor: str,
+    encoder: str,
+    efforts: dict[str, float],
 ) -> dict[str, dict[int, bytes]]:
-    """Return the outputs by their names in the node and by the place of the rotor's message."""
+    """Return the outputs by their names in the node and by the place of the rotor's message.
+
+    Raises the `efforts`, N·m, to the greatest.
+    """
     found = defaultdict[str, list[dict[int, bytes]]](list)
     for actuator, gear in gears.items():
         answers = gear.batch(messages, rotor, encoder)
+        sizes = np.abs(np.nan_to_num(answers.samples.effort))
+        efforts[actuator] = float(np.max(sizes, initial=efforts[actuator]))
         for state, encoded in gear.encode_batch(answers).items():
             rows = zip(answers.samples.row.tolist(), encoded, strict=True)
             found[topic_of(actuator, state)].append({row: data for row, data in rows if data})

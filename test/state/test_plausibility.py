@@ -193,3 +193,16 @@ def test_a_motor_beyond_the_limits_is_named_once_and_not_rejected_for_ever(speed
     assert f'{abs(speed):g} rad/s exceed max_rotor_speed' in rotor.plausibility.beyond_limits
     assert rotor.plausibility.jumped == ''
     assert rotor.referenced
+
+
+@pytest.mark.parametrize('at_once', [True, False], ids=['batch', 'one by one'])
+def test_a_motor_that_exceeds_its_speed_little_by_little_is_named(at_once):
+    times = np.arange(1000) / 1000
+    data = messages(times, 1000.0 * times**2)  # up to 2000 rad/s, with 2000 rad/s²
+    rotor = RotorInput(MULTI)
+    if at_once:
+        rotor.accept_batch(data, [0] * len(data))
+    else:
+        rotor, _ = fed(MULTI, data)
+    assert LIMITS[0] < rotor.plausibility.seen_speed < 2000.0
+    assert 1 < rotor.rejected['implausible'] < 10
