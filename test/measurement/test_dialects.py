@@ -289,6 +289,22 @@ def test_encoders_are_read_in_every_dialect(tmp_path, gear, reference, dialect):
     assert 1317 <= recording.rows <= 1320
 
 
+def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, gear, reference):
+    # Dynamixel SDK 4.1.0 gives positions modulo 2^32.
+    t, r, o = reference('encoders')
+    counts = np.round((r - np.median(r)) * REV * 4096)
+    right, both = (
+        read_encoders(
+            saved(tmp_path, written([t, one, o], 'time,rotor_counts,output_rad')),
+            gear, Sources(rotor_counts=4096),
+        )[1]
+        for one in (counts, counts % 2**32)
+    )  # fmt: skip
+    assert np.ptp(np.sign(counts)) == 2.0
+    np.testing.assert_allclose(both.rotor.turned, right.rotor.turned, rtol=0.0, atol=1e-8)
+    np.testing.assert_array_equal(both.rotor.turns, right.rotor.turns)
+
+
 @pytest.mark.parametrize('dialect', RAMPS)
 def test_ramps_are_read_in_every_dialect(tmp_path, gear, reference, dialect):
     path = saved(tmp_path, RAMPS[dialect](*reference('ramps')))
