@@ -114,15 +114,16 @@ class VelocityField:
         """Decide on readings of a steady motion by so much, rad."""
         (first, start, _), *_, (last, end, _) = readings
         time = (last - first) * 1e-9
-        mean = sum(velocity for _, _, velocity in readings) / _READINGS
+        velocities = [velocity for _, _, velocity in readings]
+        mean = sum(velocities) / _READINGS
         if max(abs(end - start), abs(mean) * time) < travel:
             return
         slope = (end - start) / time
-        slopes = [(q - p) / (t - s) * 1e9 for (s, p, _), (t, q, _) in pairwise(readings)]
-        if any(abs(each - slope) > _STEADY * abs(slope) for each in slopes):
-            return
+        for (s, p, _), (t, q, _) in pairwise(readings):
+            if abs((q - p) / (t - s) * 1e9 - slope) > _STEADY * abs(slope):
+                return
         most = _STEADY * max(abs(mean), abs(slope))
-        if any(abs(velocity - mean) > most for _, _, velocity in readings):
+        if any(abs(velocity - mean) > most for velocity in velocities):
             return
         self._decide(mean / slope if slope else math.inf)
 

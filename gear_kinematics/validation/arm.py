@@ -9,10 +9,11 @@ belong together in a message, and which fields of it are empty.
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from gear_kinematics.bag import Message, by_topic
+from gear_kinematics.bag import Message, TopicMessages, by_topic
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.fields import Array, Occurrences
@@ -158,7 +159,8 @@ class ArmValidator:
                 for topic in (self._rotor, *self._joined)
             }
             for topic, data in states.items():
-                messages[topic].data = data
+                received: Any = np.array(messages[topic].received, np.int64)  # once for all
+                messages[topic] = TopicMessages(data, received)
             stamps = np.zeros(len(messages[self._rotor].data), np.int64)
             valid = np.zeros((len(stamps), len(self._validators)), bool)
             for rows, _, stamp, _ in states[self._rotor].contents():

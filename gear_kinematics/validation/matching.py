@@ -231,7 +231,7 @@ class OutputTopic:
     ) -> None:
         """Compare new messages, and when they were received, ns, with the latest samples, (n,)."""
         if late := len(self._late[0]):
-            messages, received = self._late[0] + messages, self._late[1] + received
+            messages, received = self._late[0] + messages, [*self._late[1], *received]
         if self.shared and self.joints:
             if not isinstance(messages, JointStateBatch):
                 messages = JointStateBatch(messages)

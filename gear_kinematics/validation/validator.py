@@ -206,7 +206,7 @@ class Validator:
         if self._prefix_open and any(messages.data for messages in batch.values()):
             self._find_prefix(batch)
         for topic in self.topics:
-            if received := batch[topic].received:
+            if len(received := batch[topic].received):
                 self._begun.setdefault(topic, received[0])
         segments = self._add_samples(batch)
         self.output.unstamped = bool(self._state.input.zero_stamps)

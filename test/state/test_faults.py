@@ -77,7 +77,7 @@ ROWS = {
     'another joint beside': Row(
         part({'names': ['wheel']}, count=3),
         {'of_others': 3},
-        found='3 messages of /rotor_state are of other joints: no fault',
+        found='3 messages of /rotor_state belong to other joints, which is no fault',
     ),
     'array sizes': rejected('array sizes', {'names': ['rotor', 'wheel']}),
     'no position': rejected('position missing', {'position': []}),
