@@ -15,7 +15,13 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.measurement.recording import Array, Encoders, Recording, RotorMotion
+from gear_kinematics.measurement.recording import (
+    Array,
+    Encoders,
+    Loading,
+    Recording,
+    RotorMotion,
+)
 from gear_kinematics.report.document import number
 
 _FEWEST = 50  # samples
@@ -29,6 +35,7 @@ _FROZEN = math.radians(3.0)  # of the output, that one shaft does while the othe
 _LEAST_SHARE = 0.25  # of samples that are used: else it is the ratio that is not understood
 _MOST_FAULTS = 0.02  # of such medians: more are a unit or a range that is not understood
 _RANGE = 0.9  # of the rotor's travel, by which it steps where it wraps
+_LEAST_STRAY, _MOST_STRAY = 0.02, 0.1  # of the range of ramps; of their samples
 _NAMED = 3  # faults of a kind that are named with their moments
 
 
@@ -38,6 +45,8 @@ def gated(recording: Recording) -> Recording:
     Without such readings, or if the output hardly moves, the recording itself is returned.
     """
     both = recording.encoders
+    if both is None and recording.locked:
+        return _gated_ramps(recording, recording.locked)
     if both is None or len(both.measured) < _FEWEST:
         return recording
     turned = both.rotor.turned
@@ -59,7 +68,7 @@ def gated(recording: Recording) -> Recording:
         steps = np.diff(error[rows], prepend=error[rows[0]])
         error[rows] -= period * np.cumsum(np.round(steps / period))
     ideal = slope * np.diff(rotor[rows])
-    calm, moved = _usual_steps(error[rows]), slope * _usual_steps(rotor[rows])
+    calm, moved = np.diff(_usual(error[rows])), slope * np.diff(_usual(rotor[rows]))
     fastest = float(np.quantile(np.abs(moved), 0.98))
     limit = max(_STEPS * float(np.quantile(np.abs(calm), 0.98)), _LEAST_STEP)
     faults, impossible = (
@@ -82,10 +91,7 @@ def gated(recording: Recording) -> Recording:
     found = []
     isolated = stray[~frozen[stray]]
     if len(isolated):
-        named = ', '.join(number(time[k], 6) for k in isolated[:_NAMED])
-        more = f' and {len(isolated) - _NAMED} more' if len(isolated) > _NAMED else ''
-        what = 'reading that contradicts' if len(isolated) == 1 else 'readings that contradict'
-        found.append(f'{len(isolated)} {what} both neighbours left out, {at} {named}{unit}{more}')
+        found.append(_left_out(time[isolated], at, unit))
     if len(still := np.flatnonzero(frozen)):
         span = f'{number(time[still[0]], 6)} to {number(time[still[-1]], 6)}{unit}'
         found.append(
@@ -103,6 +109,29 @@ def gated(recording: Recording) -> Recording:
         found.append(f'only the longest part without a fault is used, {span}')
     encoders = _without(both, slope * turned, kept, stray)
     return replace(recording, encoders=encoders, faults=(*recording.faults, *found))
+
+
+def _gated_ramps(recording: Recording, ramps: Loading) -> Recording:
+    """Leave out readings of torque or angle that leave both neighbours and come back."""
+    stray = np.zeros(len(ramps.torque), bool)
+    for values in (ramps.torque, ramps.angle):
+        if len(values) >= _FEWEST:
+            calm = _usual(values)
+            usual = _STEPS * np.quantile(np.abs(np.diff(calm)), 0.98)
+            stray |= np.abs(values - calm) > max(usual, _LEAST_STRAY * np.ptp(calm))
+    if not stray.any() or np.mean(stray) > _MOST_STRAY:
+        return recording
+    locked = replace(ramps, torque=ramps.torque[~stray], angle=ramps.angle[~stray])
+    fault = _left_out(1.0 + np.flatnonzero(stray), 'at sample', '')
+    return replace(recording, locked=locked, faults=(*recording.faults, fault))
+
+
+def _left_out(moments: Array, at: str, unit: str) -> str:
+    """Say which readings were left out."""
+    named = ', '.join(number(moment, 6) for moment in moments[:_NAMED])
+    more = f' and {len(moments) - _NAMED} more' if len(moments) > _NAMED else ''
+    what = 'reading that contradicts' if len(moments) == 1 else 'readings that contradict'
+    return f'{len(moments)} {what} both neighbours left out, {at} {named}{unit}{more}'
 
 
 def output_by_rotor(rotor: Array, measured: Array) -> float | None:
@@ -123,11 +152,11 @@ def _frozen(still: Array, other: Array) -> NDArray[np.bool_]:
     return found
 
 
-def _usual_steps(values: Array) -> Array:
-    """Steps (n - 1,) of values (n,) without stray ones."""
+def _usual(values: Array) -> Array:
+    """Values (n,) without stray ones."""
     windows = sliding_window_view(np.pad(values, _WINDOW // 2, 'edge'), _WINDOW)
-    steps: Array = np.diff(np.median(windows, axis=1))
-    return steps
+    usual: Array = np.median(windows, axis=1)
+    return usual
 
 
 def _lost_motion(steps: Array, ideal: Array, fastest: float) -> NDArray[np.bool_]:

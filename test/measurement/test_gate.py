@@ -11,6 +11,8 @@ from gear_recordings import write_csv
 from gear_kinematics.measurement.calibration import fit
 from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.gate import gated
+from gear_kinematics.measurement.lost_motion import measure
+from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import RecordingError
 from gear_kinematics.measurement.tables import read_table
 
@@ -122,3 +124,21 @@ def test_exchanged_columns_are_named(shared_path):
     exchanged = read_table(path, Sources(rotor='output_rad', output='rotor_rad'), RATIO)
     with pytest.raises(RecordingError, match='more than the rotor: exchange the two'):
         fit([(exchanged, exchanged.encoders)], RATIO)
+
+
+@pytest.mark.parametrize(
+    ('column', 'value'),
+    [(1, 0.3), (1, 0.02), (2, 1e4), (2, 80.0)],
+    ids=['far angle', 'angle', 'far torque', 'torque'],
+)
+def test_stray_readings_of_ramps_are_left_out(shared_path, config, tmp_path, column, value):
+    path = shared_path('data/faults/file_0_reference_ramps.csv')
+    table = np.loadtxt(path, delimiter=',', skiprows=1)
+    table[300, column] = value
+    write_csv(tmp_path / 'r.csv', **dict(zip(('time', 'angle', 'torque'), table.T, strict=True)))
+    recording = read(tmp_path / 'r.csv', config)
+    (fault,) = recording.faults
+    assert fault == '1 reading that contradicts both neighbours left out, at sample 301'
+    hysteresis = measure(recording, config).figures.hysteresis
+    assert hysteresis.value == pytest.approx(np.radians(13.8 / 60), rel=0.02)
+    assert not read(path, config).faults
