@@ -22,7 +22,7 @@ from gear_kinematics.measurement.columns import (
     find_columns,
     nanoseconds_beside,
 )
-from gear_kinematics.measurement.commissioning.encoder_range import count_wraps, unwrapped
+from gear_kinematics.measurement.commissioning.encoder_range import count_wraps, signed, unwrapped
 from gear_kinematics.measurement.commissioning.joint import other_unit
 from gear_kinematics.measurement.dialects import TableFile
 from gear_kinematics.measurement.encoder_step import Step, find_step, step_of
@@ -58,8 +58,6 @@ _NO_ANGLE = re.compile(r'(?i)torque|effort|current|vel|speed|temp|time|stamp|erp
 """In names of columns that are not proposed as angles."""
 _SHOWN = 800
 """Characters of an error, as those of a file can be many."""
-_COUNTER = 2**32
-"""Counts after which registers of 32 bits repeat, which some drivers read without their sign."""
 
 
 def read_table(path: Path, sources: Sources, ratio: Fraction, period: float = 0.0) -> Recording:
@@ -127,12 +125,6 @@ def _unwrapped(series: _Series, role: str, period: float = 0.0) -> Array:
     return unwrapped(values, seconds, find_step(values), period)
 
 
-def _signed(values: Array, period: float) -> Array:
-    """Positions (n,) of a register without a sign, where they pass from 0 to its greatest."""
-    passed = np.unwrap(values, period=period)
-    return passed - period * (values[0] >= 0.5 * period and np.any(passed != values))
-
-
 def _recording(
     path: Path, table: TableFile, sources: Sources, ratio: Fraction, period: float = 0.0
 ) -> Recording:
@@ -192,7 +184,7 @@ def _read(
         values = {role: np.where(np.abs(v) < _LEAST, 0.0, v) for role, v in values.items()}
         for role in roles:
             if 'counts' in found[role].unit:
-                values[role] = _signed(values[role], _COUNTER * found[role].scale)
+                values[role] = signed(values[role], found[role].scale)
         gaps = 0 if apart else np.cumsum(np.diff(chosen, prepend=chosen[0]) > _GAP)
         one = _Series(stamp, values, gaps + 0 * stamp)
         series |= dict.fromkeys(roles, one)

@@ -21,6 +21,8 @@ _AROUND = 8  # samples before and after a wrap in which the motion goes on
 _LEAST_MOTION = 1e-3  # ranges in these samples: less is a shaft that rests
 _SPREADS, _ACCURACY = 6.0, 1e-6
 """Standard uncertainties, or the share, within which a range is a round one."""
+_REGISTER = 2**32
+"""Counts after which a register of 32 bits repeats, which some drivers read without its sign."""
 _DECIMALS, _BY_CHANCE = 3, 0.05
 """Most decimals of a round range, and the probability below which one is no coincidence."""
 
@@ -43,6 +45,18 @@ def unwrapped(values: Array, seconds: Array, step: Step, period: float = 0.0) ->
     if not period or np.ptp(values) > _MOST_SPAN * period:
         period, _ = find_range(values, seconds, step)
     return np.unwrap(values, period=period) if period else values
+
+
+def signed(values: Array, count: float) -> Array:
+    """Take positions for negative ones where they pass from 0 to the greatest of a register.
+
+    Args:
+        values: (n,), in the order of time, in a unit.
+        count: one count of the encoder, in that unit.
+    """
+    period = _REGISTER * count
+    passed = np.unwrap(values, period=period)
+    return passed - period * (values[0] >= 0.5 * period and np.any(passed != values))
 
 
 def find_range(values: Array, seconds: Array, step: Step) -> tuple[float, int]:
