@@ -35,7 +35,8 @@ _FROZEN = math.radians(3.0)  # of the output, that one shaft does while the othe
 _LEAST_SHARE = 0.25  # of samples that are used: else it is the ratio that is not understood
 _MOST_FAULTS = 0.02  # of such medians: more are a unit or a range that is not understood
 _RANGE = 0.9  # of the rotor's travel, by which it steps where it wraps
-_LEAST_STRAY, _MOST_STRAY = 0.02, 0.1  # of the range of ramps; of their samples
+_RAMP_STEPS = 25.0  # the same of ramps, as 30 real ones with a noisy torque have up to 15
+_LEAST_STRAY, _MOST_STRAY = 0.15, 0.1  # of their range, where those have up to 0.09; of samples
 _NAMED = 3  # faults of a kind that are named with their moments
 
 
@@ -117,7 +118,7 @@ def _gated_ramps(recording: Recording, ramps: Loading) -> Recording:
     for values in (ramps.torque, ramps.angle):
         if len(values) >= _FEWEST:
             calm = _usual(values)
-            usual = _STEPS * np.quantile(np.abs(np.diff(calm)), 0.98)
+            usual = _RAMP_STEPS * np.quantile(np.abs(np.diff(calm)), 0.98)
             stray |= np.abs(values - calm) > max(usual, _LEAST_STRAY * np.ptp(calm))
     if not stray.any() or np.mean(stray) > _MOST_STRAY:
         return recording
