@@ -84,15 +84,12 @@ def read_rotor(path: Path, sources: Sources, ratio: Fraction) -> tuple[Array, Ar
     with _naming(path):
         found, series, said, _ = _read(path, open_table(path), sources, ratio)
         if 'torque' not in found or not said[0].startswith('time'):
-            raise ValueError(
-                'no times or no torque: name them with --time-column, --torque-column'
-            )
+            raise ValueError('no times or no torque: give --time-column and --torque-column')
         _steps(found, series, sources, timed=True)
         role = 'rotor' if 'rotor' in found else 'angle'
         one, torque = series[role], _torque(found, series, series[role], ratio) / float(ratio)
         on_rotor = role == 'rotor' or found[role].on_rotor
-        angle = _unwrapped(one, role)
-        angle = angle if on_rotor else angle * float(ratio)
+        angle = _unwrapped(one, role) * (1.0 if on_rotor else float(ratio))
         return one.stamp, angle, torque, ', '.join(said)
 
 
@@ -309,9 +306,8 @@ def _against(series: _Series, role: str, step: Step | None, *, timed: bool) -> s
 
 def _described(role: str, column: Column) -> str:
     unit = column.unit or {'torque': 'N·m'}.get(role, 'rad, assumed')
-    side = ''
-    if role in {'angle', 'torque'}:
-        side = ' of the rotor' if column.on_rotor else ' at the output'
+    side = ' of the rotor' if column.on_rotor else ' at the output'
+    side = side if role in {'angle', 'torque'} else ''
     return f'{role}{side} [{unit.replace("nm", "N·m")}] from {column.name}'
 
 
