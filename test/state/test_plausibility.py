@@ -81,6 +81,17 @@ def fed(parameters, batch) -> tuple[RotorInput, list]:
     return rotor, samples
 
 
+def state_of(judge) -> dict:
+    """All but what makes it faster."""
+    shortcuts = '_even', '_shortest', '_longest'
+    state = {name: value for name, value in vars(judge).items() if name not in shortcuts}
+    return state | {
+        'finest': pytest.approx(judge.finest, abs=1e-8),
+        '_last': judge._last[1:],
+        '_former': judge._former[2:],
+    }
+
+
 def complaints(rotor) -> tuple:
     judge = rotor.plausibility
     return rotor.rejected, judge.jumped, judge.beyond_limits
@@ -206,3 +217,23 @@ def test_a_motor_that_exceeds_its_speed_little_by_little_is_named(at_once):
         rotor, _ = fed(MULTI, data)
     assert LIMITS[0] < rotor.plausibility.seen_speed < 2000.0
     assert 1 < rotor.rejected['implausible'] < 10
+
+
+@settings(max_examples=50)
+@given(st.integers(0, 2**32), st.lists(st.integers(1, 99), max_size=4), st.sampled_from(KINDS))
+def test_batches_are_judged_as_one_by_one(seed, bad, kind):
+    generator = np.random.default_rng(seed)
+    times, angles = disturbed(kind, *motion(500, 100, generator), 500, generator)
+    for n in bad:
+        angles[n % len(angles) :] += 1000.0 if n % 2 else 0.0
+        angles[n % len(angles)] -= 300.0
+    data = messages(times, angles)
+    single, samples = fed(MULTI, data)
+    batched = RotorInput(MULTI)
+    parts = [data[:1], data[1:30], data[30:31], data[31:]]
+    found = [batched.accept_batch(part, [0] * len(part)) for part in parts]
+    assert batched.rejected == single.rejected
+    assert state_of(batched.plausibility) == state_of(single.plausibility)
+    assert (batched.last, batched.segment) == (single.last, single.segment)
+    positions = [(t, a) for part in found for t, a in zip(part.turns, part.angle, strict=True)]
+    assert positions == [sample.position for sample in samples if sample]
