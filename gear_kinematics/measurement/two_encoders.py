@@ -137,9 +137,12 @@ class EncoderFit:
     def lost_motion(self, *others: Component, delay: bool) -> Estimate:
         """Estimate the angle lost on a reversal, rad, beside a delay or with what a delay adds."""
         chosen = [k for k in self._model if delay or k != _LATE]
-        play, spreads = self._equations.solve(chosen)[:, _WAY], self._equations.spreads(chosen)
-        own = Component(2.0 * _PLAY * float(spreads[_WAY]))
-        return jackknife(-2.0 * _PLAY * play, own, *others)
+        fits = -2.0 * _PLAY * self._equations.first_order(chosen)[:, _WAY]
+        spread = 2.0 * _PLAY * float(self._equations.spreads(chosen)[_WAY])
+        # Noise is in the spread, and in the scatter of the blocks: the greater of both counts.
+        scatter = jackknife(fits).standard or 0.0
+        rest = Component(math.sqrt(max(spread**2 - scatter**2, 0.0)))
+        return jackknife(fits, rest, *others)
 
 
 def directions(output: Array, travel: float, starts: Collection[int] = ()) -> Array:

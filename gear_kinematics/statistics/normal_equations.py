@@ -74,6 +74,17 @@ class NormalEquations:
         coefficients: Array = solution[:, :, 0] * self._scale[-1] / self._scale[places]
         return coefficients
 
+    def first_order(self, chosen: Sequence[int]) -> Array:
+        """Coefficients as of `solve`, but without each block by its influence, to first order.
+
+        Folds are not heeded. Unlike that of exact fits, this scatter does not grow with the number
+        of columns.
+        """
+        places, whole = list(chosen), self.solve(chosen, _WHOLE)[0]
+        left = self._blocks[:, places][:, :, [*places, -1]] @ np.append(-whole, 1.0)
+        changes = np.linalg.solve(self.regular(places, _WHOLE)[0], (left / self._scale[places]).T)
+        return np.vstack([whole, whole - changes.T / self._scale[places]])
+
     def spreads(self, chosen: Sequence[int]) -> Array:
         """Standard uncertainties of the chosen coefficients by noise that is white, (chosen,)."""
         variances = np.diagonal(np.linalg.inv(self.regular(chosen, _WHOLE)[0]))

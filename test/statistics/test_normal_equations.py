@@ -32,3 +32,10 @@ def test_a_column_that_another_explains_gets_half_of_it(line):
     place = [1, 0, 1, 2]
     equations = NormalEquations(line[:, place][:, :, place])
     assert equations.solve([0, 1, 2])[0] == pytest.approx([2.75, 2.0, 2.75], abs=0.02)
+
+
+def test_influences_are_those_of_blocks_left_out(line):
+    equations = NormalEquations(line)
+    exact, nearly = equations.solve([0, 1]), equations.first_order([0, 1])
+    assert nearly[0] == pytest.approx(exact[0], rel=1e-12)
+    assert nearly[1:] - nearly[0] == pytest.approx(exact[1:] - exact[0], rel=0.15, abs=1e-4)
