@@ -99,8 +99,13 @@ def transmission_figures(
     if pairs and (fits := motion.fits(encoders, ratio)):
         difference = replace(fits[0].lost_motion(both, delay=False), repeats=pairs)
         for fit in fits[1:]:
-            lost_motion = replace(fit.lost_motion(both, delay=True), repeats=pairs)
             delay = replace(fit.delay(1.0 if encoders.timed else 1.0 / STEP), repeats=pairs)
+            lost_motion = fit.lost_motion(both, delay=True)
+            # A delay that is not certain may as well be none.
+            off = (
+                0.0 if delay.clear else abs(lost_motion.value - difference.value) / math.sqrt(3.0)
+            )
+            lost_motion = replace(fit.lost_motion(both, Component(off), delay=True), repeats=pairs)
     if delay and delay.clear:
         # The error is in proportion to the delay only as long as the speed hardly changes in it.
         motion = _Motion(encoders.earlier(delay.value), ratio, travel)
