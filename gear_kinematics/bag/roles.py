@@ -1,7 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Finds the topics of the rotor, the outputs and the encoder in a recording."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from itertools import islice
 from pathlib import Path
@@ -50,7 +50,7 @@ def find_topics(
     *,
     outputs: bool = True,
     poses: bool = True,
-    joint: str = '',
+    joints: Collection[str] = (),
     namespace: str | None = None,
 ) -> Topics:
     """Find the topics by type and name, in any namespace; that of the rotor's topic comes first.
@@ -60,7 +60,7 @@ def find_topics(
         given: names of known topics by their parts.
         outputs: whether the outputs must exist too.
         poses: whether the poses are one of the outputs.
-        joint: of the rotor, to choose among several topics.
+        joints: of the rotors, to choose the topic that has most of them.
         namespace: of the node, to choose among several sets of topics (default: that of a given
             output).
 
@@ -83,7 +83,7 @@ def find_topics(
     if namespace is None and (output := found.get('output') or found.get('poses')):
         namespace = output.rpartition('/')[0]
     if 'rotor' not in found:
-        found['rotor'] = _find_topic(bag, left, ROTOR_STATE, joint, namespace)
+        found['rotor'] = _find_topic(bag, left, ROTOR_STATE, joints, namespace)
         del left[found['rotor']]
     chosen = found['rotor'] if namespace is None else f'{namespace}/{ROTOR_STATE}'
     expected = Topics.in_namespace_of(chosen)._asdict()
@@ -97,9 +97,9 @@ def find_topics(
     return Topics(**found)
 
 
-def find_rotor_topic(bag: Bag, given: str | None = None, joint: str = '') -> str:
+def find_rotor_topic(bag: Bag, given: str | None = None, *joints: str) -> str:
     """Return the rotor's topic: the given one, or else by type and name; see `find_topics`."""
-    return find_topics(bag, {'rotor': given}, outputs=False, joint=joint).rotor
+    return find_topics(bag, {'rotor': given}, outputs=False, joints=joints).rotor
 
 
 def outputs_of(bag: Bag, rotor: str) -> Topics:
@@ -131,21 +131,21 @@ def only_joint(bag: Bag, topic: str, joint: str) -> str:
 
 
 def joints_on(bag: Bag, topics: Sequence[str]) -> dict[str, list[str]]:
-    """Return the joints in the first message on topics of joint states, safe to print.
+    """Return the joints in the first messages on topics of joint states, safe to print.
 
     A topic without a readable message has none.
     """
-    joints: dict[str, list[str]] = {topic: [] for topic in topics}
+    joints: dict[str, dict[str, None]] = {topic: {} for topic in topics}
     left = set(topics)
     with suppress(BagError):
-        for topic, _, data in bag.messages(topics):
-            if topic in left:
-                left.remove(topic)
+        for number, (topic, _, data) in enumerate(bag.messages(topics)):
+            if number < _JUDGED or topic in left:
+                left.discard(topic)
                 with suppress(MalformedMessageError):
-                    joints[topic] = joints_of(data)
-            if not left:
+                    joints[topic] |= dict.fromkeys(joints_of(data))
+            if number >= _JUDGED and not left:
                 break
-    return joints
+    return {topic: list(names) for topic, names in joints.items()}
 
 
 def find_encoder_topic(bag: Bag, rotor: str, given: str | None = None) -> str:
@@ -192,7 +192,7 @@ def _find_topic(
     bag: Bag,
     available: Mapping[str, str],
     name: str,
-    joint: str = '',
+    wanted: Collection[str] = (),
     namespace: str | None = None,
 ) -> str:
     of_type = _of_type(available, TOPICS[name].type)
@@ -205,7 +205,9 @@ def _find_topic(
     joints: dict[str, list[str]] = {}
     if len(candidates) > 1 and name == ROTOR_STATE:
         joints = joints_on(bag, candidates[:_PEEKED])
-        candidates = [topic for topic in joints if joint in joints[topic]] or candidates
+        count = {topic: len({*wanted}.intersection(there)) for topic, there in joints.items()}
+        if most := max(count.values()):
+            candidates = [topic for topic in joints if count[topic] == most]
     return _only(bag.path, candidates, name, joints)
 
 

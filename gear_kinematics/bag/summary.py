@@ -1,7 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What is in a recording: its topics, their rates and gaps, and which part each plays."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -71,23 +71,23 @@ class Summary(NamedTuple):
 def summarise(
     bag: Bag,
     rotor_topic: str | None = None,
-    joint: str = '',
+    joints: Sequence[str] = (),
     progress: ReportProgress | None = None,
 ) -> Summary:
-    """Read a whole recording; without a given topic, the joint identifies that of the rotor.
+    """Read a whole recording; without a given topic, the joints identify that of the rotors.
 
     Raises:
         BagError: if no message can be read, or the given topic is missing.
     """
     rotor = unclear = damage = ''
     try:
-        rotor = find_rotor_topic(bag, rotor_topic, joint)
+        rotor = find_rotor_topic(bag, rotor_topic, *joints)
     except BagError as error:
         if rotor_topic:
             raise
         unclear = str(error).removeprefix(f'{bag.path}: ')
     others, reader = 0, None
-    if rotor and (named := joint or next(iter(joints_on(bag, [rotor]).get(rotor, ())), '')):
+    if rotor and (named := next(iter(joints or joints_on(bag, [rotor])[rotor]), '')):
         reader = JointReader(named)
     times = {topic: list[int]() for topic in bag.topics}
     ends: list[int] = []
@@ -104,13 +104,13 @@ def summarise(
     except DamagedBagError as error:
         damage = str(error)
     states = [t for t in stamped if times[t] and bag.topics[t] == JOINT_STATE]
-    joints = joints_on(bag, states)
+    there = joints_on(bag, states)
     topics = [
         _summary(
             name,
             kind,
             'rotor' if name == rotor else _PARTS.get(base_name(name), ''),
-            joints.get(name, []),
+            there.get(name, []),
             times[name],
             others if name == rotor else 0,
         )

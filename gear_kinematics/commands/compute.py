@@ -49,7 +49,8 @@ def run(options: argparse.Namespace) -> ExitCode:
         message_progress(options.bag.name, quiet=options.quiet) as progress,
     ):
         first = next(iter(configs.values())).rotor_joint
-        rotor = options.rotor_topic or find_rotor_topic(bag, joint=first)
+        joints = [each.rotor_joint for each in configs.values()]
+        rotor = options.rotor_topic or find_rotor_topic(bag, None, *joints)
         taken = first
         if options.joint is None and first and '' in configs:
             taken = only_joint(bag, rotor, first)

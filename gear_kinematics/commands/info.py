@@ -42,7 +42,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     for path in found.bags:
         try:
             with Bag(path) as bag, message_progress(path.name, quiet=options.quiet) as progress:
-                summary = summarise(bag, options.rotor_topic, next(iter(joints), ''), progress)
+                summary = summarise(bag, options.rotor_topic, joints, progress)
                 asked = [*_questions(bag, summary, joints)]
         except (ValueError, OSError) as error:
             faults.append(str(error))

@@ -121,7 +121,7 @@ def _judged(
         {'rotor': task.rotor_topic, 'output': task.output_topic, 'poses': task.poses_topic},
         outputs=not play,
         poses=known,
-        joint=joint,
+        joints=[joint],
         namespace=task.namespace,
     )
     encoder = find_encoder_topic(bag, topics.rotor) if task.parameters.absolute else ''
@@ -170,12 +170,11 @@ def _judged(
 
 def _judged_arm(task: Task, bag: Bag, progress: ReportProgress | None) -> BagReport:
     """Validate what is recorded of several actuators."""
-    first, *_ = task.actuators
     topics = find_topics(
         bag,
         {'rotor': task.rotor_topic, 'output': task.output_topic},
         poses=False,
-        joint=first.parameters.rotor_joint,
+        joints=[each.parameters.rotor_joint for each in task.actuators],
         namespace=task.namespace,
     )
     namespace, _, _ = topics.output.rpartition('/')

@@ -6,9 +6,11 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from live import rotor_bytes
 
 from gear_kinematics.bag import Bag, BagError
-from gear_kinematics.bag.roles import Topics, find_encoder_topic, find_topics
+from gear_kinematics.bag.roles import Topics, find_encoder_topic, find_rotor_topic, find_topics
+from gear_kinematics.bag.writing import BagWriter
 
 JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'
 
@@ -162,3 +164,18 @@ def test_which_encoder_is_meant_is_asked():
     bag = bag_with('/b/output_encoder /a/output_encoder')
     with pytest.raises(BagError, match='which topic is output_encoder'):
         find_encoder_topic(bag, '/rotor_state')
+
+
+def test_the_topic_with_most_rotors_is_theirs_even_if_each_message_has_one(tmp_path):
+    """Encoders at two outputs have the names of their rotors."""
+    with BagWriter(tmp_path / 'arm') as writer:
+        for topic in ('/encoders', '/motors'):
+            writer.add_topic(topic, JOINT_STATE)
+        for number, name in enumerate(['m1', 'm2', 'm3']):
+            writer.write('/encoders', number, rotor_bytes(number, ['m1', 'm3'], [0.0, 0.0]))
+            writer.write('/motors', number, rotor_bytes(number, [name], [0.0]))
+    with Bag(tmp_path / 'arm') as bag:
+        assert find_rotor_topic(bag, None, 'm1', 'm2', 'm3') == '/motors'
+        which = r'\? /encoders \(joints m1, m3\), /motors \(joints m1, m2, m3\)'
+        with pytest.raises(BagError, match=which):
+            find_rotor_topic(bag, None, 'm3')

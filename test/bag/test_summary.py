@@ -55,7 +55,7 @@ def test_several_topics_are_told_apart_by_the_joint(tmp_path):
         for topic, joint in (('/a', 'm1'), ('/b', 'wheel')):
             writer.add_topic(topic, JOINT_STATE)
             writer.write(topic, 1, rotor_bytes(10**18, [joint], [0.0]))
-    found = summary(tmp_path / 'two', None, 'wheel')
+    found = summary(tmp_path / 'two', None, ['wheel'])
     assert [(topic.part, topic.name) for topic in found.topics] == [('rotor', '/b'), ('', '/a')]
     assert [topic.rate for topic in found.topics] == [None, None]
 
@@ -102,7 +102,7 @@ def test_what_is_before_the_damage_is_summarised(tmp_path):
 
 
 def test_rate_and_gaps_are_those_of_the_joint_on_a_shared_topic(shared_path):
-    found = summary(shared_path('data/faults/grippers_share_joint_states.mcap'), None, 'm1')
+    found = summary(shared_path('data/faults/grippers_share_joint_states.mcap'), None, ['m1'])
     (topic,) = found.topics
     # As the file is described: 200 Hz for 1.5 s, and two grippers beside it.
     assert (topic.part, topic.messages, topic.of_others) == ('rotor', 900, 600)
