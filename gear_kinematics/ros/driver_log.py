@@ -2,7 +2,8 @@
 """The log of the rotor's driver: that it is missing, has stopped, or has returned."""
 
 import math
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Callable, Collection, Mapping
 
 from rclpy.node import Node
 
@@ -10,7 +11,7 @@ from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.parameters.arm import labelled
 from gear_kinematics.ros.graph import Graph
 from gear_kinematics.state.rotor_input import RotorInput
-from gear_kinematics.wire.nearest import listed
+from gear_kinematics.wire.nearest import among, listed
 from gear_kinematics.wire.topics import ROTOR_STATE
 
 _ELSEWHERE = 0.1  # rad, of a rotor that was turned by hand, or counted from another zero
@@ -20,8 +21,19 @@ _HOME = 'check whether the drive restarted; then call ~/home'
 class DriverLog:
     """Logs each change once."""
 
-    def __init__(self, node: Node, inputs: Mapping[str, RotorInput]) -> None:
-        """Start with the node that subscribes to the rotors' topic, and inputs by actuator."""
+    def __init__(
+        self,
+        node: Node,
+        inputs: Mapping[str, RotorInput],
+        joints: Callable[[], Collection[str]] = list,
+    ) -> None:
+        """Start with the node that subscribes to the rotors' topic, and inputs by actuator.
+
+        `joints` returns the names in the messages of several actuators.
+        """
+        self._joints = joints
+        self._own, self._lacking = Counter[str](), Counter[str]()
+        """Messages with the joint of each actuator, and the updates since there was none."""
         self._log, self._node, self._inputs = node.get_logger(), node, inputs
         self._topic = node.resolve_topic_name(ROTOR_STATE)
         self._looked = False
@@ -30,6 +42,17 @@ class DriverLog:
         self._before: dict[str, RotorSample] = {}  # the silence
         self.awaited = False
         """Whether it was logged that the driver is missing or silent."""
+
+    def _warn_of_missing(self) -> None:
+        """Name once each joint of an arm that messages with others have lacked for too long."""
+        for name, each in self._inputs.items():
+            own, before = each.received - each.of_others, self._own[name]
+            lacks = name and each.of_others and own == before
+            self._own[name], self._lacking[name] = own, self._lacking[name] + 1 if lacks else 0
+            if self._lacking[name] == max(2, math.ceil(each.parameters.input_timeout)):
+                joint, there = each.parameters.rotor_joint, self._joints()
+                hint = '; other joints still come' if joint in there else among(joint, there)
+                self._log.warning(labelled(name, f'no joint {joint!r} on {self._topic}{hint}'))
 
     def _jumped(self) -> dict[str, int]:
         return {name: each.plausibility.jumps for name, each in self._inputs.items()}
@@ -59,6 +82,8 @@ class DriverLog:
                 f'-r {ROTOR_STATE}:=<topic>, or with ros2 launch {ROTOR_STATE}:=<topic>'
             )
             self.awaited = True
+        else:
+            self._warn_of_missing()
 
     def heard(self, samples: Mapping[str, RotorSample]) -> None:
         """Take the first samples by actuator while the driver was awaited."""

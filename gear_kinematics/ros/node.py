@@ -113,7 +113,7 @@ class GearStatePublisher(PublishingNode):
             DriverInput(self, topics.OUTPUT_ENCODER, self._on_output_encoder, monitors),
         )
         inputs = {name: each.state.input for name, each in self._actuators.items()}
-        self._driver_log = DriverLog(self, inputs)
+        self._driver_log = DriverLog(self, inputs, lambda: self._arm.joints)
         self._other_gears = OtherGears(self, lambda: self._current().values())
         self._log_start()
 

@@ -3,7 +3,7 @@
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import cache, lru_cache
 from typing import TypeVar
 
@@ -45,6 +45,11 @@ class ArmState:
         parameters = [state.parameters for state in self.actuators.values()]
         self._rotors = JointsReader(each.rotor_joint for each in parameters)
         self._encoders = JointsReader(each.output_encoder_joint for each in parameters)
+
+    @property
+    def joints(self) -> Collection[str]:
+        """Names in the messages of the rotors of several actuators, safe to print."""
+        return self._rotors.there
 
     @property
     def topics(self) -> dict[str, str]:

@@ -141,6 +141,8 @@ class JointsReader:
         """Read the joints of these names or indices."""
         self._joints = [joint.encode() for joint in joints]
         self._layouts: dict[int, list[_JointsLayout]] = {}
+        self.there: set[str] = set()
+        """Names of the joints in messages of the layouts that are kept, safe to print."""
 
     def read(self, data: bytes) -> Sequence[JointValues | RejectedInputError | None]:
         """Read a message: for each joint its values, why it has none, or None if it is missing.
@@ -169,6 +171,8 @@ class JointsReader:
         if layout.size <= _MAX_KEPT:
             if sum(map(len, self._layouts.values())) >= _MOST_LAYOUTS:
                 self._layouts.clear()
+                self.there.clear()
+            self.there.update(joints_of(data))
             definition = _definition(layout)
             kept = self._layouts.setdefault(layout.size, [])
             kept.append((definition, definition(data), reads))
