@@ -70,7 +70,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     results = bags.results(options, WORK, tasks, 'recordings')
     reports = [results[bags.key(task)] for task in tasks]
     faults = [*found.faults.values(), *(report.error for report in reports if report.error)]
-    for fault in faults:
+    for fault in dict.fromkeys(faults):  # one of all actuators is said once
         complain(fault)
     for table in filter(None, (report.taken for report in reports)):
         print(printable(table), file=sys.stderr)

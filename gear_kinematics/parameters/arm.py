@@ -30,8 +30,8 @@ _SPACING = 1.5
 COMMON = 'actuators', 'executor', 'home_file'
 """Parameters of the node, which cannot differ between actuators."""
 
-_TOKEN = re.compile('[A-Za-z][A-Za-z0-9_]*', re.ASCII)
-"""A name that ROS allows in parameters, topics and services."""
+_TOKEN = re.compile('[A-Za-z][A-Za-z0-9_]{,63}', re.ASCII)
+"""A name that ROS allows in parameters, topics and services, of which a whole one has 255."""
 _EVERY_NODE = re.compile(r'use_sim_time|start_type_description_service|qos_overrides\..*')
 """Parameters that every node has and that are ignored here."""
 _GROUPS = 'qos_overrides', 'use_sim_time', 'start_type_description_service'
@@ -191,6 +191,10 @@ def unknown_parameters(
         actuator, _, branch = group.rpartition('.')
         if branch and key in BRANCH_PARAMETERS and actuator in ('', *branches):
             hint = f'; `{branch}` is not in `{full_name(actuator, "branches")}`'
+        elif name in branches:
+            hint = f'; what holds for {name} stands below it, such as `{name}.rotor_joint`'
+        elif name.startswith('actuators.'):
+            hint = '; `actuators` is a list of names, beside which each has its parameters'
         elif key in COMMON and group in branches:
             hint = f'; give `{key}` without `{group}.`, as it holds for all actuators'
         else:
@@ -234,7 +238,8 @@ def _name_faults(
         if count > 1:
             yield f'actuators: `{name}` is there {count} times'
         if not _TOKEN.fullmatch(name):
-            yield f'actuators: {name!r} must be letters, digits and _, and begin with a letter'
+            rule = 'at most 64 letters, digits and _, and begin with a letter'
+            yield f'actuators: {name!r:.80} must be {rule}'
         elif name in branches:
             yield f'actuators: `{name}` is the name of a branch, too'
         elif name in groups:

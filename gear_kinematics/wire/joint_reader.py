@@ -87,6 +87,11 @@ def joints_of(data: bytes) -> list[str]:
     return [name if name.isprintable() else ascii(name)[1:-1] for name in names]
 
 
+def _missing(joint: bytes, data: bytes) -> RejectedInputError:
+    name = joint.decode(errors='backslashreplace')
+    return RejectedInputError(JOINT_MISSING, partial(describe_missing, name, data))
+
+
 class JointReader:
     """Reads a joint from one message after another.
 
@@ -147,15 +152,16 @@ class JointsReader:
     def read(self, data: bytes) -> Sequence[JointValues | RejectedInputError | None]:
         """Read a message: for each joint its values, why it has none, or None if it is missing.
 
+        All are rejected if all are missing.
+
         Raises:
-            RejectedInputError: if the message is none, or has none of the joints.
+            RejectedInputError: if the message is none.
         """
         known = self._layouts.get(len(data), ())
         reads = next((reads for fixed_of, fixed, reads in known if fixed_of(data) == fixed), None)
         reads = reads or self._learn(data)
         if not any(reads):
-            names = ' or '.join(joint.decode(errors='backslashreplace') for joint in self._joints)
-            raise RejectedInputError(JOINT_MISSING, partial(describe_missing, names, data))
+            return [_missing(joint, data) for joint in self._joints]
         return [read and _values_or_cause(read, data) for read in reads]
 
     def _learn(self, data: bytes) -> _Reads:
@@ -211,8 +217,7 @@ class _Joint:
         if position is None:
             if self._fault != JOINT_MISSING:
                 raise RejectedInputError(self._fault)
-            joint = self._joint.decode(errors='backslashreplace')
-            raise RejectedInputError(JOINT_MISSING, partial(describe_missing, joint, data))
+            raise _missing(self._joint, data)
         if not abs(position) <= LARGEST_ANGLE:  # NaN compares false
             finite = math.isfinite(position)
             raise RejectedInputError(POSITION_TOO_LARGE if finite else POSITION_NOT_FINITE)

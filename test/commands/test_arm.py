@@ -95,6 +95,9 @@ def test_loads_and_info_report_on_each_actuator(arm, tmp_path):
     assert any('output [N·m]: greatest: 4.75;' in line for line in lines)  # 19 · 0.25 N·m
     why = refusal('loads', source, '--config', file, '--actuator', 'elbow')
     assert why.startswith(f'{source}: elbow: gear_ratio is 1457/26: ')
+    two = config(tmp_path / 'two.yaml', **{'shoulder.gear_ratio': '', 'elbow.gear_ratio': ''})
+    once = refusal('loads', source, '--config', two, '--rotor-topic', '/motor')
+    assert once.startswith(f'{source}: no topic /motor ')
     stopped = [
         (ROTOR, stamp, state._replace(velocity=[0.0 for _ in state.velocity]).encode(stamp))
         for stamp, state in inputs(300)
