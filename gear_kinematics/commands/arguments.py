@@ -47,7 +47,7 @@ def group(parser: argparse.ArgumentParser, title: str) -> argparse._ArgumentGrou
     return next(known, None) or parser.add_argument_group(title)
 
 
-ALL = 'of several `actuators` in the file, the one that is meant (default: all)'
+ALL = 'use only this one of the `actuators` in the file (default: all)'
 """The help on `--actuator` where a command works on all of them."""
 
 
@@ -56,7 +56,7 @@ def add_config(
     node: str = NODE,
     default: str = 'config/actuator.yaml',
     *,
-    actuator: str = 'in a file with several `actuators`, the one that is meant',
+    actuator: str = 'use this one of the `actuators` in the file',
 ) -> None:
     """Add the options for the parameters of a node; `actuator` is the help on `--actuator`."""
     gear = group(parser, 'gear')
@@ -70,7 +70,7 @@ def add_config(
         '--node',
         default=node,
         metavar='NAME',
-        help='node in a file with several nodes, with or without namespace, such as '
+        help='node to select in a file for several nodes, with or without namespace, such as '
         f'/left/{node} (default: %(default)s)',
     )
     gear.add_argument('--actuator', default='', metavar='NAME', help=actuator)
@@ -81,13 +81,13 @@ def add_mechanism(parser: argparse.ArgumentParser, *, sizes: bool = False) -> No
     add_config(parser)
     gear = group(parser, 'gear')
     gear.add_argument(
-        '--ring-teeth', type=int, metavar='ZK', help='replaces the parameter ring_teeth'
+        '--ring-teeth', type=int, metavar='ZK', help='replace the parameter ring_teeth'
     )
     gear.add_argument(
-        '--satellite-teeth', type=int, metavar='ZS', help='replaces the parameter satellite_teeth'
+        '--satellite-teeth', type=int, metavar='ZS', help='replace the parameter satellite_teeth'
     )
     for name in ('eccentricity', 'module') if sizes else ():
-        text = f'replaces the parameter {name}, m'
+        text = f'replace the parameter {name}, m'
         gear.add_argument(f'--{name}', type=float, metavar='M', help=text)
 
 
@@ -97,7 +97,7 @@ def add_quiet(parser: argparse.ArgumentParser) -> None:
         '-q',
         '--quiet',
         action='store_true',
-        help='print neither progress nor results, but what failed',
+        help='print only what failed, and neither progress nor results',
     )
 
 

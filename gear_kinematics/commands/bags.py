@@ -31,17 +31,19 @@ def add_rotor(parser: argparse.ArgumentParser, *, configured: bool = True) -> No
     group.add_argument(
         '--rotor-topic',
         metavar='NAME',
-        help='topic of the joint states (default: found by type, name and joint)',
+        help="topic of the rotor's joint states (default: found by type, name and joint)",
     )
     text = ' (default: the parameter rotor_joint)' if configured else ', to find its topic'
-    group.add_argument('--joint', metavar='NAME', help=f'of the rotor{text}')
+    group.add_argument('--joint', metavar='NAME', help=f'joint of the rotor{text}')
 
 
 def add_outputs(parser: argparse.ArgumentParser) -> None:
     """Add the options for the names of the node's topics in a bag."""
-    for topic in ('output', 'poses'):
+    for topic, content in ('output', 'output joint states'), ('poses', 'body poses'):
         arguments.group(parser, 'recording').add_argument(
-            f'--{topic}-topic', metavar='NAME', help='(default: found by type and name)'
+            f'--{topic}-topic',
+            metavar='NAME',
+            help=f'topic of the {content} (default: found by type and name)',
         )
 
 
@@ -96,10 +98,16 @@ def files_of(
 def add_jobs(ways: argparse._MutuallyExclusiveGroup) -> None:
     """Add the options that distribute many recordings; see `results`."""
     ways.add_argument(
-        '--jobs', type=arguments.between(1, kind=int), default=1, metavar='N', help='processes'
+        '--jobs',
+        type=arguments.between(1, kind=int),
+        default=1,
+        metavar='N',
+        help='number of processes (default: 1)',
     )
     ways.add_argument(
-        '--scheduler', metavar='ADDRESS', help='of a Dask cluster that works, as tcp://HOST:8786'
+        '--scheduler',
+        metavar='ADDRESS',
+        help='scheduler of a Dask cluster that does the work, such as tcp://HOST:8786',
     )
 
 

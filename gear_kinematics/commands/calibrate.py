@@ -29,13 +29,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--output',
         default='calibration.yaml',
         metavar='FILE',
-        help='the calibration (default: %(default)s); replaces nothing but a calibration',
+        help='calibration to write (default: %(default)s); it replaces nothing but a calibration',
     )
     output.add_argument(
         '--check',
         type=Path,
         metavar='FILE',
-        help='judge this calibration by recordings that it was not made from, and make none',
+        help='judge this calibration by other recordings than its own, and write none',
     )
     arguments.add_verbose(parser, 'print tables and remarks in a pipe, too')
     add_report_forms(parser)

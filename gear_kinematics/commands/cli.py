@@ -1,7 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Set up, record, prove and measure the output angle of any geared joint.
 
-Of hypocycloidal gears with Oldham couplings, it knows all bodies, forces and the preload as well.
+For hypocycloidal gears with Oldham couplings, compute all bodies, forces and the preload as well.
 """
 
 import argparse

@@ -41,11 +41,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     recording.add_argument(
         '--live',
         action='store_true',
-        help='listen to the drivers now, and guide through turning the output by hand; Enter ends',
+        help='listen to the drivers while you turn the output by hand as advised; Enter ends it',
     )
     recording.add_argument('--encoder-joint', metavar='NAME', help='joint of the output')
     gear = arguments.group(parser, 'gear')
-    known = add_known_ratio(parser, 'confirm this ratio, such as -19')
+    known = add_known_ratio(parser, 'ratio to confirm, such as -19')
     known.add_argument('--check', type=Path, metavar='FILE', help='judge this parameter file')
     gear.add_argument(
         '--zero-here',
@@ -55,7 +55,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "(default: where the output's encoder reads 0)",
     )
     add_new_config(parser)
-    arguments.add_verbose(parser, 'print tables and remarks in a pipe as well')
+    arguments.add_verbose(parser, 'print tables and remarks in a pipe, too')
     add_report_forms(parser)
 
 

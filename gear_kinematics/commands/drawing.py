@@ -21,16 +21,16 @@ def add_image(parser: argparse.ArgumentParser, formats: str) -> None:
     recording = arguments.group(parser, 'recording')
     recording.add_argument('--bag', type=Path, metavar='BAG', help='recorded motion of the rotor')
     recording.add_argument(
-        '--start-offset', type=float, metavar='S', help='start in the recording'
+        '--start-offset', type=float, metavar='S', help='time in the recording to start at'
     )
     recording.add_argument(
-        '--duration', type=arguments.positive, metavar='S', help='(default: all of it)'
+        '--duration', type=arguments.positive, metavar='S', help='time to show (default: all)'
     )
     arguments.group(parser, 'motion').add_argument(
         '--torque',
         type=arguments.finite,
         metavar='N·m',
-        help='that the branches give the output: draws the forces on the satellite',
+        help='torque that the branches give the output; draws the forces on the satellite',
     )
     arguments.add_mechanism(parser, sizes=True)
     add_force(parser)

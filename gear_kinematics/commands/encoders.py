@@ -16,8 +16,8 @@ from gear_kinematics.parameters import default_config
 from gear_kinematics.report.document import printable
 
 _COLUMNS = {
-    'angle': 'under torque',
-    'torque': 'N·m',
+    'angle': 'angle under torque',
+    'torque': 'torque (default unit: by name, or N·m)',
     'rotor': 'angle of the rotor',
     'output': 'angle of the output encoder',
     'time': 'time of a row (default unit: by name, or by the sampling)',
@@ -39,7 +39,9 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: boo
     add_rotor(parser, configured=configured)
     recording = arguments.group(parser, 'recording')
     recording.add_argument(
-        '--encoder-topic', metavar='NAME', help='(default: found by type and name)'
+        '--encoder-topic',
+        metavar='NAME',
+        help='topic of the output encoder (default: found by type and name)',
     )
     gear = arguments.group(parser, 'gear')  # before the columns, also where the command adds to it
     if configured:
@@ -70,18 +72,19 @@ def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
         group.add_argument(
             '--on-rotor',
             action='store_true',
-            help='angle and torque are of the rotor, unless the name of the column says output',
+            help='take angle and torque as those of the rotor, unless a column is named after '
+            'the output',
         )
     count = arguments.between(1, kind=int)
     group.add_argument(
         '--rotor-counts',
         type=count,
         metavar='N',
-        help='steps per turn of the encoder of the rotor, or of the angle column: in them are the '
-        'angles of columns such as motor_inc (default: from the readings)',
+        help="steps per turn of the rotor's encoder, or that of the angle column, for angles in "
+        'counts, as in a column motor_inc (default: from the readings)',
     )
     group.add_argument(
-        '--output-counts', type=count, metavar='N', help='the same of the output encoder'
+        '--output-counts', type=count, metavar='N', help='steps per turn of the output encoder'
     )
 
 
@@ -98,7 +101,10 @@ def add_known_ratio(
     else:
         known.add_argument('--ratio', type=ratio_text, metavar='I', help=purpose)
     known.add_argument(
-        '--teeth', type=teeth, metavar='ZK/ZS', help='or that of the teeth of ring and satellite'
+        '--teeth',
+        type=teeth,
+        metavar='ZK/ZS',
+        help='give the ratio by the numbers of teeth of ring and satellite',
     )
     return known
 
@@ -124,14 +130,14 @@ def add_new_config(parser: argparse.ArgumentParser) -> None:
         '--output',
         default=default_config().name,
         metavar='FILE',
-        help='the parameter file to create (default: %(default)s); it must not exist yet, unless '
-        'it is that of an arm, to which an actuator is added',
+        help='parameter file to create (default: %(default)s); it must not exist, unless it is '
+        'the file of an arm to add an actuator to',
     )
     output.add_argument(
         '--actuator',
         default='',
         metavar='NAME',
-        help='add the gear to FILE, or a new FILE, as this actuator of an arm',
+        help='write the gear to FILE, new or existing, as this actuator of an arm',
     )
 
 

@@ -25,7 +25,7 @@ def add_force(parser: argparse.ArgumentParser) -> None:
     group(parser, 'output').add_argument(
         '--force',
         action='store_true',
-        help='replace FILE even if it is no report of gearkin, but never a recording',
+        help='replace FILE even if gearkin did not write it, but never a recording',
     )
 
 

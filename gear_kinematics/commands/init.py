@@ -31,8 +31,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--joint', metavar='NAME', help="the rotor's joint, if there are several")
     add_known_ratio(
         parser,
-        'of the gear, such as -19 or 1457/26; negative if the output turns '
-        'against the rotor (default: asked for); with --arm also of each, such as '
+        'ratio of the gear, such as -19 or 1457/26; negative if the output turns '
+        'against the rotor (default: asked for); with --arm also one for each joint, such as '
         'shoulder=-101 elbow=-51',
         several=True,
     )

@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--rated-torque',
         type=arguments.positive,
         metavar='N·m',
-        help='at the output (default: the amplitude of the largest ramps)',
+        help='rated torque at the output (default: the amplitude of the largest ramps)',
     )
     limits = parser.add_argument_group(
         'limits', 'exit code 1 where one is exceeded, or cannot be shown to hold'
@@ -42,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--group',
         action='append',
         metavar='PATTERN',
-        help='compare groups of recordings: a glob of their names for each (repeat the option)',
+        help='glob of the names of a group of recordings to compare (repeat the option for each)',
     )
     add_report_forms(parser, junit=True)
     arguments.add_verbose(parser, 'print tables and remarks in a pipe, too')

@@ -26,7 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--calibration',
         type=Path,
         metavar='FILE',
-        help='with the kinematic errors (default: the parameter calibration)',
+        help='calibration with the kinematic errors (default: the parameter calibration)',
     )
     gear.add_argument(
         '--measured',
@@ -34,16 +34,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action='append',
         default=[],
         metavar='REPORT.json',
-        help='of gearkin preload: stiffness and preload; of gearkin lost-motion: springs and '
-        'friction (repeat the option for both)',
+        help='take stiffness and preload from a report of gearkin preload, or springs and '
+        'friction from one of gearkin lost-motion (repeat the option for both)',
     )
     gear.add_argument(
         '--single-precision',
         action='store_true',
-        help='with softer loops, for MuJoCo Warp: 0.04 %% of the compliance instead of 0.0001 %%',
+        help='write softer loops, for MuJoCo Warp: 0.04 %% of the compliance instead of 0.0001 %%',
     )
     arguments.group(parser, 'output').add_argument(
-        '-o', '--output', default='-', metavar='FILE', help='the model (default: stdout)'
+        '-o', '--output', default='-', metavar='FILE', help='model to write (default: stdout)'
     )
     add_force(parser)
 

@@ -52,14 +52,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='torque in both branches without load; negative for a turn in the other direction',
     )
     turns.add_argument(
-        '--wanted-threshold', type=float, metavar='N·m', help='load up to which both are in mesh'
+        '--wanted-threshold',
+        type=float,
+        metavar='N·m',
+        help='load up to which both branches stay in mesh',
     )
     turns.add_argument(
         '--from',
         dest='recording',
         type=Path,
         metavar='RECORDING',
-        help='loads under which both have to stay in mesh',
+        help='recording of loads under which both branches have to stay in mesh',
     )
     arguments.group(parser, 'turn of a ring gear').add_argument(
         '--margin',
@@ -75,7 +78,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs='+',
         required=True,
         metavar='N·m/rad',
-        help='stiffness of each branch, or of A and of B, the one at the output; inf is rigid',
+        help='stiffness of both branches, or of A and of B, which is at the output; inf: rigid',
     )
     group.add_argument(
         '--shaft-stiffness',
@@ -89,7 +92,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=float,
         default=0.0,
         metavar='RAD',
-        help='play of the output before the turn, which has to close it first',
+        help='play of the output before the ring is turned, which the turn has to close first',
     )
     arguments.add_mechanism(parser)
     add_report_forms(parser)

@@ -20,7 +20,7 @@ from gear_kinematics.wire.nearest import listed
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     arguments.add_config(
-        parser, actuator='only this one of the `actuators` of an arm (default: all of them)'
+        parser, actuator='print only this one of the `actuators` of an arm (default: all)'
     )
     output = arguments.group(parser, 'output')
     output.add_argument(
@@ -33,8 +33,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--meshes',
         type=Path,
         metavar='DIR',
-        help='write the bodies with their teeth to this folder, as STL, and show them, by the '
-        'URI of the parameter meshes if it has one; those of an arm in a folder for each actuator',
+        help='write the bodies with their teeth to this folder as STL, and refer to them in the '
+        'URDF, by the URI of the parameter meshes if it has one; an arm has a folder for each '
+        'actuator',
     )
 
 

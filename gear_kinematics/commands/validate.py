@@ -49,11 +49,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     limits.add_argument(
         '--independent',
         action='store_true',
-        help='compare by the matrix method as well, with code that the node does not run',
+        help='compare with the matrix method as well, whose code the node does not run',
     )
     sources = arguments.group(parser, 'several recordings').add_mutually_exclusive_group()
     sources.add_argument(
-        '--live', action='store_true', help='validate the outputs of a live node instead'
+        '--live',
+        action='store_true',
+        help='play the recorded inputs to a live node, and validate its outputs instead',
     )
     bags.add_jobs(sources)
     add_report_forms(parser, junit=True)

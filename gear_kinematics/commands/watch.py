@@ -21,7 +21,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='the node, such as /left/gear_state_publisher (default: the first that runs)',
     )
     parser.add_argument(
-        '--actuator', default='', metavar='NAME', help='of an arm (default: the first)'
+        '--actuator', default='', metavar='NAME', help='actuator of an arm (default: the first)'
     )
 
 
