@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""`gearkin info`: what is in recordings."""
+"""`gearkin info`: list the contents of recordings."""
 
 import argparse
 from collections.abc import Iterator, Sequence
@@ -57,7 +57,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _questions(bag: Bag, summary: Summary, joints: Sequence[str]) -> Iterator[str]:
-    """Yield what seems to be wrong with the messages of the rotors, if it is known which.
+    """Yield what seems to be wrong with the messages of the rotors whose joints are known.
 
     Of joints that are not given, the only one of a topic is known.
     """

@@ -95,7 +95,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _ratios(options: argparse.Namespace, joints: Sequence[str]) -> dict[str, GearRatio]:
-    """The ratio of each joint's gear, which is given or asked for."""
+    """Return the ratio of each joint's gear, which is given or asked for."""
     given: dict[str, GearRatio] = dict(options.ratio or ())
     if len(given) < len(options.ratio or ()):
         raise ValueError('--ratio: one ratio for all joints, or one for each, such as m1=-19')
@@ -120,6 +120,6 @@ def _ratios(options: argparse.Namespace, joints: Sequence[str]) -> dict[str, Gea
 
 
 def _actuator(joint: str) -> str:
-    """The name of an actuator, which a parameter and a topic can have, after its joint."""
+    """Name an actuator after its joint, with characters that parameters and topics can have."""
     name = re.sub(r'\W', '_', joint, flags=re.ASCII)
     return name if name[:1].isalpha() else f'joint_{name}'

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Questions to the user: which of the joints in live or recorded messages it is."""
+"""Questions to the user about which of the joints in live or recorded messages is meant."""
 
 import sys
 from collections.abc import Sequence

@@ -156,7 +156,7 @@ def _joined(stamp: int, rows: Sequence[_Row]) -> bytes:
 def _joined_template(
     templates: tuple[JointStateTemplate, ...],
 ) -> tuple[JointStateTemplate, list[list[tuple[int, int]]]]:
-    """The template of the joined message, and for each of its fields where its numbers are.
+    """Return the template of the joined message, and where the numbers of each field are.
 
     Where a template lacks the field, the place begins below 0.
     """

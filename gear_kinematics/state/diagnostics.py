@@ -26,7 +26,7 @@ _WAS_UNREFERENCED = 'Do not use the outputs of that time.'
 _JUMPED = 'Check whether the drive restarted, and the encoder and its cable.'
 _VELOCITY = 'Let the driver send rad/s of the rotor, or no velocities.'
 _BEYOND = 'Raise the limit to what the motor can do, or check that positions are in rad.'
-_UNSTAMPED = 'Let the driver stamp its messages: the turns of a single-turn encoder rest on time.'
+_UNSTAMPED = 'Let the driver stamp its messages: without stamps, turns may be miscounted.'
 _UNEXPLAINED = 'Check gear_ratio, the directions and zeros of both encoders, and the gear.'
 _AMBIGUOUS = 'Stop the output; or calibrate the gear, or lower transmission_error_limit.'
 _DISAGREES = 'Check whether an encoder has slipped; then call ~/home, or restart the node.'
@@ -47,7 +47,7 @@ class Fault(str):
     advice: str
 
     def __new__(cls, message: str, advice: str) -> Self:
-        """Take both; the advice is a sentence."""
+        """Create a fault with its advice, which is a sentence."""
         fault = super().__new__(cls, message)
         fault.advice = advice
         return fault
@@ -95,7 +95,7 @@ class DriverMonitor:
         newly_rejected, self._rejected = rejected - self._rejected, Counter(rejected)
         faults = [_rejections(newly_rejected)] if newly_rejected else []
         if newly_lost := self._newly('lost', self.lost):
-            advice = 'The middleware has not delivered these messages.'
+            advice = 'Check the network, and whether the computer is too busy.'
             faults.append(Fault(f'lost {newly_lost}', advice))
         return faults
 
@@ -221,7 +221,7 @@ class EncoderMonitor(DriverMonitor):
     ) -> StatusReport | None:
         """Report on an encoder in the time since the last report, until now.
 
-        None until it has sent a message. `parameters` have the limits.
+        Return None until the encoder has sent a message. `parameters` have the limits.
         """
         if self.last_input is None:
             return None

@@ -13,8 +13,8 @@ class Disorder:
     def set_back(self, last: int, stamp: int) -> int:
         """Return by how much the clock was set back between the last sample and the next, ns.
 
-        It was if several messages in a row, in order among themselves, were older than the last
-        sample. The stamps are forgotten.
+        The clock was set back if several messages in a row, in order among themselves, were older
+        than the last sample. The stamps are forgotten.
         """
         stamps, self.stamps = self.stamps, []
         rising = len(stamps) > 1 and all(a < b for a, b in pairwise([*stamps, stamp]))

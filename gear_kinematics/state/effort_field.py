@@ -15,7 +15,7 @@ FACTOR = 'set rotor_effort_factor (N·m per unit) if the messages have another u
 
 
 class EffortField:
-    """Tells efforts of 0 that say nothing: one that is 0 throughout a motion is no effort."""
+    """Finds efforts of 0 that mean nothing: an effort that is 0 throughout a motion is none."""
 
     def __init__(self) -> None:
         self.real = False
@@ -29,7 +29,7 @@ class EffortField:
         return not self.real and self._greatest - self._least > _MOTION
 
     def believed(self, position: float, effort: float) -> float | None:
-        """Take the next position, rad, and effort; returns the effort, or None if it is none."""
+        """Take the next position, rad, and effort; returns None for an effort without meaning."""
         if effort:
             self.real = True
             return effort
@@ -37,7 +37,7 @@ class EffortField:
         return None if self.absent else effort
 
     def all_believed(self, positions: Array, efforts: Array) -> Array:
-        """Take the next ones, (n,), where NaN is none, as `believed` does one by one."""
+        """Take the next positions and efforts, (n,), NaN for none, as `believed` one by one."""
         if self.real or not len(efforts):
             return efforts
         others = np.flatnonzero((efforts != 0.0) & ~np.isnan(efforts))
@@ -54,7 +54,7 @@ class EffortField:
 
 
 def questioned(effort: float, mechanism: Mechanism | None = None) -> str:
-    """Say that a torque of the rotor, N·m, is hardly one; '' if it may be.
+    """Say that a torque of the rotor, N·m, is implausibly large; '' if it is not.
 
     The output of a mechanism bears no more than a solid shaft of steel as large as a satellite.
     """

@@ -30,7 +30,7 @@ from gear_kinematics.wire.topics import (
 
 
 class RotorAnswer(NamedTuple):
-    """What came of a valid message of the rotor."""
+    """The results of a valid message of the rotor."""
 
     sample: RotorSample
     segment: int
@@ -46,7 +46,7 @@ class RotorAnswer(NamedTuple):
 
 
 class RotorAnswers(NamedTuple):
-    """What came of many messages: the fields of n `RotorAnswer`s as arrays (n,)."""
+    """The results of many messages: the fields of n `RotorAnswer`s as arrays (n,)."""
 
     samples: RotorSamples
     correction: Correction | None

@@ -165,8 +165,8 @@ NUMBERS: Mapping[str, Callable[[SampleLoads], Sequence[Any]]] = {
 class Acceleration:
     """The acceleration from velocities, rad/s²: their difference over at least 20 ms.
 
-    NaN where the velocity is unknown, in the first 20 ms of a segment, and across a gap that makes
-    it the mean of more than 0.1 s.
+    It is NaN where the velocity is unknown, in the first 20 ms of a segment, and across a gap that
+    makes it the mean of more than 0.1 s.
     """
 
     def __init__(self) -> None:
@@ -198,7 +198,7 @@ class PreloadMonitor:
         self._rows: list[tuple[Any, ...]] = []
 
     def follow(self, sample: RotorSample, segment: int) -> None:
-        """Take the next sample and the number of its segment, for the report alone."""
+        """Take the next sample and the number of its segment; only the report uses them."""
         stamp, position, velocity, effort = sample
         self._rows.append((stamp, *position, velocity, effort, 0, 0, segment, True))
 

@@ -5,7 +5,7 @@
 class Losses:
     """Counts the messages that are missing between those of a publisher that came.
 
-    Each publisher counts from 1: a lower number than the last is of another one in its place.
+    Each publisher counts from 1: a lower number than the last is that of a new publisher.
     """
 
     def __init__(self) -> None:

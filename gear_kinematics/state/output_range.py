@@ -11,7 +11,7 @@ def range_fault(
 ) -> str:
     """Say how an output angle within a tolerance contradicts the range; '' if it does not.
 
-    Of an angle that repeats after a period, rad, both ends of the range may be possible.
+    Where the angle repeats after a period, rad, both ends of the range may be possible.
     """
     if not parameters.output_range:
         return ''

@@ -27,7 +27,7 @@ _LONGEST_NS = 12_000_000  # between readings for which a look at the step alone 
 
 
 class Belief(Enum):
-    """What a reading is."""
+    """The verdict on a reading."""
 
     BELIEVED = 'believed'
     IMPLAUSIBLE = 'implausible'
@@ -38,7 +38,7 @@ BELIEVED = Belief.BELIEVED  # an attribute of an enum is slow for what each mess
 
 
 class Jump(NamedTuple):
-    """A step that the rotor did not make."""
+    """A step of the readings that the rotor did not make."""
 
     stamp: int
     """ns, of the first reading behind it."""

@@ -26,7 +26,7 @@ def _stale(last: Reading, former: Reading) -> float:
 
 
 class RotorLimits(NamedTuple):
-    """RotorLimits of a rotor."""
+    """The limits of a rotor."""
 
     speed: float
     """rad/s."""
@@ -34,7 +34,7 @@ class RotorLimits(NamedTuple):
     """rad/s²."""
 
     def even_step(self, span: Any) -> Any:
-        """What successive steps may differ by if each takes about a time, ns, rad.
+        """Return by how much successive steps may differ, rad, if each takes about a time, ns.
 
         It is less than what `reach` allows beyond the last step.
         """

@@ -130,7 +130,7 @@ class RotorInput:
 
     @property
     def segment(self) -> int:
-        """Number that rises where the turn count restarts, is uncertain or is referenced."""
+        """A number that rises where the turn count restarts, is uncertain or is referenced."""
         return self.turns.unknown_gaps + self.resets + self._restarts + self.plausibility.jumps
 
     def accept(self, data: JointMessage, now: Callable[[], int]) -> RotorSample:
@@ -178,7 +178,7 @@ class RotorInput:
         self._restarts += 1
 
     def zero_for(self, rotor_angle: float) -> float:
-        """Return, or raise, what `home` would, and change nothing."""
+        """Return or raise the same as `home`, but change nothing."""
         return self.turns.zero_for(rotor_angle, self._parameters.rotor_direction)
 
     def accept_batch(self, messages: Sequence[bytes], received: Sequence[int]) -> RotorSamples:

@@ -28,7 +28,7 @@ whatever the distribution of the noise (both sides of its median are equally lik
 
 
 class Decision(NamedTuple):
-    """What a block of errors says of the turns: angles of the output, rad."""
+    """The evidence of a block of errors on the turns: angles of the output, rad."""
 
     output_angle: float  # ideal, of the last one
     error: float  # measured less ideal angle, modulo 2π
@@ -42,7 +42,7 @@ class Decision(NamedTuple):
 
     @property
     def used(self) -> float:
-        """What of the margin is: the distance if nothing known explains it, else the budget."""
+        """The used part of the margin: the distance if it is unexplained, else the budget."""
         return max(abs(self.distance), self.budget)
 
     @property

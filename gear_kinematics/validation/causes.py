@@ -40,8 +40,8 @@ class FindingCause(Enum):
     )
     ANOTHER_RATIO = 'the recorded ratio is {ratio}, not {expected}: ' + _REMEDY
     ANOTHER_TOOTH_PAIR = (
-        'the recorded ratio is {ratio}, not {expected}, as that of ring_teeth {ring}, '
-        'satellite_teeth {satellite}{flipped}: ' + _REMEDY
+        'the recorded ratio is {ratio}, not {expected}: it is that of ring_teeth {ring}, '
+        'satellite_teeth {satellite}{flipped}; ' + _REMEDY
     )
     ANOTHER_UNIT = 'the recorded {field} is {factor:.6g} times the expected one'
     OTHER_JOINT = (
@@ -64,7 +64,7 @@ class FindingCause(Enum):
         '{rotor.jumps} gaps of {rotor.topic} could hide a turn of the rotor: after each, its '
         'turns are taken from the outputs'
     )
-    JUMPED = '{rotor.jumped}: what follows has another zero'
+    JUMPED = '{rotor.jumped}: later readings have another zero'
     VELOCITY_IS = '{rotor.velocity_is}'
     BEYOND_LIMITS = '{rotor.beyond_limits}'
     OVERSPEED = (
@@ -96,7 +96,7 @@ class FindingCause(Enum):
     JOINTS_DISORDERED = (
         'the joints are not in the order of `actuators`, but {joints}: {messages}' + _FIRST
     )
-    ARRAY_SIZE = '{field} has not a value for each of {joints}: {messages}' + _FIRST
+    ARRAY_SIZE = '{field} lacks a value for some of {joints}: {messages}' + _FIRST
     NAN_FOR_ALL = '{field} is NaN for all of {joints}, and should be empty: {messages}' + _FIRST
     # The recorder
     RECORDER_LOST = 'the recorder says that it lost {messages}'

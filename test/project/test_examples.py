@@ -72,7 +72,7 @@ def test_the_documented_test_of_a_package_holds_its_recording_to_its_parameters(
     command = [sys.executable, '-m', 'pytest', '-q', '-p', 'no:cacheprovider', tmp_path]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 1, done.stdout
-    assert 'as that of ring_teeth 80, satellite_teeth 76' in done.stdout
+    assert 'it is that of ring_teeth 80, satellite_teeth 76' in done.stdout
 
 
 def test_the_examples_of_the_library_run_and_one_of_them_plots(tmp_path):

@@ -98,7 +98,7 @@ MISSING = '/output_state: the joint is missing although its rotor is valid: 1 me
             ALL,
             lambda joints: [joints._replace(effort=joints.effort[:2])],
             '',
-            'effort has not a value for each of shoulder, elbow, wrist',
+            'effort lacks a value for some of shoulder, elbow, wrist',
         ),
         (
             ALL,
