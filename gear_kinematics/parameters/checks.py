@@ -29,6 +29,6 @@ def encoder_range(value: float) -> None:
 
 
 def factor(value: float) -> None:
-    """Refuse a factor of 0, with which nothing would be left of a quantity."""
+    """Refuse a factor of 0, which would make every value 0."""
     if not value:
         raise ValueError(f'must not be {value}, as all would be 0')

@@ -201,7 +201,7 @@ class NodeParameters:
 
     @classmethod
     def of(cls, values: Mapping[str, Any], actuator: str = '') -> Self:
-        """Create them from valid values by names in ROS, without that of the actuator.
+        """Create parameters from valid values by names in ROS, without that of the actuator.
 
         Other parameters have their defaults.
         """
@@ -237,7 +237,7 @@ class NodeParameters:
     def output_name(self) -> str:
         """Name of the output shaft's joint in messages and in the URDF.
 
-        The default prefix of an actuator of an arm, `<actuator>_`, is not before it.
+        The default prefix of an actuator of an arm, `<actuator>_`, is not put before the name.
         """
         default = self.actuator and self.frame_prefix == f'{self.actuator}_'
         return self.output_joint if default else self.frame_prefix + self.output_joint
@@ -337,5 +337,5 @@ def default_config() -> Path:
 
 
 def default_value(name: str) -> Any:
-    """A parameter's default, from config/actuator.yaml; 0 for a branch that is not there."""
+    """Return a parameter's default, from config/actuator.yaml; 0 for a branch that it lacks."""
     return default_values(default_config(), NODE).get(name, 0.0)

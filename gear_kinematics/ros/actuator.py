@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What the node follows of each actuator beside its state: monitors and reports."""
+"""An actuator of the node: its state, monitors and reports."""
 
 import time
 
@@ -12,7 +12,7 @@ from gear_kinematics.state.loads import PreloadMonitor
 
 
 class Actuator:
-    """The state of an actuator and what is reported of it."""
+    """The state of an actuator, and the reports on it."""
 
     def __init__(self, parameters: NodeParameters, calibration: Calibration | None) -> None:
         """Start without messages."""

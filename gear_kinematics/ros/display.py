@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What shows the mechanism: robot_description and markers."""
+"""The topics that show the mechanism: robot_description and markers."""
 
 import time
 from collections.abc import Mapping

@@ -19,7 +19,7 @@ _HOME = 'check whether the drive restarted; then call ~/home'
 
 
 class DriverLog:
-    """Logs each change once."""
+    """Logs each change of the driver once."""
 
     def __init__(
         self,

@@ -157,7 +157,7 @@ class GearStatePublisher(PublishingNode):
         return SetParametersResult(successful=not reason, reason=reason)
 
     def _prepare(self, changed: Iterable[tuple[str, Any]]) -> None:
-        """Make what the changed parameters affect and can be refused for, also one set twice."""
+        """Prepare what depends on changed parameters and may refuse them, even if set twice."""
         prepared = {
             name: (each.state.parameters, each.state.calibration)
             for name, each in self._actuators.items()
@@ -222,7 +222,7 @@ class GearStatePublisher(PublishingNode):
         self._publish_referenced(self._found_turns(answers))  # by the output's encoder
 
     def _found_turns(self, taken: Iterable[tuple[str, object]]) -> dict[str, bool]:
-        """Whether turns are known, of actuators for which that has changed."""
+        """Return whether turns are known, for the actuators for which that has changed."""
         found = {}
         for name, _ in taken:
             actuator = self._actuators[name]

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Whether the nodes of other gears, which may share a topic, publish joints of the same names."""
+"""Nodes of other gears that share a topic, and whether they publish joints of the same names."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence

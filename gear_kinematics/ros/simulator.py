@@ -109,7 +109,7 @@ class GearSimulator(PublishingNode):
         self.create_service(Trigger, f'~/{name}wear', partial(self._wear, gear))
 
     def _step(self) -> None:
-        """Let the time pass that has passed, and publish the states of it."""
+        """Advance the model by the time that has passed, and publish its states."""
         now = time.monotonic_ns()
         late = now - self._due
         if late > _MOST_LATE:
@@ -212,7 +212,7 @@ class SimulatedGear:
 
     @property
     def title(self) -> str:
-        """What is simulated, with the kind of the model."""
+        """The simulated gear and the kind of the model, in words."""
         ratio = self.model.gear.parameters.gear.gear_ratio
         return f'{self.name or "a gear"} of ratio {ratio} with {type(self.model).__name__}'
 

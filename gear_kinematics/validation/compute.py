@@ -63,7 +63,7 @@ def compute(
     compression: Literal['none', 'zstd'] = 'none',
     progress: ReportProgress | None = None,
 ) -> ComputeResult:
-    """Copy a bag and add or replace the output topics: `output_state` alone with `gear_ratio`.
+    """Copy a bag and add or replace the output topics; with `gear_ratio`, only `output_state`.
 
     With a preload, the loads are outputs too, and with a calibration CORRECTED_TOPICS beside the
     topic of the output. The actuators of an arm have the topics that they have in the node.
@@ -147,7 +147,7 @@ def compute(
 
 
 def _choose(gears: Mapping[str, GearState], topics: Topics) -> dict[str, str]:
-    """Choose what the gears encode; return the topics in the bag by their names in the node."""
+    """Choose the topics that the gears encode; return them in the bag by their node names."""
     given = {OUTPUT_STATE: topics.output, BODY_POSES: topics.poses}
     names: dict[str, str] = {}
     for actuator, gear in gears.items():

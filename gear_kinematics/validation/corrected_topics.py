@@ -17,7 +17,7 @@ from gear_kinematics.wire.topics import CORRECTED_INTERVAL, CORRECTED_STATE
 
 
 class Unbroken:
-    """Numbers the segments of a recording, which end at holes too, as history is unknown then."""
+    """Numbers the segments of a recording; holes end them too, as history is then unknown."""
 
     def __init__(self) -> None:
         self._last: int | None = None

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Samples from which on the recorded outputs count the rotor's angle from elsewhere."""
+"""Changes of the zero or the turns from which the recorded outputs count the rotor's angle."""
 
 import math
 from collections.abc import Iterator
@@ -30,7 +30,7 @@ _STEP = np.dtype(
 
 
 def first_number(segment: Any) -> Any:
-    """The number from which on the samples of a segment are numbered, above all before it."""
+    """Return the number of a segment's first sample, which is above those of earlier segments."""
     return segment << 40
 
 
@@ -72,7 +72,7 @@ class CountChanges:
         """Learn from output angles at moved samples, (n,), and move these by what is found.
 
         Returns:
-            Whether something is, so that the expected angles are others.
+            Whether a change was found, so that the expected angles have changed.
         """
         rows = np.argsort(samples['number'], kind='stable')
         rows = rows[np.isfinite(position.error[rows])]

@@ -99,7 +99,7 @@ def _ratio_of_sums(above: Array, below: Array) -> Estimate | None:
 
 
 def _is_near(found: Estimate, other: float) -> bool:
-    """Whether another value is no clear deviation."""
+    """Return whether a value deviates too little from another one to be clearly different."""
     return abs(found.value - other) <= _CLEAR_DEVIATION * found.expanded
 
 
@@ -144,7 +144,7 @@ def _as_fraction(found: Estimate) -> str:
 
 
 def _tooth_pair(mechanism: Mechanism, slope: float, uncertainty: float) -> tuple[int, int] | None:
-    """The tooth numbers (zk, zs) nearest to the assumed ones that turn the output like this."""
+    """Find the tooth numbers (zk, zs) nearest to the assumed ones that turn the output so."""
     least, greatest = (Fraction(slope) + sign * Fraction(uncertainty) for sign in (-1, 1))
     if least <= 0:
         return None

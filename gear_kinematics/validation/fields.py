@@ -28,13 +28,13 @@ class Occurrences:
         """Stamp of the one that was added first, ns."""
 
     def add(self, stamps: Array) -> None:
-        """Add what happened at stamps, (n,), ns."""
+        """Add occurrences at stamps, (n,), ns."""
         if self.first is None and len(stamps):
             self.first = int(stamps[0])
         self.count += len(stamps)
 
     def add_all(self, others: 'Occurrences') -> None:
-        """Add those of another object."""
+        """Add the occurrences of another object."""
         if self.first is None:
             self.first = others.first
         self.count += others.count
@@ -147,7 +147,7 @@ class SeriesRecorder:
 
 
 def _greatest(size: Array, interval: int) -> Array:
-    """Rows of the greatest of each interval of sizes, (n, fields)."""
+    """Find the rows of the greatest sizes, (n, fields), of each interval."""
     padding = (0, -len(size) % interval), (0, 0)
     padded = np.pad(size, padding, constant_values=-np.inf)
     within = padded.reshape(-1, interval, size.shape[1]).argmax(axis=1)

@@ -99,7 +99,7 @@ def answer(report: BagReport) -> str:
 
 
 def worst_field(report: BagReport) -> FieldReport | None:
-    """Return the field that used most of its tolerance, if any was compared; a NaN is the most."""
+    """Return the field that used most of its tolerance, if any; NaN counts as the greatest use."""
     fields = [field for topic in report.every_topic for field in topic.fields if field.compared]
     return max(
         fields,
@@ -146,7 +146,7 @@ def _beyond(field: FieldReport) -> dict[str, str]:
 
 
 def _left_out(report: BagReport) -> Iterator[Finding]:
-    """Yield how many messages are not judged, as the recorder lost what they belong to."""
+    """Yield how many messages are not judged because the recorder lost their counterparts."""
     left_out = sum((Counter(topic.left_out) for topic in report.topics), Counter[str]())
     for cause, count in left_out.items():
         yield Finding(FindingCause.LEFT_OUT, count=count, values={'why': _WHY_LEFT_OUT[cause]})

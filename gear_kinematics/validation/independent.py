@@ -46,7 +46,7 @@ class IndependentReport:
 
     @property
     def text(self) -> str:
-        """One sentence."""
+        """The result in one sentence."""
         if not self.compared:
             return 'independently, nothing could be compared'
         worst = ', '.join(f'{name} {e:.2g} {_UNITS[name]}' for name, e in self.errors.items())
@@ -135,7 +135,7 @@ class Independent:
         return IndependentReport(*counts, self._errors, first, count > 0 and first is None)
 
     def _compare(self) -> None:
-        """Compare those outputs and poses whose inputs are there."""
+        """Compare the outputs and poses whose inputs have arrived."""
         known = [each for each in self._outputs if each[0] in self._inputs]
         self._outputs = [each for each in self._outputs if each[0] not in self._inputs]
         inputs = (self._inputs[stamp] for stamp, *_ in known)

@@ -20,7 +20,7 @@ _UNITS = {
 
 
 class LoadTopic(OutputTopic):
-    """A topic of the loads; where they are unknown, no message is needed and none judged.
+    """A topic of the loads; where they are unknown, no message is needed, and none is judged.
 
     Samples have an `acceleration`, too, which is NaN there.
     """

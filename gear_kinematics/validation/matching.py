@@ -138,12 +138,12 @@ class Matcher:
 
 
 def _alike(stamp: Array | int, received: Array | int, window: Array) -> Array:
-    """Whether messages can be those of samples: not of the same stamps after a later restart."""
+    """Return whether messages can answer samples, not the same stamps after a later restart."""
     return np.asarray((stamp == window['stamp']) & (window['received'] - CLOCK_RESET <= received))
 
 
 def _of_later_clock(stamp: int, received: int, row: int, window: Array, resets: Array) -> bool:
-    """Whether a message answers an input, perhaps not recorded, behind the reset after a sample.
+    """Return whether a message is for an input, even unrecorded, after a sample's next reset.
 
     That is so if it was received nearer to when the input must have been, by its neighbour.
     """

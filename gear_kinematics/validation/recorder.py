@@ -53,7 +53,7 @@ class Missing:
         self._last_answered: int | None = None  # when it was received, ns
 
     def leave_out(self, answered: Flags, cause: str) -> None:
-        """Count inputs, (n,), that are not judged by whether they have their output."""
+        """Count the inputs, (n,), without an output as not judged, by the cause of that."""
         if count := int(np.count_nonzero(~answered)):
             self.left_out[cause] += count
 
@@ -135,7 +135,7 @@ class Completeness:
             missing.update(received[judged], stamp[judged], has_output[judged])
 
     def _settle(self, losses: Array) -> None:
-        """Take further losses into the uninterrupted series of them from the start on."""
+        """Add further losses to the uninterrupted series of losses at the start."""
         first = losses[(losses >= self._start) & (losses <= self._start + _SETTLING_TIME)]
         pauses = np.flatnonzero(np.diff(first, prepend=self._settled) > _QUIET_TIME)
         series = first[: pauses[0]] if len(pauses) else first
@@ -198,7 +198,7 @@ class RecordedInputs:
             self._known = np.concatenate([self._known, stamp, rejected])[-_MAX_STAMPS:]
 
     def lack(self, received: Array, stamp: Array) -> Flags:
-        """Whether the inputs of outputs (n,), ns, were not recorded."""
+        """Return whether the inputs of outputs with stamps (n,), ns, were not recorded."""
         if self._strict or not len(stamp):
             return np.zeros(len(stamp), bool)
         if not self._ages:

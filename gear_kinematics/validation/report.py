@@ -228,7 +228,7 @@ class BagReport:
         return failing + [finding for finding in self.findings if finding.explains]
 
     def seconds(self, stamp: int) -> float | None:
-        """Return the time of a stamp since the first stamp of the input, s, if there is one."""
+        """Return the time of a stamp since the input's first stamp, s; None without a stamp."""
         rotors = (each.rotor for each in (self, *self.actuators) if each.rotor)
         first = min((r.first_stamp for r in rotors if r.first_stamp is not None), default=None)
         return None if first is None else (stamp - first) / 1e9

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What rclpy has no public access to."""
+"""Access to parts of rclpy that are not public."""
 
 from collections.abc import Mapping
 from typing import Any
