@@ -51,7 +51,7 @@ def check_targets(options: argparse.Namespace, targets: Mapping[str, str | None]
             raise ValueError(f'{option} {name}: it is a link to nothing; name a file to write')
         path = given.resolve()
         if path in files:
-            raise ValueError(f'{files[path]} and {option} are both to write {name}')
+            raise ValueError(f'{files[path]} and {option} would both write {name}')
         files[path] = option
         if path in inputs or is_recording(path):
             kind = 'what is read' if path in inputs else 'a recording'

@@ -110,7 +110,7 @@ def _ratios(options: argparse.Namespace, joints: Sequence[str]) -> dict[str, Gea
             if not can_ask():
                 example = f'{joint}=-19' if options.arm else '-19'
                 remedy = f'Repeat with it, such as --ratio {example} or --teeth 80/76'
-                raise ValueError(f'which ratio has {gear}? {remedy}')
+                raise ValueError(f'what is the ratio of {gear}? {remedy}')
             again = f' (Enter: {before})' if before else ''
             question = f'Ratio of {gear}, negative if the output turns against the rotor{again}: '
             ratio = GearRatio.parse(ask(question) or before)

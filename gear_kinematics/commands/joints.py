@@ -50,7 +50,7 @@ def choose_joint(
         print(f'{number:3}  {name}')
     answer = ask(f'Number of the joint of the {role}: ')
     if not (answer.isdecimal() and 1 <= int(answer) <= len(found)):
-        raise ValueError(f'{answer!r} is no number from 1 to {len(found)}')
+        raise ValueError(f'{answer!r} is not a number from 1 to {len(found)}')
     return found[int(answer) - 1]
 
 

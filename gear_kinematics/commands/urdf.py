@@ -80,7 +80,7 @@ def _write(mechanism: Mechanism, module: float, folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         for path in files:
             if path.exists() and not path.read_bytes().startswith(STL_HEADER):
-                raise ValueError(f'{path} is not from gearkin, and is kept')
+                raise ValueError(f'{path} was not written by gearkin, and is not replaced')
     except OSError as error:
         raise ValueError(f'{error.filename}: {error.strerror}') from error
     for path, content in files.items():

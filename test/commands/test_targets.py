@@ -150,7 +150,7 @@ def test_an_empty_file_is_filled(work, capsys):
         (['--json', 'none/a.json'], 'none/a.json: No such file or directory'),
         (['--json', 'notes.md/a.json'], 'notes.md/a.json: Not a directory'),
         (['--json', 'bag', '--force'], 'bag: Is a directory'),
-        (['--json', 'a', '--html', './a'], '--json and --html are both to write ./a'),
+        (['--json', 'a', '--html', './a'], '--json and --html would both write ./a'),
     ],
 )
 def test_a_file_that_cannot_be_written_is_named_before_any_work(arguments, error, work):

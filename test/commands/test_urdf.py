@@ -77,7 +77,7 @@ def test_own_meshes_are_replaced_and_no_others(capsys, tmp_path):
     for path in tmp_path.iterdir():
         path.unlink()
     (tmp_path / 'cam.stl').write_text('solid cam')
-    error = f'{tmp_path}/cam.stl is not from gearkin, and is kept'
+    error = f'{tmp_path}/cam.stl was not written by gearkin, and is not replaced'
     assert refusal('urdf', '--meshes', tmp_path) == error
     assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [
         ('cam.stl', 'solid cam')

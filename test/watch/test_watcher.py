@@ -582,7 +582,7 @@ JOINTS = (
         (['--topic', '/odd'], JOINTS),
         (
             ['--joint', 'm1'],
-            'which ratio has the gear? Repeat with it, such as --ratio -19 or --teeth 80/76',
+            'what is the ratio of the gear? Repeat with it, such as --ratio -19 or --teeth 80/76',
         ),
         (
             ['-o', 'nowhere/a.yaml', '--joint', 'm1', '--ratio', '-19'],
@@ -663,7 +663,7 @@ def test_init_sets_up_all_motors_of_an_arm(listening, monkeypatch, capsys):
 @pytest.mark.parametrize(
     ('heard', 'arguments', 'cause'),
     [
-        (ARM, ['--ratio', 'shoulder=-3'], 'which ratio has the gear of wrist 1? Repeat with it'),
+        (ARM, ['--ratio', 'shoulder=-3'], 'what is the ratio of the gear of wrist 1? Repeat'),
         (ARM, ['--ratio', 'sholder=-3'], "no joint 'sholder'; did you mean `shoulder`?"),
         (ARM, ['--ratio', '-3', '-5'], 'one ratio for all joints, or one for each'),
         (ARM, ['--joint', 'shoulder'], 'leave out --actuator and --joint'),
