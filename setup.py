@@ -104,7 +104,7 @@ setup(
             f'gear_state_publisher = {PACKAGE}.__main__:gear_state_publisher',
             f'gear_simulator = {PACKAGE}.__main__:gear_simulator',
             f'gearkin = {PACKAGE}.__main__:gearkin',
-        ],
+        ]
     },
     zip_safe=False,
 )

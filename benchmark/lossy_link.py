@@ -93,9 +93,7 @@ def measure(profile: Path, rate: int, seconds: float, loss: int) -> dict[str, fl
             FASTRTPS_DEFAULT_PROFILES_FILE=str(profile.resolve()),
         )
         os.environ.update(surroundings.environment)
-        depth = surroundings._replace(
-            arguments=[*surroundings.arguments, '-p', f'depth:={DEPTH}'],
-        )
+        depth = surroundings._replace(arguments=[*surroundings.arguments, '-p', f'depth:={DEPTH}'])
         with driver_host.entered():
             driver = stack.enter_context(Program(program('rotor_driver.py'), depth))
         driver.report()

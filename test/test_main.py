@@ -276,11 +276,7 @@ def test_an_error_that_cannot_be_said_has_its_exit_code():
 
 
 @pytest.mark.parametrize(
-    ('program', 'package'),
-    [
-        ('gearkin', 'rclpy'),
-        ('gear_state_publisher', 'visualization_msgs'),
-    ],
+    ('program', 'package'), [('gearkin', 'rclpy'), ('gear_state_publisher', 'visualization_msgs')]
 )
 def test_without_ros_or_its_messages_there_is_one_line_that_names_the_extra(program, package):
     code = (

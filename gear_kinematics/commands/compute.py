@@ -6,12 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from gear_kinematics.bag import Bag
-from gear_kinematics.bag.roles import (
-    find_encoder_topic,
-    find_rotor_topic,
-    only_joint,
-    outputs_of,
-)
+from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, only_joint, outputs_of
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.report.document import printable

@@ -113,10 +113,7 @@ class ColumnsError(ValueError):
 
 
 def find_columns(
-    header: Sequence[str],
-    given: Sources,
-    below: Mapping[str, str],
-    clocks: Mapping[str, str],
+    header: Sequence[str], given: Sources, below: Mapping[str, str], clocks: Mapping[str, str]
 ) -> dict[str, Column]:
     """Find what can be read: angle and torque, or rotor and output, with torque and time if any.
 

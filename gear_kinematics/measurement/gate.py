@@ -15,13 +15,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.measurement.recording import (
-    Array,
-    Encoders,
-    Loading,
-    Recording,
-    RotorMotion,
-)
+from gear_kinematics.measurement.recording import Array, Encoders, Loading, Recording, RotorMotion
 from gear_kinematics.report.document import number
 
 _FEWEST = 50  # samples

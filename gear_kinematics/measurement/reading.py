@@ -6,13 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gear_kinematics.bag import (
-    BagError,
-    DamagedBagError,
-    ReportProgress,
-    TopicMessages,
-    by_topic,
-)
+from gear_kinematics.bag import BagError, DamagedBagError, ReportProgress, TopicMessages, by_topic
 from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, missing_encoder
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
 from gear_kinematics.measurement.columns import Sources
@@ -93,10 +87,7 @@ def read_encoders(
 
 
 def _read_bag(
-    path: Path,
-    parameters: NodeParameters,
-    sources: Sources,
-    progress: ReportProgress | None,
+    path: Path, parameters: NodeParameters, sources: Sources, progress: ReportProgress | None
 ) -> Recording:
     damage = None
     with open_bag(path) as bag:
@@ -229,11 +220,7 @@ def _in_order(columns: Sequence[Array], topic: str, remarks: list[str]) -> list[
 
 
 def _compared(
-    motion: RotorMotion,
-    stamps: Array,
-    angles: Array,
-    parameters: NodeParameters,
-    sources: Sources,
+    motion: RotorMotion, stamps: Array, angles: Array, parameters: NodeParameters, sources: Sources
 ) -> Encoders:
     """Interpolate the rotor to the angles of the output."""
     gap = round(parameters.transmission_error_max_gap * SECOND)

@@ -18,10 +18,7 @@ from gear_kinematics.kinematics.loads import Bodies, TorqueSharing
 from gear_kinematics.kinematics.preload import Preload, Stiffness
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import checks, meshes
-from gear_kinematics.parameters.body_parameters import (
-    BRANCH_PARAMETERS,
-    LOADS_PARAMETERS,
-)
+from gear_kinematics.parameters.body_parameters import BRANCH_PARAMETERS, LOADS_PARAMETERS
 from gear_kinematics.parameters.files import ConfigError, default_values
 from gear_kinematics.parameters.parameter import Parameter, declared_in, parameter
 from gear_kinematics.share import share_directory
@@ -173,10 +170,7 @@ class NodeParameters:
 
     @staticmethod
     def load(
-        path: Path | None = None,
-        node: str = NODE,
-        others: Iterable[str] = (),
-        actuator: str = '',
+        path: Path | None = None, node: str = NODE, others: Iterable[str] = (), actuator: str = ''
     ) -> 'NodeParameters':
         """Read a node's parameters from a file as the node would; others have their defaults.
 

@@ -69,8 +69,7 @@ def declared_in(kind: type) -> dict[str, Parameter]:
     """List the parameters that a dataclass declares, by name, with the types of its fields."""
     return {
         each.name: replace(
-            each.metadata['parameter'],
-            kind=list if get_origin(each.type) is tuple else each.type,
+            each.metadata['parameter'], kind=list if get_origin(each.type) is tuple else each.type
         )
         for each in fields(kind)
         if 'parameter' in each.metadata

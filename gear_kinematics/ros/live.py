@@ -299,10 +299,7 @@ def _private_node(parameters: NodeParameters) -> Iterator[Replay]:
             _environment(private),
             log.open('w', encoding='utf-8') as stream,
             running_node(
-                arguments,
-                stdout=stream,
-                stderr=stream,
-                env=os.environ | {'ROS_LOG_DIR': folder},
+                arguments, stdout=stream, stderr=stream, env=os.environ | {'ROS_LOG_DIR': folder}
             ) as process,
             Replay(
                 namespace, alive=lambda: process.poll() is None, outputs=outputs_of(parameters)

@@ -75,11 +75,7 @@ class ArmState:
         return self._take(data, now, self._encoders, GearState.encoder)
 
     def _take(
-        self,
-        data: bytes,
-        now: Callable[[], int],
-        joints: JointsReader,
-        take: _Take[_Answer],
+        self, data: bytes, now: Callable[[], int], joints: JointsReader, take: _Take[_Answer]
     ) -> _Taken[_Answer]:
         if self._single:
             return [_outcome('', take, self._single, data, now)]

@@ -64,10 +64,7 @@ class Estimate:
         if repeats == 1:
             return cls(value, None, 0.0, 1)
         own = [
-            Component(
-                abs(factor) * deviation(values) / math.sqrt(len(values)),
-                len(values) - 1,
-            )
+            Component(abs(factor) * deviation(values) / math.sqrt(len(values)), len(values) - 1)
             for factor, values in terms
         ]
         return cls(value, *combined((*own, *others)), repeats)
@@ -135,9 +132,7 @@ def standard_error(
 
 
 def jackknife(
-    fits: Sequence[float] | NDArray[np.float64],
-    *others: Component,
-    together: Sequence[int] = (1,),
+    fits: Sequence[float] | NDArray[np.float64], *others: Component, together: Sequence[int] = (1,)
 ) -> Estimate:
     """Estimate a quantity from the scatter of Tukey's pseudo-values.
 

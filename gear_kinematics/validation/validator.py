@@ -20,21 +20,11 @@ from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.loads import LoadEstimator
 from gear_kinematics.validation import input_health
 from gear_kinematics.validation.causes import FindingCause
-from gear_kinematics.validation.corrected_topics import (
-    CORRECTED,
-    Unbroken,
-    why_unjudged,
-)
+from gear_kinematics.validation.corrected_topics import CORRECTED, Unbroken, why_unjudged
 from gear_kinematics.validation.count_changes import CountChanges, first_number
 from gear_kinematics.validation.fields import Array
 from gear_kinematics.validation.load_topics import LoadTopic
-from gear_kinematics.validation.matching import (
-    SAMPLES,
-    WINDOW,
-    Expectation,
-    OutputTopic,
-    Solver,
-)
+from gear_kinematics.validation.matching import SAMPLES, WINDOW, Expectation, OutputTopic, Solver
 from gear_kinematics.validation.output_topics import BodyPoses, OutputState
 from gear_kinematics.validation.recorder import Completeness, RecordedInputs
 from gear_kinematics.validation.report import BagReport, Finding

@@ -127,9 +127,7 @@ def show_recording(recorder: Recorder, console: Console, stopped: Callable[[], b
 
 
 def _show(
-    console: Console,
-    stopped: Callable[[], bool],
-    frame: Callable[[str], tuple[list[Entry], bool]],
+    console: Console, stopped: Callable[[], bool], frame: Callable[[str], tuple[list[Entry], bool]]
 ) -> None:
     """Show rows, which a function gives for each key, or for none, and whether to go on."""
     due, printed, going_on = time.monotonic(), '', True

@@ -15,12 +15,7 @@ from gear_kinematics.commands.cli import main
 
 SERVO = BAGS / 'servo_point_to_point'
 JOINT_STATE = 'sensor_msgs/msg/JointState'
-EXTRAS = {
-    'rclpy': 'ros',
-    'plotly': 'html',
-    'matplotlib': 'plot',
-    'tornado': 'watch',
-}
+EXTRAS = {'rclpy': 'ros', 'plotly': 'html', 'matplotlib': 'plot', 'tornado': 'watch'}
 
 
 # Packages that are missing.

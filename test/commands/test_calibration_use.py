@@ -71,9 +71,6 @@ def test_calibration_of_another_gear_is_refused(command, tmp_path):
     path, out = tmp_path / 'other.yaml', tmp_path / 'out.svg'
     other = calibration(ring_teeth=61, satellite_teeth=58, gear_ratio=Fraction(-58, 3))
     path.write_text(other.text(), 'utf-8')
-    words = {
-        'validate': ['validate', SERVO],
-        'compute': ['compute', SERVO, out],
-    }[command]
+    words = {'validate': ['validate', SERVO], 'compute': ['compute', SERVO, out]}[command]
     assert f'{path}: calibrated for gear ratio -58/3' in refusal(*words, '--calibration', path)
     assert not out.exists()

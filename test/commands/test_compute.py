@@ -7,15 +7,7 @@ import sqlite3
 from contextlib import closing
 
 import pytest
-from blocked_bags import (
-    BAGS,
-    DEADLINE,
-    BlockedBag,
-    facts,
-    gearkin_here,
-    refusal,
-    running_gearkin,
-)
+from blocked_bags import BAGS, DEADLINE, BlockedBag, facts, gearkin_here, refusal, running_gearkin
 from gear_recordings import old_recording
 from live import rotor_bytes
 from shipped_bags import CONFIGS, JOINT_STATE, POSE_ARRAY

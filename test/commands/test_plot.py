@@ -107,10 +107,7 @@ SCHEME, OUTPUT = ['plot', 'scheme', 'a.png'], ['plot', 'output', 'a.png']
         (OUTPUT, 'output needs --bag'),
         ([*PLOT, '--ring-teeth', '1001', '--satellite-teeth', '1000'], 'petals'),
         ([*PLOT, '--duration', '1'], '--duration needs --bag'),
-        (
-            [*OUTPUT, '--bag', SERVO, '--start-offset', '7'],
-            'no rotor states from 7 s to inf s',
-        ),
+        ([*OUTPUT, '--bag', SERVO, '--start-offset', '7'], 'no rotor states from 7 s to inf s'),
         ([*OUTPUT, '--bag', SERVO, '--rotor-topic', '/motor'], 'no topic /motor of type sensor_m'),
         ([*ANIMATE, '--start-offset', '1'], '--start-offset needs --bag'),
         (

@@ -64,11 +64,7 @@ def test_a_recording_is_never_replaced(command, force, work):
 
 @pytest.mark.parametrize(
     'command',
-    [
-        'describe --json notes.md',
-        'describe --html notes.md',
-        'validate k1.mcap --junit notes.md',
-    ],
+    ['describe --json notes.md', 'describe --html notes.md', 'validate k1.mcap --junit notes.md'],
 )
 def test_other_files_are_replaced_only_by_force(command, work, capsys):
     before = contents(work)

@@ -5,14 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from simulated_encoders import (
-    ARC_MINUTE,
-    MS,
-    TURN,
-    Drive,
-    sine_strokes,
-    stamps,
-)
+from simulated_encoders import ARC_MINUTE, MS, TURN, Drive, sine_strokes, stamps
 
 from gear_kinematics.correction.error_window import ErrorWindow
 from gear_kinematics.correction.reversals import separate

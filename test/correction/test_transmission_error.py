@@ -10,11 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gear_kinematics.correction.error_window import ErrorStatistics, ErrorWindow
-from gear_kinematics.correction.transmission_error import (
-    Direction,
-    ErrorSample,
-    TransmissionError,
-)
+from gear_kinematics.correction.transmission_error import Direction, ErrorSample, TransmissionError
 
 SECOND = 10**9
 MS = 10**6

@@ -123,8 +123,7 @@ def test_ratio_within_what_an_encoder_of_a_degree_tells_is_not_called_wrong(assu
 
 @pytest.mark.parametrize('eccentricity', [0.0, 20.0 * ARC_MINUTE])
 @pytest.mark.parametrize(
-    'profile',
-    [even_strokes(3.0, 2.0), sine_strokes(0.1, 2.0), sine_strokes(6.0, 4.0)],
+    'profile', [even_strokes(3.0, 2.0), sine_strokes(0.1, 2.0), sine_strokes(6.0, 4.0)]
 )
 def test_right_ratio_is_not_doubted(profile, eccentricity):
     for seed in range(5):

@@ -38,13 +38,7 @@ def angles(ratio, turns, *, seed=0, count=4000, noise=1e-4, there_and_back=False
     return rotor, ideal + error + random.uniform(-3.0, 3.0)
 
 
-@pytest.mark.parametrize(
-    ('ratio', 'turns'),
-    [
-        (Fraction(-19), 2.2),
-        (Fraction(1457, 26), 40.0),
-    ],
-)
+@pytest.mark.parametrize(('ratio', 'turns'), [(Fraction(-19), 2.2), (Fraction(1457, 26), 40.0)])
 def test_ratio_is_found_exactly(ratio, turns):
     found = estimate_ratio(*angles(ratio, turns, noise=1e-5))
     assert (found.taken, found.candidates) == (ratio, (ratio,))

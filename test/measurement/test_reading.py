@@ -319,9 +319,7 @@ def test_one_clock_of_two_that_is_set_back_is_restored(tmp_path, config):
     late = stamps.copy()
     late[3000:] -= 2500 * MS
     write_recording(
-        tmp_path / 'back',
-        Samples(stamps, -19.0 * ideal),
-        Samples(late, ideal, received=stamps),
+        tmp_path / 'back', Samples(stamps, -19.0 * ideal), Samples(late, ideal, received=stamps)
     )
     _, both = read_encoders(tmp_path / 'back', config)
     assert len(both.measured) == 4000

@@ -10,12 +10,7 @@ import pytest
 import yaml
 
 from gear_kinematics.kinematics import Branch, MechanismError
-from gear_kinematics.parameters import (
-    NODE,
-    ConfigError,
-    NodeParameters,
-    default_config,
-)
+from gear_kinematics.parameters import NODE, ConfigError, NodeParameters, default_config
 from gear_kinematics.parameters.files import given_parameters, require_any
 
 load = NodeParameters.load
@@ -249,13 +244,7 @@ def test_name_without_namespace_is_that_of_the_only_node_in_the_file(
     assert load(blocks(tmp_path, *names), node).ring_teeth == expected
 
 
-@pytest.mark.parametrize(
-    'names',
-    [
-        [LEFT, RIGHT],
-        ['gear_state_publisher', LEFT],
-    ],
-)
+@pytest.mark.parametrize('names', [[LEFT, RIGHT], ['gear_state_publisher', LEFT]])
 def test_file_that_leaves_open_which_node_is_meant_is_refused(tmp_path, names):
     path = blocks(tmp_path, '/other_node', *names)
     with pytest.raises(ConfigError) as caught:

@@ -15,16 +15,7 @@ from pathlib import Path
 import pytest
 from geometry_msgs.msg import Pose, PoseArray
 from harnesses import harness
-from live import (
-    SECOND,
-    START,
-    STATES,
-    Participant,
-    live_node,
-    parameter,
-    rotor_bytes,
-    rotor_state,
-)
+from live import SECOND, START, STATES, Participant, live_node, parameter, rotor_bytes, rotor_state
 from rclpy.qos import QoSProfile
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import Imu, JointState

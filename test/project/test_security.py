@@ -307,9 +307,7 @@ def downloaded(tmp_path) -> Path:
 @pytest.mark.live
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    'arguments',
-    [['validate', '--jobs', '2', 'one', 'two'], ['demo']],
-    ids=['--jobs', 'demo'],
+    'arguments', [['validate', '--jobs', '2', 'one', 'two'], ['demo']], ids=['--jobs', 'demo']
 )
 def test_nothing_in_the_current_folder_is_run_or_obeyed(
     arguments, downloaded, tmp_path, monkeypatch

@@ -15,13 +15,7 @@ from sensor_msgs.msg import JointState
 from shapely import affinity
 from visualization_msgs.msg import Marker, MarkerArray
 
-from gear_kinematics.kinematics import (
-    Branch,
-    Mechanism,
-    RotorSample,
-    matrix_method,
-    split_turns,
-)
+from gear_kinematics.kinematics import Branch, Mechanism, RotorSample, matrix_method, split_turns
 from gear_kinematics.ros.markers import Markers
 from gear_kinematics.shape.urdf import urdf
 from gear_kinematics.state.state_messages import StateMessages

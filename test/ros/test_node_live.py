@@ -16,15 +16,7 @@ import rosbag2_recorder
 import yaml
 from blocked_bags import gearkin_here
 from expected_outputs import Settings, all_right
-from live import (
-    PATIENT,
-    SECOND,
-    START,
-    live_node,
-    parameter,
-    rotor_state,
-    stamp_of,
-)
+from live import PATIENT, SECOND, START, live_node, parameter, rotor_state, stamp_of
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
@@ -342,9 +334,7 @@ def test_signal_ends_the_node_cleanly(start, number, executor):
     assert len(live.text().splitlines()) == 1
 
 
-FILES = {
-    'others.yaml': '/left/gear_state:\n  ros__parameters: {ring_teeth: 90}\n',
-}
+FILES = {'others.yaml': '/left/gear_state:\n  ros__parameters: {ring_teeth: 90}\n'}
 
 
 @pytest.mark.parametrize(

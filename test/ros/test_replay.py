@@ -246,10 +246,7 @@ def by_topic(messages) -> dict[str, list[bytes]]:
 
 @pytest.mark.parametrize(
     ('name', 'settings', 'rate'),
-    [
-        ('driver_faults', 'actuator', 1.0),
-        ('single_turn_encoder', 'single_turn', 1000.0),
-    ],
+    [('driver_faults', 'actuator', 1.0), ('single_turn_encoder', 'single_turn', 1000.0)],
 )
 def test_a_live_node_publishes_what_it_published_when_recorded(name, settings, rate):
     seen = []

@@ -12,16 +12,7 @@ from typing import NamedTuple
 
 import pytest
 from blocked_bags import wait_until
-from endpoints import (
-    Driver,
-    Line,
-    Listener,
-    Report,
-    number_of,
-    reading,
-    rotor_message,
-    running,
-)
+from endpoints import Driver, Line, Listener, Report, number_of, reading, rotor_message, running
 from network import Cable, NoNetworkError, two_hosts
 from replaying import assert_right, valid_samples
 

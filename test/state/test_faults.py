@@ -77,9 +77,7 @@ JUMPED = "the rotor's encoder jumped by 100 rad at 100.600 s"
 ROWS = {
     'none': Row(part({}), {}),
     'another joint beside': Row(
-        part({'names': ['wheel']}, count=3),
-        {'of_others': 3},
-        found=FindingCause.OF_OTHERS,
+        part({'names': ['wheel']}, count=3), {'of_others': 3}, found=FindingCause.OF_OTHERS
     ),
     'array sizes': rejected('array sizes', {'names': ['rotor', 'wheel']}),
     'no position': rejected('position missing', {'position': []}),
@@ -94,11 +92,7 @@ ROWS = {
         (WARN, 'rejected: implausible 1'),
     ),
     'repeated stamp': Row(part({'stamp': START + 59 * PERIOD}), {'duplicates': 1}),
-    'no stamp': Row(
-        part({'stamp': 0}),
-        {'zero_stamps': 1},
-        found=FindingCause.ZERO_STAMPS,
-    ),
+    'no stamp': Row(part({'stamp': 0}), {'zero_stamps': 1}, found=FindingCause.ZERO_STAMPS),
     'no stamp, and a reading that repeats': Row(
         part({'stamp': 0}),
         {'zero_stamps': 1},
@@ -111,11 +105,7 @@ ROWS = {
     ),
     'clock set back': Row(moved(stamp=-2 * SECOND), {'resets': 1}),
     'turns unseen': Row(
-        moved(stamp=SECOND),
-        {'jumps': 1},
-        (ERROR, 'not referenced'),
-        FindingCause.JUMPS,
-        SINGLE,
+        moved(stamp=SECOND), {'jumps': 1}, (ERROR, 'not referenced'), FindingCause.JUMPS, SINGLE
     ),
     'driver restarts': Row(
         moved(offset=100.0),

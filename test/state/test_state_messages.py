@@ -15,12 +15,7 @@ from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.correction.corrector import Correction
-from gear_kinematics.kinematics import (
-    RotorPosition,
-    RotorSample,
-    solve,
-    split_turns,
-)
+from gear_kinematics.kinematics import RotorPosition, RotorSample, solve, split_turns
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.state_messages import StateMessages, state_messages
 from gear_kinematics.wire.joint_reader import GREATEST

@@ -141,9 +141,7 @@ def record_both_encoders(folder: Path, *names: str) -> None:
 
 
 def old_recording(
-    path: Path,
-    types: Sequence[tuple[str, str]],
-    messages: Iterable[tuple[str, int, bytes]],
+    path: Path, types: Sequence[tuple[str, str]], messages: Iterable[tuple[str, int, bytes]]
 ) -> Path:
     """Write a database as ROS 2 Humble does: without definitions of types, and hashes."""
     numbers = {topic: number for number, (topic, _) in enumerate(types, start=1)}

@@ -251,13 +251,7 @@ class Peer(Listener):
         assert all(stamp_of(message) == stamp_of(messages[-1]) for message in output)
         return output
 
-    def report(
-        self,
-        condition=bool,
-        what='diagnostics',
-        meanwhile=lambda: None,
-        since=None,
-    ):
+    def report(self, condition=bool, what='diagnostics', meanwhile=lambda: None, since=None):
         """Wait for the first report on this peer's node whose status meets a condition.
 
         `meanwhile` is called repeatedly. The report was published after `since`, ns, by default

@@ -73,12 +73,7 @@ def report(*arguments: object) -> dict:
 
 def driver_of(model: TwinModel) -> Driver:
     """Switch on a driver of the rotor."""
-    return Driver(
-        model,
-        max_torque=10.0,
-        rotor_counts=ROTOR_COUNTS,
-        output_counts=OUTPUT_COUNTS,
-    )
+    return Driver(model, max_torque=10.0, rotor_counts=ROTOR_COUNTS, output_counts=OUTPUT_COUNTS)
 
 
 # Torque ramps
@@ -221,10 +216,7 @@ def _encoded(put_in: PutIn, bag: Path, mean: float) -> Encoded:
         math.remainder(zero, TURN),
         mean,
         {
-            name: (
-                complex(orders[name].cos - order.cos, orders[name].sin - order.sin),
-                half[name],
-            )
+            name: (complex(orders[name].cos - order.cos, orders[name].sin - order.sin), half[name])
             for name, order in put.items()
         },
         max(

@@ -16,12 +16,7 @@ SHAPES = ((), (1,), (5,), (0,), (2, 3), (3, 0), (2, 1, 2))
 # Lengths of a state by the order of their time derivative.
 LENGTHS = (
     ('satellite_centre', 'oldham_centre', 'satellite_slide', 'arm_slide'),
-    (
-        'satellite_velocity',
-        'oldham_velocity',
-        'satellite_slide_velocity',
-        'arm_slide_velocity',
-    ),
+    ('satellite_velocity', 'oldham_velocity', 'satellite_slide_velocity', 'arm_slide_velocity'),
     ('satellite_acceleration', 'oldham_acceleration'),
 )
 

@@ -248,10 +248,7 @@ def test_messages_that_were_lost_repeated_swapped_or_restamped_are_counted(
             {'extra': 1, 'duplicates': 1, 'first_extra': stamp},
         ),
         (swapped(recorded, index, after), {'out_of_order': 1, 'first_out_of_order': stamp}),
-        (
-            restamped,
-            {'missing': 1, 'extra': 1, 'first_missing': stamp, 'first_extra': stamp + 1},
-        ),
+        (restamped, {'missing': 1, 'extra': 1, 'first_missing': stamp, 'first_extra': stamp + 1}),
     ):
         report = validate(changed, config)
         found = topic_of(report, topic)

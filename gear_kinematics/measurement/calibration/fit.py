@@ -90,9 +90,7 @@ class Fit:
 
 
 def fit(
-    recordings: Sequence[Recorded],
-    ratio: Fraction,
-    mechanism: Mechanism | None = None,
+    recordings: Sequence[Recorded], ratio: Fraction, mechanism: Mechanism | None = None
 ) -> Fit:
     """Calibrate a gear.
 
