@@ -6,12 +6,10 @@ Message objects, queues of ten, rclpy.spin; and nothing but good input.
 
 import math
 
-import rclpy
 from geometry_msgs.msg import Pose, PoseArray
-from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
-from textbook_node import GEAR_RATIO, centres, output_angle
+from textbook_node import GEAR_RATIO, centres, output_angle, run
 
 
 class TextbookArm(Node):
@@ -52,18 +50,5 @@ class TextbookArm(Node):
         self._output_state.publish(state)
 
 
-def main() -> None:
-    """Run the node until it is stopped."""
-    rclpy.init()
-    node = TextbookArm()
-    try:
-        rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        node.destroy_node()
-        rclpy.try_shutdown()
-
-
 if __name__ == '__main__':
-    main()
+    run(TextbookArm)

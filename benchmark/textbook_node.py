@@ -71,10 +71,10 @@ class TextbookNode(Node):
         self._body_poses.publish(poses)
 
 
-def main() -> None:
-    """Run the node until it is stopped."""
+def run(kind: type[Node]) -> None:
+    """Run a node until it is stopped."""
     rclpy.init()
-    node = TextbookNode()
+    node = kind()
     try:
         rclpy.spin(node)
     except (KeyboardInterrupt, ExternalShutdownException):
@@ -85,4 +85,4 @@ def main() -> None:
 
 
 if __name__ == '__main__':
-    main()
+    run(TextbookNode)

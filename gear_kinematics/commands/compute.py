@@ -9,6 +9,7 @@ from gear_kinematics.bag import Bag
 from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, only_joint, outputs_of
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import complain, message_progress
+from gear_kinematics.parameters.arm import labelled
 from gear_kinematics.report.document import printable
 from gear_kinematics.validation.compute import ComputeResult, compute
 from gear_kinematics.wire.nearest import listed
@@ -83,7 +84,7 @@ def _print_summary(out: Path, result: ComputeResult) -> None:
     # A message of other joints is one of another actuator, if there are several.
     states = max(rotor.received - rotor.of_others * ('' in inputs) for rotor in inputs.values())
     rejected = ', '.join(
-        f'{f"{name}: " if name else ""}{cause} {number}'
+        labelled(name, f'{cause} {number}')
         for name, rotor in inputs.items()
         for cause, number in rotor.rejected.items()
     )
@@ -106,4 +107,4 @@ def _print_summary(out: Path, result: ComputeResult) -> None:
             '' if rotor.referenced else 'the turns of the rotor are not known at the end',
         )
         for doubt in filter(None, doubts):
-            complain(f'{out}: {name}: {doubt}' if name else f'{out}: {doubt}')
+            complain(f'{out}: {labelled(name, doubt)}')

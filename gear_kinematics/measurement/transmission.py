@@ -101,11 +101,10 @@ def transmission_figures(
         for fit in fits[1:]:
             delay = replace(fit.delay(1.0 if encoders.timed else 1.0 / STEP), repeats=pairs)
             lost_motion = fit.lost_motion(both, delay=True)
-            # A delay that is not certain may as well be none.
-            off = (
-                0.0 if delay.clear else abs(lost_motion.value - difference.value) / math.sqrt(3.0)
-            )
-            lost_motion = replace(fit.lost_motion(both, Component(off), delay=True), repeats=pairs)
+            if not delay.clear:  # it may as well be none
+                off = abs(lost_motion.value - difference.value) / math.sqrt(3.0)
+                lost_motion = fit.lost_motion(both, Component(off), delay=True)
+            lost_motion = replace(lost_motion, repeats=pairs)
     if delay and delay.clear:
         # The error is in proportion to the delay only as long as the speed hardly changes in it.
         motion = _Motion(encoders.earlier(delay.value), ratio, travel)

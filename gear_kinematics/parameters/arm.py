@@ -14,7 +14,7 @@ from typing import Any
 import yaml
 
 from gear_kinematics.parameters.body_parameters import BRANCH_PARAMETERS, branch_parameters
-from gear_kinematics.parameters.files import FILES, ConfigError, given_parameters
+from gear_kinematics.parameters.files import ConfigError, given_parameters, names_of_files
 from gear_kinematics.parameters.node_parameters import (
     NODE,
     PARAMETERS,
@@ -55,9 +55,8 @@ def load_actuators(
     given = given_parameters(path, node)
     if faults := faults_in(given, others):
         raise ConfigError(f'{path}: {"; ".join(faults)}')
-    for name, value in given.items():
-        if name.rpartition('.')[2] in FILES and value:
-            given[name] = str(path.parent / value)
+    for name in names_of_files(given):
+        given[name] = str(path.parent / given[name])
     return actuators_of(given)
 
 

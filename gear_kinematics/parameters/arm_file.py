@@ -9,7 +9,7 @@ from typing import Any
 
 import yaml
 
-from gear_kinematics.parameters.arm import faults_in
+from gear_kinematics.parameters.arm import faults_in, full_name
 from gear_kinematics.parameters.atomic_file import replace_file
 from gear_kinematics.parameters.files import ConfigError, parameter_blocks
 from gear_kinematics.parameters.yaml_file import Loader, load_yaml, read_yaml
@@ -67,7 +67,7 @@ def _extended(path: Path, blocks: Mapping[str, Sequence[str]], head: Sequence[st
     for name, block in blocks.items():
         lines += f'{indent}{_yaml([name])}:\n' + ''.join(f'{indent}  {line}\n' for line in block)
         given = load_yaml('\n'.join(block))
-        arm |= {f'{name}.{key}': value for key, value in given.items()}
+        arm |= {full_name(name, key): value for key, value in given.items()}
     text = text[:at] + lines + text[at:]
     if listed.flow_style:
         start, end, items = listed.start_mark.index, listed.end_mark.index, f'[{_yaml(names)}]'

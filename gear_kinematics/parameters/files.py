@@ -2,7 +2,7 @@
 """Parameter files of ROS: which of their parameters apply to a node."""
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
@@ -18,7 +18,7 @@ _GEAR = {'gear_ratio', 'ring_teeth', 'satellite_teeth', 'rotor_joint', 'rotor_di
          'rotor_zero', 'rotor_encoder', 'output_joint', 'calibration', 'home_file'}  # fmt: skip
 """Parameters that describe a gear, and hardly any other node has."""
 
-FILES = 'calibration', 'home_file'
+_FILES = 'calibration', 'home_file'
 """Parameters that name files, relative to the parameter file."""
 
 
@@ -28,6 +28,11 @@ class ConfigError(ValueError):
 
 class _OtherNodesError(ConfigError):
     """A parameter file that has parameters, but none of the node."""
+
+
+def names_of_files(given: Mapping[str, Any]) -> list[str]:
+    """Return the names of those given parameters, also of actuators, that name files."""
+    return [name for name, value in given.items() if name.rpartition('.')[2] in _FILES and value]
 
 
 def require_any(paths: Collection[Path], node: str) -> dict[str, Path]:
@@ -45,9 +50,8 @@ def require_any(paths: Collection[Path], node: str) -> dict[str, Path]:
     for path in paths:
         try:
             given = given_parameters(path, node)
-            for name, value in given.items():
-                if name.rpartition('.')[2] in FILES and value:
-                    files.setdefault(str(value), path.parent / str(value))
+            for name in names_of_files(given):
+                files.setdefault(str(given[name]), path.parent / str(given[name]))
         except _OtherNodesError as error:
             useless.append(str(error))
     if paths and len(useless) == len(paths):

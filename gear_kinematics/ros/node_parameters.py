@@ -27,20 +27,13 @@ _QOS_DEPTH = re.compile(r'qos_overrides\..+\.depth')
 _MAX_DEPTH = 2**31 - 1  # messages; the middleware counts them in 32 bits
 
 
-def declared(
+def _declared(
     node: Node,
-    others: Mapping[str, Declaration] = MappingProxyType({}),
-    default: Callable[[str], Any] = default_value,
-    shared: Mapping[str, Declaration] = PARAMETERS,
+    others: Mapping[str, Declaration],
+    default: Callable[[str], Any],
+    shared: Mapping[str, Declaration],
 ) -> dict[str, Any]:
-    """Declare the parameters of a node, and `others`; returns the values by name.
-
-    `default` gives a default value by name, and `shared` declares those of gear_state_publisher.
-
-    Raises:
-        ParameterException: if a value has a wrong type, or is refused.
-        ValueError: if a parameter that the node does not have was given.
-    """
+    """Declare the parameters of a node with one actuator; returns the values by name."""
     # rclpy ignores undeclared parameters, and has no public access to them.
     given = given_parameters(node)
     for name in given.keys() & shared.keys():
@@ -65,16 +58,18 @@ def declared_actuators(
 ) -> dict[str, NodeParameters]:
     """Declare the parameters of all actuators of a node; returns their values by actuator.
 
-    Those of an arm are declared for each actuator, except `COMMON` ones, and so are `others`; the
-    arguments are those of `declared`.
+    Those of an arm are declared for each actuator, except `COMMON` ones, and so are `others`.
+
+    `default` gives a default value by name, and `shared` declares those of gear_state_publisher.
 
     Raises:
         ParameterException: if a value has a wrong type, or is refused.
-        ValueError: if values or names of an arm are refused; the text lists them all.
+        ValueError: if a parameter that the node does not have was given, or values or names of an
+            arm are refused; the text lists them all.
     """
     given = {name: _plain(each.value) for name, each in given_parameters(node).items()}
     if not given.get('actuators'):
-        return actuators_of(declared(node, others, default, shared))
+        return actuators_of(_declared(node, others, default, shared))
     if faults := faults_in(given, others):
         raise ValueError('; '.join(faults))
     actuators = actuators_of(given)

@@ -21,7 +21,7 @@ from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
 from gear_kinematics.parameters import PARAMETERS, NodeParameters, default_value
-from gear_kinematics.parameters.arm import by_actuator, full_name
+from gear_kinematics.parameters.arm import by_actuator, full_name, labelled
 from gear_kinematics.parameters.files import require_any
 from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.ros.node_parameters import declared_actuators, fault_of
@@ -121,7 +121,7 @@ class GearSimulator(PublishingNode):
             for gear in self._gears:
                 gear.driver.advance(self._period / SECOND, gear.load)
                 if gear.model.notice:
-                    self._warn(gear.said(gear.model.notice))
+                    self._warn(labelled(gear.name, gear.model.notice))
                     gear.model.notice = ''
             stamp, drivers = max(self._due + self._offset, 0), [g.driver for g in self._gears]
             self._outputs.send(
@@ -160,7 +160,7 @@ class GearSimulator(PublishingNode):
             if any(value is not None for value in command):
                 gear.driver.follow(command)
             else:
-                fault = gear.said('no value in it is finite')
+                fault = labelled(gear.name, 'no value in it is finite')
                 self._warn(f'{topics.ROTOR_COMMAND} rejected: {fault}')
 
     def _on_load(self, gear: 'SimulatedGear', message: Float64) -> None:
@@ -168,7 +168,7 @@ class GearSimulator(PublishingNode):
             gear.load = message.data
         else:
             fault = f'{message.data:g} N·m is not within ±{_GREATEST_LOAD:g} N·m'
-            self._warn(gear.said(f'{topics.LOAD_TORQUE} rejected: {fault}'))
+            self._warn(labelled(gear.name, f'{topics.LOAD_TORQUE} rejected: {fault}'))
 
     def _wear(self, worn: 'SimulatedGear', _: Trigger.Request, response: Any) -> Any:
         angle = self.get_parameter(full_name(worn.name, 'wear')).value
@@ -215,10 +215,6 @@ class SimulatedGear:
         """The simulated gear and the kind of the model, in words."""
         ratio = self.model.gear.parameters.gear.gear_ratio
         return f'{self.name or "a gear"} of ratio {ratio} with {type(self.model).__name__}'
-
-    def said(self, text: str) -> str:
-        """Put the name of the actuator before a text, if it has one."""
-        return f'{self.name}: {text}' if self.name else text
 
 
 def _lock(model: TwinModel, shaft: str, request: SetBool.Request, response: Any) -> Any:

@@ -113,7 +113,8 @@ class ArmState:
                     encoded.append((topic_of(name, topic), message))
         for topic, rows in joined.items():
             encoded.append((topic, _joined(answers[0][1].sample.stamp, rows)))
-        return encoded + self.encode_errors((name, answer.errors) for name, answer in answers)
+        errors = [(name, answer.errors) for name, answer in answers if answer.errors]
+        return encoded + self.encode_errors(errors) if errors else encoded
 
     def encode_errors(
         self, errors: Iterable[tuple[str, Sequence[ErrorSample]]]

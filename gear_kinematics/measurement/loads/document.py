@@ -20,6 +20,7 @@ from gear_kinematics.measurement.loads.recorded import (
     RecordedLoads,
     read_loads,
 )
+from gear_kinematics.parameters.arm import labelled
 from gear_kinematics.report.document import (
     PENS,
     Document,
@@ -77,8 +78,8 @@ def report(task: LoadTask, progress: ReportProgress | None = None) -> LoadReport
 
 
 def _lost(task: LoadTask, cause: str) -> LoadReport:
-    actuator = f'{task.parameters.actuator}: ' if task.parameters.actuator else ''
-    told = cause if str(task.bag) in cause else f'{task.bag}: {actuator}{cause}'
+    about = labelled(task.parameters.actuator, cause)
+    told = cause if str(task.bag) in cause else f'{task.bag}: {about}'
     return LoadReport(None, {}, told)
 
 
