@@ -129,7 +129,7 @@ class Change:
     interval: tuple[float, ...]
     """Limits of after / before, with a probability of `COVERAGE`; none if they are unknown."""
     probability: float | None
-    """Of as much by chance; None if unknown."""
+    """Probability of as much by chance; None if unknown."""
     repeated: bool
     """Whether these are by the scatter between recordings, else by that within them."""
     significant: bool = False
@@ -154,7 +154,7 @@ def changes_of(quantity: Quantity, groups: Sequence[Group]) -> list[Change]:
     squares = sum(float(np.sum((own - own.mean()) ** 2)) for own in logs if len(own))
 
     def scatter(values: Sequence[Estimate]) -> Component | None:
-        """Of the mean of a group's logarithms; None if it is unknown."""
+        """Return the scatter of the mean of a group's logarithms; None if it is unknown."""
         if degrees:
             return Component(math.sqrt(squares / degrees / len(values)), degrees)
         (value,) = values

@@ -86,7 +86,7 @@ class Sources:
     rotor_counts: int | None = None
     """Counts per turn of the encoder of the rotor, or of the angle column."""
     output_counts: int | None = None
-    """The same of the output's encoder."""
+    """Counts per turn of the encoder of the output."""
     as_recorded: bool = False
     """Whether wraps and counts stay what they are, where counts per turn are not given."""
     rotor_topic: str | None = None
@@ -100,7 +100,7 @@ class Column(NamedTuple):
 
     name: str
     scale: float
-    """Of its numbers, to rad, N·m or s."""
+    """Factor from its numbers to rad, N·m or s."""
     unit: str
     """Empty where nothing is known."""
     on_rotor: bool

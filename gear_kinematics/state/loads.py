@@ -69,7 +69,7 @@ class LoadEstimator:
         self._at_rest = [AT_REST] * len(mechanism.branches)
         self._acceleration = None if parameters.loads.without_mass else Acceleration()
         self.needed = 'effort or acceleration' if self._acceleration else 'effort'
-        """Of a sample, in words."""
+        """What a sample needs for loads to be known, in words."""
         prefix, names = parameters.frame_prefix, [each.name for each in mechanism.branches]
         branches = [f'{prefix}branch_{name}' for name in names]
         joints = [f'{prefix}{kind}_{name}' for name in names for kind in _JOINTS]
@@ -77,7 +77,7 @@ class LoadEstimator:
             BRANCH_LOADS: JointStateTemplate(branches, velocity=False, effort=True),
             JOINT_LOADS: WrenchesTemplate(f'{prefix}stator', joints),
         }
-        """Of the messages, by topic."""
+        """Templates of the messages, by topic."""
 
     def follow(self, sample: RotorSample, segment: int) -> SampleLoads:
         """Return the loads at the next sample."""

@@ -9,7 +9,7 @@ import numpy as np
 from gear_kinematics.wire.batches import Array
 
 _COLUMNS = np.dtype('i8, f8, f8, f8, f8, i8, i8, i8, ?')
-"""Of `RotorSamples`, without the last."""
+"""Types of the fields of `RotorSamples`, without the last one."""
 
 
 class RotorSamples(NamedTuple):
