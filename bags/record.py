@@ -51,7 +51,7 @@ class Scenario:
     """s."""
     storage: Literal['mcap', 'sqlite3'] = 'mcap'
     arguments: tuple[str, ...] = ()
-    """Of the node."""
+    """Arguments of the node."""
 
 
 def point_to_point(t: float) -> Motion:

@@ -35,9 +35,9 @@ class Run(NamedTuple):
     delivered: float
     """Share of the driver's messages with an answer on each topic."""
     cpu: float
-    """Of all nodes, for each message."""
+    """Time of the processor that all nodes take for each message."""
     p50: float
-    """Of the time from sending a message to its last answer."""
+    """Median of the time from sending a message to its last answer."""
     p99: float
     memory: int
     """PSS of all nodes, bytes."""

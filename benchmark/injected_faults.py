@@ -139,7 +139,7 @@ class Outcome(NamedTuple):
     fine: int
     """Wrong outputs that are called fine."""
     worst: float
-    """Of them, the error as a multiple of the bound."""
+    """The largest error among them, as a multiple of the bound."""
     judged: float
     """Whether `gearkin validate` says it; NaN if it was not asked."""
     seed: int

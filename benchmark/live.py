@@ -56,9 +56,9 @@ class Run(NamedTuple):
     answered: int
     """Messages with an answer on each topic."""
     cpu: float
-    """Of the node, for each answered message."""
+    """Time of the processor that the node takes for each answered message."""
     p50: float
-    """Of the time from sending a message to its last answer."""
+    """Median of the time from sending a message to its last answer."""
     p99: float
     max: float
     start: float

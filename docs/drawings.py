@@ -28,7 +28,7 @@ STL_HEADER = 84  # bytes
 SIZE = (1000, 1700)  # pixels, halved in the end
 SCALE = 14_500.0  # pixels/m
 EDGE = 1e-3
-"""Of a triangle: how far it reaches over its edges, so that no gaps are seen."""
+"""How far a triangle reaches over its edges, so that no gaps are seen."""
 YAW, PITCH = math.radians(50.0), math.radians(16.0)
 VIEW = np.array(
     [

@@ -62,7 +62,7 @@ class Measured(NamedTuple):
     text: str
     """stdout and stderr."""
     seconds: float
-    """Of the processor."""
+    """Time of the processor."""
     memory: int
     """Its peak, bytes."""
 
@@ -259,7 +259,7 @@ def size_of(path: Path) -> int:
 
 
 WRITTEN = 'chunks of 32 MiB', '65 535 topics', 'messages of 1 GiB'
-"""Of which `compute`, which writes, may take more than `validate`, or refuses them by itself."""
+"""Bags for which `compute` may write more than `validate` does, or which it refuses by itself."""
 
 
 @pytest.mark.parametrize(

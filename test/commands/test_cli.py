@@ -196,7 +196,7 @@ HEADINGS = (
     *('stiffness', 'gear', 'columns of a table', 'limits', 'several recordings'),
     *('output', 'example'),
 )
-"""Of the help of all commands, in this order."""
+"""Headings in the help of all commands, in this order."""
 
 
 def test_init_replaces_nothing(tmp_path, monkeypatch):

@@ -47,7 +47,7 @@ def test_loads_are_the_multipliers_of_the_constraint_jacobian(case):
     [('pinocchio', load_oracles.PinocchioTree), ('mujoco', load_oracles.MujocoTree)],
 )
 def test_loads_are_the_inverse_dynamics_of_another_library(library, tree):
-    """Of machines of usual sizes, as the library solves in double precision."""
+    """The machines have usual sizes, as the library solves in double precision."""
     module = pytest.importorskip(library, reason=f'{library} is not installed')
     generator = np.random.default_rng(37)
     for _ in range(60):
@@ -79,7 +79,7 @@ def turned(arm, rate) -> np.ndarray:
 
 @given(loaded())
 def test_power_is_what_changes_the_kinetic_energy(case):
-    """Of each force with the velocity of its point, and of each couple, for each body and all."""
+    """Forces act at the velocity of their points; the balance holds for each body and for all."""
     mechanism, (_, w, a), torques, bodies = case
     state = solve(mechanism, *case[1])
     loads = loading.solve(mechanism, state, torques, bodies)

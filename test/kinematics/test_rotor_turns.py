@@ -74,7 +74,7 @@ SPECIAL = [
 @example(np.array(SPECIAL))
 @example(LARGEST * 2.0 ** -np.random.default_rng(5).uniform(0.0, 53.0, 3000))
 def test_split_is_exact(angles):
-    """Of floats and of arrays, which agree to the last bit."""
+    """Floats and arrays agree to the last bit."""
     turns, rest = split_turns(angles)
     assert turns.shape == rest.shape == angles.shape
     for index in np.ndindex(angles.shape):

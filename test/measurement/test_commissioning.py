@@ -114,7 +114,7 @@ COUNT = TURN / 4096  # of a counter
 )
 @pytest.mark.parametrize('every', [1, 4])
 def test_position_that_repeats_after_another_range(size, low, step, found, every, tmp_path):
-    """Of protocols that send ±12.5 rad or ±4π, and of counters of 16 bits."""
+    """As protocols have that send ±12.5 rad or ±4π, and of counters of 16 bits."""
     times, rotor, output = (values[::every] for values in readings(zeros=(7.0, 0.0)))
     position = wrapped(rotor, size, low)
     position = np.round(position / step) * step if step else position

@@ -67,7 +67,7 @@ def recorded(angle, noise: float, seed: int):
 
 @pytest.mark.parametrize('name', GEARS)
 def test_the_middle_line_is_the_spring(angles, name):
-    """Of the largest ramps, with the friction beside it."""
+    """The middle line of the largest ramps, with the friction beside it."""
     gear, noisy = GEARS[name], recorded(angles[name], 0.02, seed=1)
     line = measured(*noisy).middle_line
     assert np.ptp(line.load) > 1.95 * (LARGE - gear.friction)

@@ -125,7 +125,7 @@ def test_real_joints_are_left_open_with_the_true_ratio_in_the_interval(
 
 
 def test_what_inertia_winds_up_is_in_the_interval():
-    """Of an output that oscillates at 25 Hz on its springs, and goes there and back."""
+    """The output oscillates at 25 Hz on its springs, and goes there and back."""
     time = np.arange(40_000) * 1e-3
     share = 1.0 - np.abs(1.0 - np.mod(time / 2.0, 2.0))
     ideal = 9.0 * (10.0 - 15.0 * share + 6.0 * share**2) * share**3  # least jerk

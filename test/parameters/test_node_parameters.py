@@ -91,7 +91,7 @@ def fault(folder: Path, **values) -> str:
 
 
 def test_default_values_are_those_of_the_contract(tmp_path):
-    """Of exactly these parameters; a file for another gear changes what is in it."""
+    """The parameters are exactly these; a file for another gear changes what is in it."""
     defaults = NodeParameters.load().values()
     assert defaults == CONTRACT | OUR_OWN
     assert {name: type(defaults[name]) for name in CONTRACT} == {

@@ -59,6 +59,14 @@ def test_scripts_and_styles_state_copyright_and_license():
         assert any('Copyright 2026' in line and 'Apache-2.0' in line for line in head), path
 
 
+def test_docstrings_begin_with_what_they_describe():
+    folders = ('gear_kinematics/**', 'test/**', 'bags', 'benchmark', 'docs/**', 'examples', 'fuzz')
+    files = [path for folder in folders for path in ROOT.glob(f'{folder}/*.py')]
+    assert len(files) > 400
+    begun = re.compile(r'^ *r?"""(?:Of|The same)\b.*', re.MULTILINE)
+    assert not [found for path in files for found in begun.findall(path.read_text('utf-8'))]
+
+
 def test_every_page_is_in_the_one_index_and_a_how_to_has_its_picture():
     docs = ROOT / 'docs'
     index = (docs / 'index.md').read_text('utf-8')

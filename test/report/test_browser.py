@@ -31,7 +31,7 @@ expect.set_options(timeout=30_000.0)  # a machine can be busy
 PIXEL = 1.0
 TIMES = [0.25 * k for k in range(41)]
 ANGLES = [0.3 * k**2 - 2.0 * k for k in range(38)] + [1e4, -1e7, 2.0**40]
-"""Of the rotor, rad: there and back, half turns in a step, and far away."""
+"""Angles of the rotor, rad: there and back, half turns in a step, and far away."""
 MECHANISMS = (
     (Mechanism(80, 76, 0.0011, (Branch('a'), Branch('b', cam_phase=math.pi))), 0.0005),
     (Mechanism(11, 8, 0.004, (Branch('a', 0.4), Branch('b', 2.9), Branch('c', -1.3))), 0.0025),

@@ -31,7 +31,7 @@ class Row(NamedTuple):
     driven: list[dict[str, Any] | bytes]
     """What is changed of the good message of each number."""
     counted: dict[str, Any]
-    """Of the counts that are not 0."""
+    """The counts that are not 0."""
     diagnosed: tuple[int, str] = (OK, 'ok')
     found: FindingCause | None = None
     settings: NodeParameters = MULTI

@@ -82,7 +82,7 @@ def test_without_effort_there_are_no_messages():
 
 
 def test_acceleration_lags_by_half_of_its_window():
-    """Of a velocity that grows with the square of time, whose acceleration is 2 t."""
+    """The velocity grows with the square of time, so that its acceleration is 2 t."""
     estimate = Acceleration()
     for k in range(100):
         time = k * 1e-3

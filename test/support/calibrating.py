@@ -49,7 +49,7 @@ class Judged(NamedTuple):
     """What a calibration is worth on a recording that was not used."""
 
     relative_rms: float
-    """Of the corrected error, over that of what no calibration can predict."""
+    """The rms of the corrected error, over that of what no calibration can predict."""
     coverage: float
     """Share of samples within the interval."""
     fit: Fit

@@ -20,7 +20,7 @@ MP.dps = 50
 
 
 AMPLITUDE = 1e-3
-"""Of the order of `single_order`, rad."""
+"""Amplitude of the order of `single_order`, rad."""
 
 
 def calibration(**changes) -> Calibration:

@@ -88,7 +88,7 @@ def encoders(
 
 
 class Samples(NamedTuple):
-    """Of a joint."""
+    """What is recorded of a joint."""
 
     stamps: Sequence[int]  # ns
     positions: Sequence[float]

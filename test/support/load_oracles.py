@@ -75,7 +75,7 @@ def multipliers(
 
 
 class _Points(NamedTuple):
-    """Of one branch: where the joints are, and along which directions they hold."""
+    """Where the joints of a branch are, and along which directions they hold."""
 
     satellite: tuple
     coupling: tuple
@@ -86,7 +86,7 @@ class _Points(NamedTuple):
     """Across the slot of the arm: x of the output shaft's frame."""
     tangent: tuple
     flank: tuple
-    """Of the force on the satellite: across the touching flanks, and towards the axis."""
+    """Directions of the force on the satellite: across touching flanks, and towards the axis."""
 
 
 def _points(numbers, motion, masses, radius, sides) -> list[_Points]:
@@ -220,7 +220,7 @@ def inverse_dynamics(
     levers = [_cross([float(value) for value in b.oldham_centre[:2]], arm) for b in bodies]
 
     def wrenches(pushes, sides, slots, shares):
-        """Of the rings on the satellites, then of the arms on the couplings."""
+        """Give the wrenches of the rings on the satellites, then of the arms on the couplings."""
         flanks = [
             side * cos * along - sin * away
             for side, (along, away) in zip(sides, units, strict=True)

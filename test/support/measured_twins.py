@@ -157,7 +157,7 @@ class Encoded(NamedTuple):
     """What both encoders tell of a gear."""
 
     ratio: Fraction
-    """Of the gear."""
+    """The ratio of the gear."""
     senses: int
     """1, or -1 if one of the encoders counts backwards."""
     zero: float

@@ -21,7 +21,7 @@ MINUTE, SECOND = math.radians(1.0 / 60.0), math.radians(1.0 / 3600.0)
 
 
 class Proof(NamedTuple):
-    """Of one gear."""
+    """What was put into one gear, and what was measured of it."""
 
     number: int
     put_in: PutIn

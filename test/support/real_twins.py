@@ -112,7 +112,7 @@ def ramped(model: TwinModel, high: float, low: float) -> tuple[np.ndarray, np.nd
 
 
 def _wind_ups(loop: Loop, torque: np.ndarray) -> np.ndarray:
-    """Of both ways, (2 n,), from the middle of the fall."""
+    """Give the wind-up of both ways, (2 n,), from the middle of the fall."""
     centre = 0.5 * (loop.fall.angle[0] + loop.fall.angle[-1])
     ways = (loop.rise, torque), (loop.fall, torque[::-1])
     return np.concatenate(

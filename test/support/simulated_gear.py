@@ -69,7 +69,7 @@ class Simulated(NamedTuple):
     measured: np.ndarray
     """What the output's encoder reads, with the delay."""
     undelayed: np.ndarray
-    """The same without the delay."""
+    """What the output's encoder would read without the delay."""
     noise: np.ndarray
     """(gears,): rms about its mean of what no calibration can predict."""
 
@@ -87,7 +87,7 @@ def strokes(
 def slow_strokes(
     duration: float, random: np.random.Generator, reach: float = 14.0, speed: float = 2.0
 ) -> np.ndarray:
-    """The same with strokes of which all end anywhere: few in a minute."""
+    """Return the angles of slow strokes, all of which end anywhere: few in a minute."""
     return _strokes(duration, random, reach, speed, [])
 
 

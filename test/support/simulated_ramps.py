@@ -18,12 +18,12 @@ INTERVAL = 2.5e-3  # s
 STEP = 2.0 * math.pi / 65536.0  # rad, of the encoder
 SMALL, LARGE = 4.0, 40.0  # N·m
 _CORNERS = np.array([0.0, 1.0, 1.0, -1.0, -1.0, 0.0])
-"""Of the torque in a loop, with pauses at its peaks."""
+"""Torque at the corners of a loop, in units of its amplitude, with pauses at its peaks."""
 _REPEATS = 100
 """Recordings whose mean is the hysteresis of a gear."""
 
 Value = float | np.ndarray
-"""Of one gear, or of each of many, (gears,)."""
+"""A property of one gear, or of each of many, (gears,)."""
 Loops = tuple[tuple[float, float], ...]
 """Amplitude, N·m, and duration, s, of the loops of a recording."""
 SMALL_AND_LARGE: Loops = 5 * ((SMALL, 4.0),) + 3 * ((LARGE, 20.0),)

@@ -97,7 +97,7 @@ def parameters(*names: str) -> list:
 
 
 JUDGED = r'verdict: (passed|failed: /\S+: \d+ messages? missing)'
-"""Of a recording that has no wrong number, and may lack what a busy machine lost on the way."""
+"""What is said of a recording without a wrong number, which may lack what a busy machine lost."""
 
 
 class WatcherStandIn:

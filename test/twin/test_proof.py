@@ -25,7 +25,7 @@ def running():
 
 @pytest.mark.parametrize('number', range(GEARS))
 def test_strokes_loads_and_forces_give_back_what_was_put_in(running, number):
-    """Of errors and zeros, the step of the encoder decides where the ± is less."""
+    """Errors and zeros are known to a step of the encoder at best, however small their ± is."""
     proof = running[number].result()
     encoded, parameters = proof.encoded, proof.put_in.parameters
     assert encoded.ratio == parameters.mechanism.gear_ratio

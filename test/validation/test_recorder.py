@@ -64,7 +64,7 @@ def config() -> NodeParameters:
 
 
 def shifted(message: Message, nanoseconds: int) -> Message:
-    """The same message at another time."""
+    """Return a message at another time."""
     stamp = stamp_of(message) + nanoseconds
     data = bytearray(message.data)
     struct.pack_into('<iI', data, 4, *divmod(stamp, SECOND))
