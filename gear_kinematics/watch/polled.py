@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.ros.drivers import DEPTH
@@ -43,17 +43,16 @@ class Polled:
         node: Node,
         topic: str,
         message_type: type = JointState,
-        reliability: ReliabilityPolicy = ReliabilityPolicy.BEST_EFFORT,
-        durability: DurabilityPolicy = DurabilityPolicy.VOLATILE,
         wanted: Callable[[bytes], bool] = bool,
+        qos: QoSProfile | None = None,
     ) -> None:
-        """Subscribe to the messages that are `wanted`."""
+        """Subscribe to the messages that are `wanted`, with best effort unless `qos` is given."""
         self._node, self._wanted = node, wanted
         self._subscription = node.create_subscription(
             message_type,
             topic,
             lambda _: None,  # never called
-            QoSProfile(depth=DEPTH, reliability=reliability, durability=durability),
+            qos or QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT),
             raw=True,
             callback_group=NeverExecuted(),
         )

@@ -7,10 +7,11 @@ from operator import itemgetter
 from typing import TYPE_CHECKING
 
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from gear_kinematics.bag import Message
 from gear_kinematics.parameters import NODE
+from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.ros.graph import Graph
 from gear_kinematics.watch.polled import Polled
 from gear_kinematics.wire import topics
@@ -20,9 +21,11 @@ if TYPE_CHECKING:
 
 _TYPES = {topic.type for topic in topics.TOPICS.values() if topic.part != 'display'}
 
+_BEST_EFFORT, _VOLATILE = ReliabilityPolicy.BEST_EFFORT, DurabilityPolicy.VOLATILE
+
 
 class Recorder:
-    """Records the topics of gear nodes, each from the moment that it has a publisher."""
+    """Records the topics of gear nodes, also those of drivers that have yet to start."""
 
     def __init__(
         self, node: Node, bag: 'BagWriter', wanted: str = NODE, *, loads: bool = False
@@ -39,6 +42,9 @@ class Recorder:
         self._node, self._bag = node, bag
         self._wanted = '' if wanted == NODE else f'/{wanted.removeprefix("/")}'
         self._open: dict[str, tuple[str, Polled]] = {}  # with the types
+        # Beside a reliable subscription until the driver is known: it hears every driver, and
+        # one that was made only then would miss the first messages.
+        self._best_effort: dict[str, Polled] = {}
         self._least: dict[str, int] = {}  # ns from the dispatch to the reception of a message
 
     def poll(self) -> None:
@@ -65,10 +71,18 @@ class Recorder:
             outputs = self._node.get_publisher_names_and_types_by_node(*place)
             self.inputs |= {topic for topic, types in inputs if topics.JOINT_STATE in types}
             for topic, [kind, *_] in inputs + outputs:
-                wanted = kind in _TYPES and topics.base_name(topic) not in self._left_out
-                if wanted and topic not in self._open and self._node.count_publishers(topic):
+                if kind not in _TYPES or topics.base_name(topic) in self._left_out:
+                    continue
+                offers = self._node.get_publishers_info_by_topic(topic)
+                if topic not in self._open:
                     package, _, message = kind.split('/')
                     message_type = getattr(import_module(f'{package}.msg'), message)
-                    # The QoS that all publishers offer now, such as reliable and latched.
-                    qos = ReliabilityPolicy.BEST_AVAILABLE, DurabilityPolicy.BEST_AVAILABLE
-                    self._open[topic] = kind, Polled(self._node, topic, message_type, *qos)
+                    durability = DurabilityPolicy.BEST_AVAILABLE if offers else _VOLATILE
+                    qos = QoSProfile(depth=DEPTH, durability=durability)
+                    self._open[topic] = kind, Polled(self._node, topic, message_type, qos=qos)
+                    self._best_effort[topic] = Polled(self._node, topic, message_type)
+                if offers and (unused := self._best_effort.pop(topic, None)):
+                    if any(offer.qos_profile.reliability == _BEST_EFFORT for offer in offers):
+                        (_, other), self._open[topic] = self._open[topic], (kind, unused)
+                        unused = other
+                    unused.close()

@@ -6,6 +6,8 @@ import re
 from types import SimpleNamespace
 
 import pytest
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.qos import ReliabilityPolicy as Offer
 from watching import ENCODER, JUDGED, MOTOR, NAMESPACE, NODE, driving, gearkin, node
 
 from gear_kinematics.bag import Bag
@@ -13,6 +15,7 @@ from gear_kinematics.commands.cli import main
 from gear_kinematics.watch import recorder as module
 from gear_kinematics.watch.polled import Taken
 from gear_kinematics.watch.recorder import Recorder
+from gear_kinematics.wire.topics import JOINT_STATE
 
 
 @pytest.mark.live
@@ -54,6 +57,38 @@ def test_what_hears_nothing_says_so_and_leaves_nothing(running, tmp_path):
     assert recording.process.returncode == 2
     assert f'gearkin: nothing was recorded: {cause}' in recording.text().splitlines()[-1]
     assert not (tmp_path / 'monday').exists()
+
+
+@pytest.mark.parametrize('offered', [Offer.RELIABLE, Offer.BEST_EFFORT])
+def test_driver_that_starts_later_finds_a_subscription_of_its_reliability(offered, monkeypatch):
+    monkeypatch.setattr(module, 'Graph', lambda _: SimpleNamespace(gears=['/left/gear']))
+    opened, drivers = [], []
+
+    def subscribe(_type, _topic, _call, qos, **_):
+        opened.append(SimpleNamespace(qos=qos, handle=NoMessage(), msg_type=None, raw=True))
+        return opened[-1]
+
+    node = SimpleNamespace(
+        create_subscription=subscribe,
+        destroy_subscription=opened.remove,
+        get_subscriber_names_and_types_by_node=lambda *_: [('/motor', [JOINT_STATE])],
+        get_publisher_names_and_types_by_node=lambda *_: [],
+        get_publishers_info_by_topic=lambda _: drivers,
+    )
+    recorder = Recorder(node, SimpleNamespace(write_all=lambda _: None))
+    recorder.poll()
+    assert {each.qos.reliability for each in opened} == {Offer.RELIABLE, Offer.BEST_EFFORT}
+    assert {each.qos.durability for each in opened} == {DurabilityPolicy.VOLATILE}
+    drivers.append(SimpleNamespace(qos_profile=QoSProfile(depth=1, reliability=offered)))
+    recorder.poll()
+    assert [each.qos.reliability for each in opened] == [offered]
+    _, polled = recorder._open['/motor']
+    assert [polled._subscription] == opened
+
+
+class NoMessage(contextlib.nullcontext):
+    def take_message(self, _type, _raw):
+        return None
 
 
 def test_a_message_that_the_middleware_repeats_is_recorded_at_its_time(monkeypatch):
