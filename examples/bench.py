@@ -15,8 +15,10 @@ def call(name: str, kind: type = Trigger, **values: bool) -> None:
     client = node.create_client(kind, f'/gear_simulator/{name}')
     if not client.wait_for_service(10.0):
         raise SystemExit('no gear_simulator is running')
-    answer = client.call_async(kind.Request(**values))
-    rclpy.spin_until_future_complete(node, answer)
+    answer = rclpy.Future()
+    while not answer.done():  # an answer is lost if its sender has not discovered this node yet
+        answer = client.call_async(kind.Request(**values))
+        rclpy.spin_until_future_complete(node, answer, timeout_sec=5.0)
     print(answer.result().message)
 
 
@@ -32,8 +34,8 @@ loads = node.create_publisher(Float64, '/load_torque', 10)
 node.create_subscription(JointState, '/output_encoder', output.append, 10)
 rows, ramps = ['angle,torque'], [(0.4, 60)] * 5 + [(4.0, 200)] * 3  # N·m, steps there and back
 for torque in [most * asin(sin(tau * k / n)) / asin(1) for most, n in ramps for k in range(n)]:
-    loads.publish(Float64(data=torque))
     while output[-1].effort[0] != torque or abs(output[-1].velocity[0]) > resting:
+        loads.publish(Float64(data=torque))
         rclpy.spin_once(node)
     rows.append(f'{remainder(output[-1].position[0], tau)},{torque}')
 Path(what).write_text('\n'.join(rows))

@@ -8,7 +8,6 @@ import re
 import shlex
 import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import NamedTuple
 
@@ -27,7 +26,6 @@ ROOT = Path(__file__).resolve().parents[2]
 PLAYER = ROOT / 'test/support/played_joint.py'
 PAGE = (ROOT / 'docs/commissioning.md').read_text('utf-8')
 DEGREE = math.pi / 180.0
-SECONDS = 6.0  # that a person turns the output
 
 
 def command(*words: str) -> list[str]:
@@ -92,10 +90,11 @@ def driven(joint: Joint, folder: Path, lost: float = 0.0):
 
 
 def gearkin(folder: Path, *arguments: str) -> str:
-    """Run a command for some seconds, and press Enter; returns what it shows."""
+    """Run a command until it has heard enough, and press Enter; returns what it shows."""
     with Person(folder, *arguments) as person:
         person.wait_for('the output turned')
-        time.sleep(SECONDS)
+        # 6 s of messages, unless it ends by itself before, when everything is known.
+        person.wait_for(r'heard +([3-9]\d{3}|\d{5,}) messages|live on 20')
         person.type('\n')
         assert person.end() == 0
     return ' '.join(person.shown().split())

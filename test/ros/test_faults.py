@@ -220,9 +220,8 @@ def test_node_killed_and_restarted_while_the_driver_runs(tmp_path):
             peer.wait_until(
                 lambda: all(map(operator.gt, peer.matches(), matches)), 'the node to be found'
             )
-            last, before = drive.sent[-1], len(drive.sent)
+            last = drive.sent[-1]
             peer.wait_until(lambda: newest(peer) > last, 'outputs')
-            assert len(drive.sent) - before < 100  # 1 s
             level, message, values = peer.status()
             sent = drive.finish()
             received = {

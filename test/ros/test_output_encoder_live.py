@@ -161,6 +161,7 @@ def test_turns_are_known_after_a_power_cycle_and_a_disagreement_moves_nothing(tm
                 [state, *_] = peer.answer(rotor_state(stamp, position=[-19.0 * output % math.tau]))
                 answers.append(state.position[0])
 
+            go_on()  # so that a report that is on its way is not taken
             level, message, values = peer.status(
                 lambda s: s.name.endswith('rotor input') and words in s.message, words, go_on
             )

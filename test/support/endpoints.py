@@ -113,7 +113,8 @@ class Driver(Endpoint):
             for publisher, encoder in self._publishers:
                 publisher.publish(rotor_message(self._sent, encoder))
             self._sent += 1
-            due += PERIOD / SECOND
+            # What is late is not made up for in a burst, which sockets have no room for.
+            due = max(due, time.monotonic()) + PERIOD / SECOND
 
 
 class Listener(Endpoint):

@@ -78,6 +78,7 @@ class Person(Terminal):
     def __exit__(self, kind, *_) -> None:
         if kind:
             self._process.kill()
+            print(self.shown())  # which pytest tells of a test that fails
         self._process.wait()
         super().__exit__()
 

@@ -850,10 +850,9 @@ async def test_views_come_at_most_thirty_times_a_second_after_the_drawing(addres
         }  # fmt: skip
         assert view['drivers'][0]['joints'] == ['brake', 'm1']
         begin, count = time.monotonic(), 0
-        while time.monotonic() < begin + 0.5:
+        while count < 10:
             count += 'view' in json.loads(await connection.read_message())
-        elapsed = time.monotonic() - begin
-        assert 2 <= count <= 1 + 30.0 * elapsed
+        assert count <= 1 + 30.0 * (time.monotonic() - begin)
 
 
 def test_buttons_ask_the_watcher_and_show_its_answer(watcher):
