@@ -19,17 +19,12 @@ from gear_kinematics.commands.joints import choose_joint
 from gear_kinematics.commands.output import Console, message_progress, warn_of_shared_memory
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.measurement.commissioning import analysis
-from gear_kinematics.measurement.commissioning.document import (
-    actuator_file,
-    actuator_lines,
-    document,
-)
+from gear_kinematics.measurement.commissioning.document import document, write_file
 from gear_kinematics.measurement.formats import is_table, open_bag
 from gear_kinematics.measurement.reading import read_encoders
 from gear_kinematics.measurement.rotor_fields import recorded_questions
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.parameters.arm_file import add_actuators, check_new
-from gear_kinematics.parameters.new_config import arm_head, start_command, write_new
+from gear_kinematics.parameters.arm_file import check_new
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.wire.topics import JOINT_STATE
 
@@ -82,12 +77,8 @@ def run(options: argparse.Namespace) -> ExitCode:
         file=file,
     )
     result = _hear(request) if options.live else _read(options, request)
-    if result.between and not file and options.actuator:
-        heard = result.request
-        command = start_command(heard.rotor.topic, path.name, heard.output.topic)
-        add_actuators(path, {options.actuator: actuator_lines(result)}, arm_head(command))
-    elif result.between and not file:
-        write_new(path, actuator_file(result, path.name))
+    if result.between and not file:
+        write_file(result, path, options.actuator)
     report = document(result, str(options.check or path))
     reporter.write(report, [options.check] if file else [])
     return ExitCode.FAILED if report.verdict == Verdict.FAIL else ExitCode.DONE

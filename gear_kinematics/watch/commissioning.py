@@ -18,13 +18,12 @@ from gear_kinematics.bag import Message, by_topic
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.commissioning.analysis import Commissioning, Request, commission
-from gear_kinematics.measurement.commissioning.document import actuator_file
+from gear_kinematics.measurement.commissioning.document import write_file
 from gear_kinematics.measurement.gate import gated
 from gear_kinematics.measurement.reading import States
 from gear_kinematics.measurement.rotor_fields import questions
 from gear_kinematics.measurement.wording import shown
 from gear_kinematics.parameters import PARAMETERS, NodeParameters, default_config
-from gear_kinematics.parameters.new_config import start_command, write_new
 from gear_kinematics.watch.gear import GearNode
 from gear_kinematics.watch.view import Entry, Guide, Tone
 
@@ -79,18 +78,9 @@ class LiveCommissioning:
         assert recording.encoders  # noqa: S101, there is a topic of the output
         return commission([(recording, recording.encoders)], self.request)
 
-    def write(self) -> str:
-        """Write the parameter file into the working directory; it replaces nothing.
-
-        Returns:
-            The command that starts the node with it.
-
-        Raises:
-            ValueError: if the ratio is undetermined, or the file cannot be written.
-        """
-        name = default_config().name
-        write_new(Path(name), actuator_file(self.result(), name))
-        return start_command(self._topics[0], name, self._topics[1])
+    def write(self, actuator: str = '') -> str:
+        """Write the parameter file into the working directory, as `write_file` does."""
+        return write_file(self.result(), Path(default_config().name), actuator)
 
     def changes(self, gear: GearNode) -> dict[str, Any]:
         """Return the parameters that a running node has to change.

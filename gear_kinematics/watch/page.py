@@ -35,6 +35,8 @@ _BODY = """\
 <label>ratio, if known <input name="ratio" maxlength="40" size="8" placeholder="121"></label>
 <label>output is at 0 <select name="zero"><option value="">as its encoder</option>
 <option value="END">where it stands</option></select></label>
+<label>actuator, if it is of an arm <input name="actuator" maxlength="64" size="12"
+placeholder="shoulder"></label>
 <button>Start</button></form>
 <div id="guide" hidden><p role="status"></p><progress></progress><dl></dl><div class="steps">
 <button type="button" value="write">Write actuator.yaml</button>

@@ -156,6 +156,6 @@
     const [rotor, output] = [form.rotor, form.output].map(select => JSON.parse(select.value));
     send({do: 'commission', rotor, output, ratio: form.ratio.value, zero: form.zero.value});
   });
-  guide.addEventListener('click', ({target}) => target.value && send({do: target.value}));
+  guide.addEventListener('click', ({target}) => target.value && send({do: target.value, actuator: form.actuator.value}));
   connect();
 })();

@@ -148,7 +148,8 @@ class Watcher:
                 self._commission(Channel(*map(str, rotor)), Channel(*map(str, output)), command)
                 answer.set_result(Answer('', done=True))
             case {'do': 'write'} if live:
-                answer.set_result(Answer(f'Written. Start:\n{live.write()}', done=True))
+                start = live.write(str(command.get('actuator', '')) or self._actuator_of(live))
+                answer.set_result(Answer(f'Written. Start:\n{start}', done=True))
             case {'do': 'take'} if live:
                 gear = self._ready_gear(command)
                 values = live.changes(gear)
@@ -163,6 +164,14 @@ class Watcher:
                 answer.set_result(Answer('', done=True))
             case _:
                 raise ValueError('This command is not possible now.')
+
+    def _actuator_of(self, live: LiveCommissioning) -> str:
+        """Return the actuator whose rotor it is, if a node of an arm hears it; else ''."""
+        rotor = live.request.rotor
+        arms = (gear for gear in self._gears if len(gear.arm) > 1 and gear.hears(rotor.topic))
+        named = (name for gear in arms for name in gear.arm
+                 if gear.arm[name].rotor_joint == rotor.joint)  # fmt: skip
+        return next(named, '')
 
     def _commission(self, rotor: Channel, output: Channel, asked: Mapping[str, Any]) -> None:
         """Subscribe to the two joints of a request unless they are subscribed to already."""

@@ -19,6 +19,8 @@ from watching import ENCODER, MOTOR, NODE, driving, gearkin, node, parameters
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.commissioning.analysis import Channel, Request
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.parameters.arm import load_actuators
+from gear_kinematics.parameters.arm_file import add_actuators
 from gear_kinematics.watch import commissioning
 from gear_kinematics.watch.commissioning import GUIDE, LiveCommissioning
 from gear_kinematics.watch.view import Entry
@@ -102,6 +104,18 @@ def test_file_has_the_zero_of_the_end(monkeypatch, tmp_path):
     assert abs(at_end) > 0.1
     zero = NodeParameters.load(tmp_path / 'actuator.yaml').output_encoder_zero
     assert zero == pytest.approx(at_end, abs=1e-8)
+
+
+def test_gear_is_added_to_the_file_of_an_arm(monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / 'actuator.yaml'
+    add_actuators(path, {'elbow': ["gear_ratio: '50'"]}, ())
+    live = hear(monkeypatch, 90.0, '121')
+    live.write('shoulder')
+    ratios = {name: each.gear_ratio for name, each in load_actuators(path).items()}
+    assert ratios == {'elbow': '50', 'shoulder': '121'}
+    with pytest.raises(ValueError, match='shoulder is in it already'):
+        live.write('shoulder')
 
 
 def test_node_of_another_gear_is_not_changed(monkeypatch):

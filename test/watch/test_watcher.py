@@ -27,6 +27,7 @@ from watching import WatcherStandIn
 
 from gear_kinematics.commands import init
 from gear_kinematics.commands.cli import main
+from gear_kinematics.measurement.commissioning.analysis import Channel
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.arm import load_actuators
 from gear_kinematics.ros.graph import Graph
@@ -542,6 +543,22 @@ def test_command_to_another_gear_or_zero_than_its_page_shows_is_refused(do, revi
         with pytest.raises(ValueError, match='Nothing was done: /left/gear_state_publisher or'):
             watcher._do(command, Future())
     assert done == [do] * (revision == 7)
+
+
+@pytest.mark.parametrize(
+    ('command', 'hears', 'actuator'),
+    [({}, True, 'elbow'), ({}, False, ''), ({'actuator': 'wrist'}, True, 'wrist')],
+)
+def test_file_is_that_of_an_arm_if_the_gear_is_of_one(command, hears, actuator):
+    one = replace(NodeParameters.load(), rotor_joint='m1')
+    arm = {'shoulder': one, 'elbow': replace(one, rotor_joint='m2')}
+    written, watcher = [], Watcher()
+    watcher._gears = [gear_node(hears=lambda _: True), gear_node(arm=arm, hears=lambda _: hears)]
+    watcher._live = SimpleNamespace(
+        request=SimpleNamespace(rotor=Channel('/j', 'm2')), write=written.append
+    )
+    watcher._do({'do': 'write', **command}, Future())
+    assert written == [actuator]
 
 
 @pytest.mark.live

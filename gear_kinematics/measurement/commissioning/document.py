@@ -2,6 +2,7 @@
 """The parameter file of a commissioned gear, and the report on it or on the check of a file."""
 
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from textwrap import wrap
 
 import numpy as np
@@ -10,7 +11,8 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.commissioning.analysis import Commissioning, Value
 from gear_kinematics.measurement.envelope import envelope
 from gear_kinematics.measurement.wording import plain, shown
-from gear_kinematics.parameters.new_config import quoted, start_command
+from gear_kinematics.parameters.arm_file import add_actuators
+from gear_kinematics.parameters.new_config import arm_head, quoted, start_command, write_new
 from gear_kinematics.parameters.node_parameters import default_config
 from gear_kinematics.report.document import (
     Document,
@@ -46,9 +48,24 @@ def actuator_file(result: Commissioning, name: str = default_config().name) -> s
     )
 
 
-def actuator_lines(result: Commissioning) -> list[str]:
-    """Return the lines of a gear in the parameter file of an arm."""
-    return [*_comment(_found(result)), *_values(result)]
+def write_file(result: Commissioning, path: Path, actuator: str = '') -> str:
+    """Write a gear to a new parameter file, or as an actuator to that of an arm, new or not.
+
+    Returns:
+        The command that starts the node with the file.
+
+    Raises:
+        ValueError: if the ratio is open, or the file cannot be written.
+    """
+    if not result.between:
+        raise ValueError(result.answer)
+    command = start_command(result.request.rotor.topic, path.name, result.request.output.topic)
+    if actuator:
+        lines = [*_comment(_found(result)), *_values(result)]
+        add_actuators(path, {actuator: lines}, arm_head(command))
+    else:
+        write_new(path, actuator_file(result, path.name))
+    return command
 
 
 def _found(result: Commissioning) -> str:
