@@ -30,6 +30,10 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
         ),
         'init': ('list running drivers, and write a parameter file for one', 'init --ratio -19'),
         'watch': ('show a running node and its driver live, and home it', 'watch --text'),
+        'home': (
+            'tell a running node that the output is at its home angle now',
+            'home --node /left/gear_state_publisher',
+        ),
     },
     'record and prove': {
         'record': ('record what running nodes hear and publish', 'record monday'),

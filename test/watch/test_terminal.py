@@ -1,9 +1,16 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """`gearkin watch` and `gearkin init` in a terminal and in a pipe, beside a driver at 1 kHz."""
 
+import re
+from types import SimpleNamespace
+
 import pytest
+from blocked_bags import wait_until
 from terminals import Person
 from watching import DEADLINE, MOTOR, NODE, OTHER, driving, gearkin, node
+
+from gear_kinematics.commands.cli import main
+from gear_kinematics.watch import homing
 
 pytestmark = pytest.mark.live
 
@@ -38,6 +45,35 @@ def test_table_in_a_terminal_homes_with_keys(tmp_path):
         terminal.wait_for(r'Undone: rotor_zero 0 again\.')
         terminal.type('q')
         assert terminal.end() == 0
+
+
+@pytest.mark.usefixtures('running')
+def test_home_says_where_the_shaft_was_and_is(capsys):
+    wait_until(lambda: main(['home', '--node', OTHER]) == 0, 'a node that does not refuse')
+    moved = rf'^{OTHER}: the shaft was at -?\d+\.\d° and is now 0\.0° \(rotor_zero '
+    assert re.search(moved, capsys.readouterr().out, re.MULTILINE)
+    assert main(['home', '--node', OTHER, '--actuator', 'elbow']) == 2
+    service = f'there is no service {OTHER}/elbow/home; did you mean `{OTHER}/home`?'
+    assert service in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ('gears', 'wanted', 'error'),
+    [
+        ([], '', 'no gear_state_publisher is running with this ROS_DOMAIN_ID'),
+        (
+            ['/a/gear', '/b/gear'],
+            '',
+            'which node is to be homed? Repeat with --node: /a/gear, /b/g',
+        ),
+        (['/a/gear'], 'a/gaer', '/a/gaer is not running; did you mean `/a/gear`?'),
+    ],
+)
+def test_home_needs_to_know_the_node(gears, wanted, error, monkeypatch, capsys):
+    monkeypatch.setattr(homing, '_SEARCH', 0.2)
+    monkeypatch.setattr(homing, 'Graph', lambda _: SimpleNamespace(gears=gears))
+    assert main(['home', '--node', wanted]) == 2
+    assert f'gearkin: {error}' in capsys.readouterr().err
 
 
 @pytest.mark.usefixtures('running')

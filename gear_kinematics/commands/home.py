@@ -1,0 +1,30 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""`gearkin home`: tell a running node that the output shaft is at its home angle now."""
+
+import argparse
+
+from gear_kinematics.commands import ExitCode
+from gear_kinematics.commands.output import complain, warn_of_shared_memory
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument(
+        '--node',
+        default='',
+        metavar='FULL_NAME',
+        help='the node, such as /left/gear_state_publisher (default: the only one that runs)',
+    )
+    parser.add_argument(
+        '--actuator', default='', metavar='NAME', help='actuator of an arm (default: all)'
+    )
+
+
+def run(options: argparse.Namespace) -> ExitCode:
+    """Home the node, and print where the shaft was and is; a refusal fails."""
+    warn_of_shared_memory(participants=1)
+    from gear_kinematics.watch.homing import home  # noqa: PLC0415, needs ROS
+
+    answer = home(options.node, options.actuator)
+    (print if answer.done else complain)(answer.text)
+    return ExitCode.DONE if answer.done else ExitCode.FAILED
