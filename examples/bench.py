@@ -13,21 +13,19 @@ from std_srvs.srv import SetBool, Trigger
 
 def call(name: str, kind: type = Trigger, **values: bool) -> None:
     client = node.create_client(kind, f'/gear_simulator/{name}')
-    if not client.wait_for_service(10.0):
-        raise SystemExit('no gear_simulator is running')
-    answer = rclpy.Future()
-    while not answer.done():  # an answer is lost if its sender has not discovered this node yet
+    while client.wait_for_service(10.0):
         answer = client.call_async(kind.Request(**values))
         rclpy.spin_until_future_complete(node, answer, timeout_sec=5.0)
-    print(answer.result().message)
+        if answer.done():  # else it was lost, as its sender had not discovered this node yet
+            return print(answer.result().message)
+    raise SystemExit('no gear_simulator is running')
 
 
 parser = ArgumentParser(description=__doc__)
 parser.add_argument('what', help='wear, power_cycle, or the CSV file to write')
-what = parser.parse_args().what
 rclpy.init()
 node, output, resting = rclpy.create_node('bench'), [JointState(effort=[nan])], 0.001  # rad/s
-if what in {'wear', 'power_cycle'}:
+if (what := parser.parse_args().what) in {'wear', 'power_cycle'}:
     raise SystemExit(call(what))
 call('lock_rotor', SetBool, data=True)
 loads = node.create_publisher(Float64, '/load_torque', 10)
