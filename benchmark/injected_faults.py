@@ -30,7 +30,12 @@ from gear_kinematics.bag import Bag
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.share import share_directory
-from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
+from gear_kinematics.state.monitors import (
+    Connections,
+    DriverFacts,
+    EncoderMonitor,
+    InputMonitor,
+)
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.reach import FLOOR, STALEST
 from gear_kinematics.state.rotor_input import RotorInput
@@ -456,8 +461,8 @@ class Node:
         self.input = RotorInput(parameters)
         self.reference = TurnReference(self.input)
         self.encoder = OutputEncoder(parameters, self.reference)
-        self.monitor = InputMonitor(started=begun * 1e-9)
-        self.encoder_monitor = EncoderMonitor()
+        self.monitor, self.encoder_monitor = InputMonitor(), EncoderMonitor()
+        self.connections = Connections(DriverFacts(since=begun * 1e-9))
         self.due = begun + round(phase * SECOND)
         self.reports: list[tuple[int, str]] = []
         """Time, ns, and what is said; '' if all is well."""
@@ -498,8 +503,8 @@ class Node:
         """Take the diagnostics."""
         now, parameters = self.due * 1e-9, self.input.parameters
         reports = (
-            self.encoder_monitor.report(self.encoder, parameters, now),
-            self.monitor.report(self.input, now, self.encoder.reference),
+            self.encoder_monitor.report(self.encoder, parameters, now, self.connections.encoder),
+            self.monitor.report(self.input, now, self.connections, self.encoder.reference),
         )
         said = '; '.join(each.message for each in reports if each and each.level)
         self.reports.append((self.due, said))

@@ -107,4 +107,4 @@ def _print_summary(out: Path, result: ComputeResult) -> None:
             '' if rotor.referenced else 'the turns of the rotor are not known at the end',
         )
         for doubt in filter(None, doubts):
-            complain(f'{out}: {labelled(name, doubt)}')
+            complain(f'{out}: {labelled(name, str(doubt))}')

@@ -11,7 +11,8 @@ from gear_kinematics.measurement.commissioning.encoder_range import find_range
 from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.report.document import counted
 from gear_kinematics.state.effort_field import EffortField, questioned
-from gear_kinematics.state.velocity_field import VelocityField, VelocityMeaning, contradiction
+from gear_kinematics.state.statuses import Condition
+from gear_kinematics.state.velocity_field import VelocityField, VelocityMeaning
 from gear_kinematics.wire.batches import decode_joint_states
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import ARRAY_SIZES
@@ -52,9 +53,9 @@ def questions(
     velocities = VelocityField(float(1 / ratio) if ratio else np.nan)
     velocities.believed(stamp, values, float(np.min(steps[steps > _EQUAL], initial=1.0)))
     if len(given) and not given.any() and np.ptp(values[:, 0]) > _MOVED:
-        yield contradiction(VelocityMeaning.ZERO)
+        yield str(Condition.VELOCITIES_ARE(meaning=VelocityMeaning.ZERO))
     elif velocities.meaning:
-        yield velocities.meaning
+        yield str(velocities.meaning)
     field = EffortField()
     field.all_believed(values[:, 0], values[:, 2])
     if field.absent:

@@ -11,15 +11,14 @@ from rclpy.qos import QoSCompatibility, QoSProfile, ReliabilityPolicy, qos_check
 from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-from gear_kinematics.state.diagnostics import Fault, GraphFaults, StatusReport
+from gear_kinematics.state.statuses import Condition, Fact, GearReport
 
 _POLICIES = 'reliability', 'durability', 'deadline', 'liveliness', 'liveliness_lease_duration'
 """Policies in which a subscription can request more than a publisher offers."""
-_TWO_NODES = 'Stop one of the two nodes, or give each its own namespace.'
 
 
-def diagnostic_array(node: Node, reports: Mapping[str, StatusReport | None]) -> DiagnosticArray:
-    """Return the message for the reports that are not None, given by their subjects."""
+def diagnostic_array(node: Node, reports: Mapping[str, GearReport]) -> DiagnosticArray:
+    """Return the message for reports, given by their subjects."""
     name = node.get_fully_qualified_name()
     message = DiagnosticArray()
     message.header.stamp = node.get_clock().now().to_msg()
@@ -29,10 +28,9 @@ def diagnostic_array(node: Node, reports: Mapping[str, StatusReport | None]) -> 
             name=f'{name.removeprefix("/")}: {subject}',
             hardware_id=name,
             message=report.message,
-            values=[KeyValue(key=key, value=value) for key, value in report.values.items()],
+            values=[KeyValue(key=key, value=value) for key, value in report.texts.items()],
         )
         for subject, report in reports.items()
-        if report
     ]
     return message
 
@@ -43,20 +41,19 @@ def find_faults(
     publishers: Iterable[Publisher],
     exclusive: Collection[str],
     clash: Callable[[str, str], bool] = lambda _other, _topic: True,
-) -> GraphFaults:
+) -> list[Fact]:
     """Find incompatible QoS, an error for a node's subscriptions and a warning for its publishers.
 
     Another publisher on an exclusive topic is a warning if it clashes, given the full name of its
     node and the topic, as is another node of the same name.
     """
     own_name = node.get_fully_qualified_name()
-    errors = [
-        _incompatible(subscription.topic, policy, f'driver {full_name(driver)}')
+    faults = [
+        Condition.DRIVER_QOS(topic=subscription.topic, policy=policy, node=full_name(driver))
         for subscription in subscriptions
         for driver in node.get_publishers_info_by_topic(subscription.topic)
         for policy in _unmet(subscription.qos_profile, driver.qos_profile)
     ]
-    warnings = []
     shared = defaultdict(list)
     for topic in (publisher.topic for publisher in publishers):
         offers = {
@@ -64,8 +61,8 @@ def find_faults(
         }
         # Ask the graph: in a publisher's own profile some policies are left to the middleware.
         if own_offer := offers.pop(own_name, None):
-            warnings += [
-                _incompatible(topic, policy, f'listener {full_name(listener)}')
+            faults += [
+                Condition.LISTENER_QOS(topic=topic, policy=policy, node=full_name(listener))
                 for listener in node.get_subscriptions_info_by_topic(topic)
                 for policy in _unmet(listener.qos_profile, own_offer)
             ]
@@ -73,22 +70,16 @@ def find_faults(
             for other in offers:
                 if clash(other, topic):
                     shared[other].append(topic)
-    for other, topics in shared.items():
-        warnings.append(Fault(f'{other} also publishes {", ".join(topics)}', _TWO_NODES))
+    faults += [Condition.ALSO_PUBLISHES(node=other, topics=shared[other]) for other in shared]
     names = node.get_node_names_and_namespaces()
     if names.count((node.get_name(), node.get_namespace())) > 1:
-        warnings.append(Fault(f'another node is named {own_name}', _TWO_NODES))
-    return GraphFaults(errors, warnings)
+        faults.append(Condition.SAME_NAME(node=own_name))
+    return faults
 
 
 def full_name(endpoint: TopicEndpointInfo) -> str:
     """Return the full name of the node of an endpoint."""
     return f'{endpoint.node_namespace.rstrip("/")}/{endpoint.node_name}'
-
-
-def _incompatible(topic: str, policy: str, other: str) -> Fault:
-    advice = 'Change the quality of service of one of the two.'
-    return Fault(f'incompatible QoS on {topic}: {policy} ({other})', advice)
 
 
 def _unmet(requested: QoSProfile, offered: QoSProfile) -> Iterator[str]:

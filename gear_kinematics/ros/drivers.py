@@ -1,7 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The inputs of the node: subscriptions to drivers, and the messages lost on the way."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 from rclpy.event_handler import QoSRequestedIncompatibleQoSInfo, SubscriptionEventCallbacks
@@ -11,8 +11,8 @@ from rclpy.qos_overriding_options import QoSOverridingOptions
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.ros.workarounds.private import pass_message_info, with_info
-from gear_kinematics.state.diagnostics import DriverMonitor
 from gear_kinematics.state.losses import Losses
+from gear_kinematics.state.monitors import DriverFacts
 
 DEPTH = 2000
 """Queued messages on either side of a topic: those of a driver at several kHz while the node is
@@ -31,13 +31,13 @@ class DriverInput:
         node: Node,
         topic: str,
         on_message: Callable[[bytes], None],
-        monitors: Sequence[DriverMonitor],
+        facts: DriverFacts,
     ) -> None:
-        """Subscribe; `on_message` gets the bytes of each message."""
+        """Subscribe; `on_message` gets the bytes of each message, and `facts` are kept."""
         self._node = node
         self._topic = topic
         self._on_message = on_message
-        self._monitors = monitors
+        self._facts = facts
         self._subscribe()
 
     def _subscribe(self) -> None:
@@ -77,15 +77,14 @@ class DriverInput:
         Losses are unknown while there are two drivers, whose numbers are not told apart, and where
         the middleware does not number messages.
         """
-        losses, before = self._losses, self._monitors[0].drivers
+        losses, facts, before = self._losses, self._facts, self._facts.publishers
         drivers = self.subscription.get_publisher_count()
         several = max(before, drivers) > 1
         # The first number of a driver in place of one that has ended says nothing.
         replaced = before == 0 < drivers and self._heard
         if several:
             losses.next = None
-        for monitor in self._monitors:
-            monitor.drivers = drivers
-            monitor.lost += 0 if several or replaced else losses.missing
-            monitor.losses_known = losses.numbered and not several and not replaced
+        facts.publishers = drivers
+        facts.lost += 0 if several or replaced else losses.missing
+        facts.losses_known = losses.numbered and not several and not replaced
         losses.missing, self._heard = 0, losses.next is not None

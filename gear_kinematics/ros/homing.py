@@ -16,8 +16,9 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.arm import full_name, labelled
 from gear_kinematics.parameters.home_file import read_home, write_home
-from gear_kinematics.state.diagnostics import InputMonitor
+from gear_kinematics.state.monitors import InputMonitor
 from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.statuses import Condition
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.cdr import SECOND
 
@@ -116,10 +117,10 @@ class Homing:
         """
         self._node, self._path, self._shafts, self._set = node, path, shafts, set(kept)
         for name, shaft in shafts.items():
-            shaft.monitor.zero_kept = 'lost at restart: set home_file'
+            shaft.monitor.zero_kept = Condition.ZERO_IS_LOST()
             if path:
-                known = f'kept in {path}' if name in kept else 'not kept: not homed yet'
-                shaft.monitor.zero_kept = known
+                known = Condition.ZERO_KEPT if name in kept else Condition.ZERO_NOT_SET
+                shaft.monitor.zero_kept = known(path=path)
             if name:
                 node.create_service(Trigger, f'~/{name}/home', partial(self._answer, [name]))
         node.create_service(Trigger, '~/home', self.answer)
@@ -134,9 +135,9 @@ class Homing:
         }
         try:
             write_home(self._path, zeros, self._node.get_fully_qualified_name())
-            kept = f'kept in {self._path}'
+            kept = Condition.ZERO_KEPT(path=self._path)
         except OSError as error:  # the zeros hold until the node ends
-            kept = f'not kept: {self._path}: {error.strerror}'
+            kept = Condition.ZERO_NOT_KEPT(path=self._path, why=error.strerror)
         for name in zeros:
             self._shafts[name].monitor.zero_kept = kept
 

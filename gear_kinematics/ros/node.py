@@ -35,6 +35,7 @@ from gear_kinematics.ros.other_gears import OtherGears
 from gear_kinematics.ros.outputs import Outputs, PublishingNode, latched
 from gear_kinematics.state.arm_state import ArmState
 from gear_kinematics.state.gear_state import RotorAnswer
+from gear_kinematics.state.monitors import Connections
 from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.joint_reader import JOINT_MISSING, RejectedInputError
@@ -82,6 +83,7 @@ class GearStatePublisher(PublishingNode):
         self._known = {full: PARAMETERS[key] for full, (_, key) in self._named.items()}
         self._arm = ArmState({name: each.state for name, each in self._actuators.items()})
         self._referenced: bool | None = None  # as it was published last
+        self._connections = Connections()
 
         self._outputs = Outputs(self, self._note_subscribers, self._note_unsent)
         self._topics = self._arm.topics
@@ -103,14 +105,13 @@ class GearStatePublisher(PublishingNode):
         self.create_timer(
             _REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME)
         )
-        every = self._actuators.values()
         self._rotor_driver = DriverInput(
-            self, topics.ROTOR_STATE, self._on_rotor_state, [each.monitor for each in every]
+            self, topics.ROTOR_STATE, self._on_rotor_state, self._connections.rotor
         )
-        monitors = [each.encoder_monitor for each in every]
+        encoder = self._connections.encoder
         self._drivers = (
             self._rotor_driver,
-            DriverInput(self, topics.OUTPUT_ENCODER, self._on_output_encoder, monitors),
+            DriverInput(self, topics.OUTPUT_ENCODER, self._on_output_encoder, encoder),
         )
         inputs = {name: each.state.input for name, each in self._actuators.items()}
         self._driver_log = DriverLog(self, inputs, lambda: self._arm.joints)
@@ -218,7 +219,7 @@ class GearStatePublisher(PublishingNode):
         self._publish_referenced(changed)
         self._outputs.send(self._arm.encode(answers))
         for name, answer in answers:
-            self._actuators[name].note_published(answer)
+            self._actuators[name].state.note_published(answer)
         self._publish_referenced(self._found_turns(answers))  # by the output's encoder
 
     def _found_turns(self, taken: Iterable[tuple[str, object]]) -> dict[str, bool]:
@@ -252,7 +253,7 @@ class GearStatePublisher(PublishingNode):
     def _on_output_encoder(self, data: bytes) -> None:
         now, errors = time.monotonic(), []
         for name, answer in self._arm.encoder(data, self._now):
-            self._actuators[name].encoder_monitor.last_input = now
+            self._actuators[name].state.encoder_monitor.last_input = now
             if isinstance(answer, RejectedInputError):
                 self._warn_of(topics.OUTPUT_ENCODER, name, answer)
             else:
@@ -262,8 +263,7 @@ class GearStatePublisher(PublishingNode):
 
     def _note_unsent(self, publisher: Publisher, error: Exception) -> None:
         # For example, with history keep_all and a blocked subscriber.
-        for actuator in self._actuators.values():
-            actuator.monitor.unsent += 1
+        self._connections.unsent += 1
         self._warn(f'{publisher.topic_name} not sent: {error}')
 
     def _now(self) -> int:
@@ -274,7 +274,7 @@ class GearStatePublisher(PublishingNode):
             actuator = self._actuators[name]
             if str(rejection) == JOINT_MISSING not in actuator.state.input.rejected:
                 return  # a message of another driver on a shared topic, and no input
-            actuator.monitor.last_input = time.monotonic()
+            actuator.state.monitor.last_input = time.monotonic()
         if time.monotonic() >= self._next_warning:
             of, detail = f' of {name}' if name else '', rejection.detail
             self._warn(f'{topic}{of} rejected: {rejection}{detail and f": {detail}"}')
@@ -283,9 +283,9 @@ class GearStatePublisher(PublishingNode):
         for driver in self._drivers:
             driver.count_losses()
         self._look_at_graph()
-        monitors = [each.monitor for each in self._actuators.values()]
-        now, last = time.monotonic(), max(each.last_input or 0.0 for each in monitors)
-        self._driver_log.update(monitors[0].drivers, now - (last or now))
+        inputs = [each.state.monitor.last_input for each in self._actuators.values()]
+        now, last = time.monotonic(), max(each or 0.0 for each in inputs)
+        self._driver_log.update(self._connections.rotor.publishers, now - (last or now))
         self._publish_diagnostics()
 
     def _publish_diagnostics(self) -> None:
@@ -293,21 +293,18 @@ class GearStatePublisher(PublishingNode):
         reports = {
             labelled(name, subject): report
             for name, each in self._actuators.items()
-            for subject, report in each.reports(now).items()
+            for subject, report in each.state.report(now, self._connections).items()
         }
         message = serialize_message(diagnostic_array(self, reports))
         self._outputs.send([(topics.DIAGNOSTICS, message)])
 
     def _look_at_graph(self) -> None:
         """Check the connections with other nodes, and log new faults."""
-        monitors = [each.monitor for each in self._actuators.values()]
-        known = monitors[0].graph
         inputs = (driver.subscription for driver in self._drivers)
         publishers = self._outputs.publishers.values()
         states = [topic for topic, base in self._topics.items() if base in topics.STATE_TOPICS]
         found = find_faults(self, inputs, publishers, states, self._other_gears.clash)
-        for monitor in monitors:
-            monitor.graph = found
-        for fault in (*found.errors, *found.warnings):
-            if fault not in (*known.errors, *known.warnings):
-                self.get_logger().warning(fault)
+        for fault in found:
+            if fault not in self._connections.graph:
+                self.get_logger().warning(str(fault))
+        self._connections.graph = found

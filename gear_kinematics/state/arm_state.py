@@ -4,17 +4,18 @@
 import math
 from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from functools import cache, lru_cache
+from functools import lru_cache, partial
 from typing import TypeVar
 
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.gear_state import GearState, RotorAnswer
-from gear_kinematics.wire.cdr import JointStateTemplate
+from gear_kinematics.wire.cdr import STAMP_BYTES, JointStateTemplate
 from gear_kinematics.wire.joint_reader import JointMessage, JointsReader, RejectedInputError
 from gear_kinematics.wire.topics import TRANSMISSION_ERROR, topic_of
 
+_NO_STAMP = bytes(8)
 _Answer = TypeVar('_Answer')
 _Row = tuple[JointStateTemplate, Sequence[float]]
 _Take = Callable[[GearState, JointMessage, Callable[[], int]], _Answer]
@@ -79,7 +80,8 @@ class ArmState:
     ) -> _Taken[_Answer]:
         if self._single:
             return [_outcome('', take, self._single, data, now)]
-        now = cache(now)
+        if data[STAMP_BYTES] == _NO_STAMP:
+            now = partial(int, now())  # all joints get the same
         found: Sequence[JointMessage | None]
         try:
             found = joints.read(data)

@@ -13,11 +13,13 @@ from gear_kinematics.correction.corrector import Correction, Corrector
 from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics import Mechanism, RotorSample
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.loads import LoadEstimator
+from gear_kinematics.state.loads import LoadEstimator, PreloadMonitor
+from gear_kinematics.state.monitors import Connections, EncoderMonitor, InputMonitor
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.rotor_samples import RotorSamples
 from gear_kinematics.state.state_messages import OutputMessages, Row, state_messages
+from gear_kinematics.state.statuses import GearReport
 from gear_kinematics.state.turn_reference import TurnReference
 from gear_kinematics.wire.joint_reader import JointMessage, RejectedInputError
 from gear_kinematics.wire.topics import (
@@ -73,6 +75,9 @@ class GearState:
         self._configure(parameters, calibration)
         self.input = RotorInput(parameters)
         self.output_encoder = OutputEncoder(parameters, TurnReference(self.input))
+        self.monitor, self.encoder_monitor = InputMonitor(), EncoderMonitor()
+        self.preload_monitor: PreloadMonitor | None = None
+        """Set where samples are noted for reports on the preload."""
 
     def apply(self, parameters: NodeParameters, calibration: Calibration | None) -> None:
         """Change the parameters: all counts go on, and the turns if their encoders are the same.
@@ -167,6 +172,31 @@ class GearState:
         """Return topic and message of transmission errors, if their topic is chosen."""
         encode, chosen = self.messages.angle.encode, self.errors_chosen
         return [(TRANSMISSION_ERROR, encode(e.stamp, [e.error])) for e in errors if chosen]
+
+    def note_published(self, answer: RotorAnswer) -> None:
+        """Take note, for the next report, that a message of the rotor was answered."""
+        sample, segment, referenced, withheld, *_ = answer
+        self.monitor.published += not withheld
+        self.monitor.unreferenced += not referenced
+        if self.preload_monitor:
+            self.preload_monitor.follow(sample, segment)
+
+    def report(self, now: float, connections: Connections) -> dict[str, GearReport]:
+        """Report facts by subject on the time since the last report, until now.
+
+        Args:
+            now: time of a steady clock, s, as in `monitors`.
+            connections: those of the node.
+        """
+        encoder = self.output_encoder
+        rotor = self.monitor.report(self.input, now, connections, encoder.reference)
+        reports = {'rotor input': rotor}
+        limits, driver = self.parameters, connections.encoder
+        if errors := self.encoder_monitor.report(encoder, limits, now, driver):
+            reports['transmission error'] = errors
+        if self.preload_monitor:
+            reports['preload'] = self.preload_monitor.report()
+        return reports
 
     def samples(self, messages: Sequence[bytes], received: Sequence[int]) -> RotorSamples:
         """Process many messages of the rotor for their samples; see `RotorInput.accept_batch`."""

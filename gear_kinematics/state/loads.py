@@ -19,9 +19,9 @@ from gear_kinematics.kinematics.loads import AT_REST, BranchLoads, Inertia, Load
 from gear_kinematics.kinematics.motion import BranchPosition, closed_form
 from gear_kinematics.kinematics.preload import Pair
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.diagnostics import OK, WARN, StatusReport
 from gear_kinematics.state.rotor_samples import RotorSamples
 from gear_kinematics.state.state_messages import Row
+from gear_kinematics.state.statuses import Condition, GearReport
 from gear_kinematics.wire.batches import Array, encode
 from gear_kinematics.wire.cdr import SECOND, JointStateTemplate, Template, WrenchesTemplate
 from gear_kinematics.wire.topics import BRANCH_LOADS, JOINT_LOADS
@@ -202,24 +202,21 @@ class PreloadMonitor:
         stamp, position, velocity, effort = sample
         self._rows.append((stamp, *position, velocity, effort, 0, 0, segment, True))
 
-    def report(self) -> StatusReport:
+    def report(self) -> GearReport:
         """Report on the time since the last report."""
         samples = RotorSamples.of(self._rows, np.zeros(0, np.int64))
         self._rows.clear()
         torques = self._loads.follow_batch(samples).torque
         known = np.isfinite(torques)
         if not known.any():
-            return StatusReport(OK, f'unknown: no {self._loads.needed} in rotor_state', {})
+            return GearReport([Condition.MARGIN_UNKNOWN(lacking=self._loads.needed)], {})
         margins, stamps = self._loads.sharing.margin(torques[known]), samples.stamp[known]
         least = float(margins.min())
         steps = np.diff(stamps, prepend=stamps[0]).clip(1, SECOND)
-        share = f'{100.0 * np.average(margins <= 0.0, weights=steps):.1f}'
-        values = {'preload (N·m)': f'{self._preload:.4g}'}
-        for name, margin in (('margin', margins[-1]), ('least margin', least)):
-            values[f'{name} (N·m)'] = f'{margin:.4g}'
-            values[f'{name} (% of the preload)'] = f'{100.0 * margin / self._preload:.1f}'
+        share = 100.0 * float(np.average(margins <= 0.0, weights=steps))
+        values = {'preload (N·m)': self._preload}
+        for name, margin in (('margin', float(margins[-1])), ('least margin', least)):
+            values[f'{name} (N·m)'] = margin
+            values[f'{name} (% of the preload)'] = 100.0 * margin / self._preload
         values['out of mesh (% of the time)'] = share
-        if least > 0.0:
-            return StatusReport(OK, 'ok', values)
-        values['advice'] = 'Raise the preload (gearkin preload) or lower the torque of the output.'
-        return StatusReport(WARN, f'a branch was out of mesh for {share} % of the time', values)
+        return GearReport([Condition.OUT_OF_MESH(share=share)] if least <= 0.0 else [], values)

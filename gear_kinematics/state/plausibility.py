@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.state.reach import FLOOR, REGULAR, STALEST, Reading, RotorLimits
+from gear_kinematics.state.statuses import Condition, Fact
 
 _COARSEST = TURN / 6.0  # rad; what a Hall sensor of one pole pair resolves
 _EQUAL = 1e-9  # rad, below which steps differ by rounding alone
@@ -86,22 +87,20 @@ class Plausibility:
         self._look_always()
 
     @property
-    def jumped(self) -> str:
-        """The last jump of the encoder, with its size and time; '' if there was none."""
-        if not (jump := self.jump):
-            return ''
-        stamp = f'{jump.stamp / 1e9:.3f} s'
-        return f"the rotor's encoder jumped by {jump.size:.4g} rad at {stamp}"
+    def jumped(self) -> Fact | None:
+        """The last jump of the encoder, if there was one."""
+        jump = self.jump
+        return Condition.JUMPED(angle=jump.size, time=jump.stamp / 1e9) if jump else None
 
     @property
-    def beyond_limits(self) -> str:
-        """How the rotor has moved beyond its limits, and which these are; '' if it has not."""
-        found = []
+    def beyond_limits(self) -> Fact | None:
+        """How the rotor has moved beyond its limits, and which these are, if it has."""
+        which = []
         if self.seen_speed:
-            found.append(f'{self.seen_speed:.4g} rad/s exceed max_rotor_speed')
+            which.append(Condition.BEYOND_SPEED(speed=self.seen_speed))
         if self.seen_acceleration:
-            found.append(f'{self.seen_acceleration:.4g} rad/s² exceed max_rotor_acceleration')
-        return ', '.join(found)
+            which.append(Condition.BEYOND_ACCELERATION(acceleration=self.seen_acceleration))
+        return Condition.BEYOND_LIMITS(which=which) if which else None
 
     def set_back(self, time: int) -> None:
         """Note that the clock was set back by so much, ns, since the last reading."""

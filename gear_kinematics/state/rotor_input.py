@@ -22,6 +22,7 @@ from gear_kinematics.state.rotor_settings import (
     longest_silence,
     torque_factor,
 )
+from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.state.velocity_field import VelocityField
 from gear_kinematics.wire.batches import Array, decode_joint_states
 from gear_kinematics.wire.cdr import LATEST
@@ -65,8 +66,8 @@ class RotorInput:
         self._reader = JointReader(parameters.rotor_joint)
         self.zero = split_turns(parameters.rotor_zero)
         """The position in use: `rotor_zero`, or what a reference put in its place."""
-        self.origin = ''
-        """What told the turns last."""
+        self.origin: Fact | None = None
+        """Source of the turn count: homing or the output's encoder."""
         self._restarts = 0
         """Counts homing, references by the output, and changes of the encoders' parameters."""
         self._disorder = Disorder()
@@ -162,11 +163,11 @@ class RotorInput:
             RuntimeError: before the first valid message.
         """
         zero = self.turns.home(rotor_angle, self._parameters.rotor_direction)
-        self.zero, self.origin = split_turns(zero), 'homed'
+        self.zero, self.origin = split_turns(zero), Condition.HOMED()
         self._restarts += 1
         return zero
 
-    def refer(self, origin: str, turns: int = 0, angle: float = 0.0) -> None:
+    def refer(self, origin: Fact, turns: int = 0, angle: float = 0.0) -> None:
         """Add 2π `turns` + `angle`, rad, to the rotor angle from the next message on.
 
         The turns are known then, from an origin, and a new segment begins; `parameters` remain.

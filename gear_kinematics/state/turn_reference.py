@@ -19,6 +19,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN, repeated
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.output_range import range_fault
 from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.wire.cdr import SECOND
 
 SAMPLES = 60
@@ -38,7 +39,7 @@ class Decision(NamedTuple):
     margin: float  # of which the budget must be less, as it could explain other turns
     tolerance: float  # beyond which the error contradicts a count that is known
     measured: float  # of the last one, in the turn that the turns or the range tell
-    outside: str  # how the measured angle contradicts output_range, in words; or ''
+    outside: Fact | None  # how the measured angle contradicts output_range, if it does
 
     @property
     def used(self) -> float:
@@ -51,14 +52,13 @@ class Decision(NamedTuple):
         return abs(self.distance) <= self.budget < self.margin and not self.outside
 
     @property
-    def disagreement(self) -> str:
-        """How the encoder contradicts the rotor's count; empty if it does not."""
+    def disagreement(self) -> Fact | None:
+        """How the encoder contradicts the rotor's count, if it does."""
         apart = self.measured - self.output_angle
         if self.outside or abs(apart) <= self.tolerance:
             return self.outside
-        angles = math.degrees(self.output_angle + apart), math.degrees(self.output_angle)
-        what = 'output_encoder disagrees: {:.2f}° by the encoder, {:.2f}° by the rotor'
-        return what.format(*angles)
+        encoder, rotor = math.degrees(self.measured), math.degrees(self.output_angle)
+        return Condition.DISAGREES(encoder_deg=encoder, rotor_deg=rotor)
 
 
 def nearest_turns(ratio: GearRatio, error: float) -> tuple[int, float]:
@@ -119,7 +119,7 @@ def decide(
             turns = round((measured - angle) / step)
             distance, margin = measured - angle - turns * step, 0.5 * min(abs(step), TURN)
     tolerance = budget if period else budget + margin
-    outside = range_fault(parameters, measured, budget, repeats) if budget < margin else ''
+    outside = range_fault(parameters, measured, budget, repeats) if budget < margin else None
     return Decision(angle, error, turns, distance, budget, margin, tolerance, measured, outside)
 
 
@@ -168,7 +168,7 @@ class TurnReference:
         self._block = ErrorBlock()
         self.decision: Decision | None = None
         """The latest on the present count."""
-        self.disagreement = ''
+        self.disagreement: Fact | None = None
         """How the encoder contradicts the present count; it stays until a block that can tell the
         turns apart agrees, as one in fast motion may agree with anything."""
 
@@ -198,10 +198,10 @@ class TurnReference:
         """Add turns, or what is missing to the measured angle, to the rotor's count."""
         rotor, parameters = self.rotor, self.rotor.parameters
         if parameters.single_turn:
-            rotor.refer('turns of a single-turn encoder, exact', decision.turns)
+            rotor.refer(Condition.EXACT_TURNS(), decision.turns)
             return
         if period := parameters.rotor_period:
-            rotor.refer('periods of the encoder, exact', *repeated(decision.turns, period))
+            rotor.refer(Condition.EXACT_PERIODS(), *repeated(decision.turns, period))
             return
         missing = decision.measured - decision.output_angle
         if abs(missing) <= decision.budget and math.isfinite(rotor.turns.unseen_travel):
@@ -209,5 +209,5 @@ class TurnReference:
         elif not parameters.output_range:  # the count can be that of a rotor switched on elsewhere
             output_angle = decision.output_angle
             missing = math.remainder(output_angle + decision.error, TURN) - output_angle
-        origin = f'output encoder, ± {math.degrees(decision.budget):.2g}°'
+        origin = Condition.MEASURED(uncertainty_deg=math.degrees(decision.budget))
         rotor.refer(origin, angle=parameters.gear.gear_ratio.rotor_angle(missing))

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.wire.batches import Array
 
 SPAN = 100_000_000
@@ -32,11 +33,6 @@ class VelocityMeaning(StrEnum):
     OUTPUT = 'the velocity of the output'
     OPPOSITE = 'the velocity with the opposite sign'
     UNKNOWN = 'an unknown quantity'
-
-
-def contradiction(finding: VelocityMeaning) -> str:
-    """Say that velocities contradict the positions, and what they seem to be."""
-    return f'the velocities contradict the positions: they seem to be {finding}'
 
 
 class VelocityField:
@@ -68,13 +64,13 @@ class VelocityField:
         self._readings: list[tuple[int, float, float]] = []
 
     @property
-    def meaning(self) -> str:
-        """What the velocities seem to be; '' unless they contradict the positions."""
+    def meaning(self) -> Fact | None:
+        """What the velocities seem to be, if they contradict the positions."""
         if not self.contradicts:
-            return ''
-        seem = contradiction(self.finding)
-        unknown = self.finding is VelocityMeaning.UNKNOWN and math.isfinite(self.factor)
-        return f'{seem}, {self.factor:.3g} times the slope' if unknown else seem
+            return None
+        if self.finding is VelocityMeaning.UNKNOWN and math.isfinite(self.factor):
+            return Condition.VELOCITIES_UNKNOWN(meaning=self.finding, factor=self.factor)
+        return Condition.VELOCITIES_ARE(meaning=self.finding)
 
     def believed(self, stamps: Array, values: Array, finest: float) -> Array:
         """Note readings in order of time.

@@ -80,9 +80,9 @@ class InputHealth:
             max_speed=self._fastest,
             longest_gaps=tuple(self._longest),
             referenced=not (rotor_input.turns.unknown_gaps or rotor_input.plausibility.jumped),
-            jumped=rotor_input.plausibility.jumped,
-            velocity_is=rotor_input.velocity_field.meaning,
-            beyond_limits=rotor_input.plausibility.beyond_limits,
+            jumped=str(rotor_input.plausibility.jumped or ''),
+            velocity_is=str(rotor_input.velocity_field.meaning or ''),
+            beyond_limits=str(rotor_input.plausibility.beyond_limits or ''),
         )
 
 

@@ -12,7 +12,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.wording import shown
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.shape.angles import arc
-from gear_kinematics.state.diagnostics import ERROR, OK, WARN
+from gear_kinematics.state.statuses import ERROR, OK, WARN
 from gear_kinematics.watch.drivers import DriverTopic
 from gear_kinematics.watch.gear import GearNode, JointValue, Status
 from gear_kinematics.wire import topics

@@ -10,6 +10,7 @@ from rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile, Reliabilit
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.ros.diagnostics import find_faults
+from gear_kinematics.state.statuses import Condition
 
 pytestmark = pytest.mark.live
 
@@ -60,12 +61,11 @@ def test_listener_that_requests_more_than_offered_is_a_warning(make, offered, re
     output = publisher(mine, **offered)
     listener = subscription(other, 'out', **requested)
     name = other.get_fully_qualified_name()
-    assert find_faults(mine, [], [output], ['out']) == (
-        [],
-        [f'incompatible QoS on out: {policy} (listener {name})' for policy in policies],
-    )
+    assert find_faults(mine, [], [output], ['out']) == [
+        Condition.LISTENER_QOS(topic='out', policy=policy, node=name) for policy in policies
+    ]
     other.destroy_subscription(listener)
-    assert find_faults(mine, [], [output], ['out']) == ([], [])
+    assert find_faults(mine, [], [output], ['out']) == []
 
 
 @pytest.mark.parametrize(
@@ -77,12 +77,12 @@ def test_driver_that_offers_less_than_requested_is_an_error(make, reliability, f
     topic_input = subscription(mine, reliability=ReliabilityPolicy[reliability])
     name = driver.get_fully_qualified_name()
     publisher(driver, 'in')
-    assert find_faults(mine, [topic_input], [], []) == ([], [])
+    assert find_faults(mine, [topic_input], [], []) == []
     wrong = publisher(driver, 'in', **BEST_EFFORT)
-    errors = [f'incompatible QoS on in: RELIABILITY (driver {name})'] * found
-    assert find_faults(mine, [topic_input], [], []) == (errors, [])
+    faults = [Condition.DRIVER_QOS(topic='in', policy='RELIABILITY', node=name)] * found
+    assert find_faults(mine, [topic_input], [], []) == faults
     driver.destroy_publisher(wrong)
-    assert find_faults(mine, [topic_input], [], []) == ([], [])
+    assert find_faults(mine, [topic_input], [], []) == []
 
 
 def test_other_publishers_on_exclusive_topics_are_named_with_these(make):
@@ -92,38 +92,35 @@ def test_other_publishers_on_exclusive_topics_are_named_with_these(make):
         publisher(other, topic)
     publisher(third, 'c')
     namespace = mine.get_namespace()
-    assert find_faults(mine, [], outputs, ['a', 'b', 'c']) == (
-        [],
-        [f'{namespace}/other also publishes a, c', f'{namespace}/third also publishes c'],
-    )
+    assert find_faults(mine, [], outputs, ['a', 'b', 'c']) == [
+        Condition.ALSO_PUBLISHES(node=f'{namespace}/other', topics=['a', 'c']),
+        Condition.ALSO_PUBLISHES(node=f'{namespace}/third', topics=['c']),
+    ]
 
 
 def test_outputs_of_the_node_itself_may_share_a_topic(make):
     mine = make('mine')
-    assert find_faults(mine, [], [publisher(mine), publisher(mine)], ['out']) == ([], [])
+    assert find_faults(mine, [], [publisher(mine), publisher(mine)], ['out']) == []
 
 
 def test_node_of_the_same_name_is_a_warning_in_the_same_namespace_only(make):
     mine = make('mine')
     make('mine', f'{mine.get_namespace()}/deeper')
-    assert find_faults(mine, [], [], []) == ([], [])
+    assert find_faults(mine, [], [], []) == []
     make('mine')
-    assert find_faults(mine, [], [], []) == (
-        [],
-        [f'another node is named {mine.get_fully_qualified_name()}'],
-    )
+    same = Condition.SAME_NAME(node=mine.get_fully_qualified_name())
+    assert find_faults(mine, [], [], []) == [same]
 
 
 def test_name_in_the_root_namespace_begins_with_one_slash(make):
     mine = make('mine')
     publisher(make('stranger', ''), f'{mine.get_namespace()}/out')
-    [fault] = find_faults(mine, [], [publisher(mine)], ['out']).warnings
-    assert fault == '/stranger also publishes out'
-    assert fault.advice == 'Stop one of the two nodes, or give each its own namespace.'
+    faults = find_faults(mine, [], [publisher(mine)], ['out'])
+    assert faults == [Condition.ALSO_PUBLISHES(node='/stranger', topics=['out'])]
 
 
 def test_output_that_is_not_in_the_graph_yet_is_not_checked(make, monkeypatch):
     mine = make('mine')
     subscription(mine, 'out', **LATCHED)
     monkeypatch.setattr(Node, 'get_publishers_info_by_topic', lambda *_: [])
-    assert find_faults(mine, [], [publisher(mine)], ['out']) == ([], [])
+    assert find_faults(mine, [], [publisher(mine)], ['out']) == []

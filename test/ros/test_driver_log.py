@@ -109,7 +109,7 @@ def test_node_logs_silence_of_its_joint_on_a_shared_topic(make, capfd):
     for stamp, name, position in ((1, 'rotor', 5.0), (2, 'wheel', 0.0), (9, 'rotor', 0.0)):
         node._on_rotor_state(rotor_bytes(stamp * SECOND, [name], [position]))
         if name == 'rotor':
-            node._actuators[''].monitor.last_input -= 1.5
+            node._actuators[''].state.monitor.last_input -= 1.5
         node._report()
     said = capfd.readouterr().err
     assert said.count('/shared/rotor_state has stopped: no input for ') == 2

@@ -12,6 +12,7 @@ from std_srvs.srv import Trigger
 
 from gear_kinematics.parameters.files import ConfigError
 from gear_kinematics.ros.live import running_node
+from gear_kinematics.state.monitors import Connections
 
 pytestmark = pytest.mark.live
 
@@ -34,11 +35,7 @@ def home(node):
 
 
 def values_of(node):
-    return (
-        node._actuators['']
-        .monitor.report(node._actuators[''].state.input, time.monotonic())
-        .values
-    )
+    return node._actuators[''].state.report(time.monotonic(), Connections())['rotor input'].texts
 
 
 # With the ratio -19: φ5 = -(position - zero)/19, so 61.5° is -20.394 rad at the rotor.

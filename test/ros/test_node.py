@@ -322,7 +322,7 @@ def test_inputs_that_overflow_the_queue_of_a_blocked_node_are_lost(make, context
         while node._actuators[''].state.input.received < number and time.monotonic() < deadline:
             executor.spin_once(timeout_sec=0.1)
         node._rotor_driver.count_losses()
-        return node._actuators[''].state.input.received, node._actuators[''].monitor.lost
+        return node._actuators[''].state.input.received, node._connections.rotor.lost
 
     while not driver.get_subscription_count():
         executor.spin_once(timeout_sec=0.1)
@@ -343,7 +343,7 @@ def test_losses_are_counted_by_the_numbers_of_one_driver(make, monkeypatch):
             about = number and {'publication_sequence_number': number}
             node._rotor_driver._take(rotor_bytes(1, position=[1.0]), about)
         node._rotor_driver.count_losses()
-        return node._actuators[''].monitor.lost, node._actuators[''].monitor.losses_known
+        return node._connections.rotor.lost, node._connections.rotor.losses_known
 
     assert lost() == (0, True)
     assert lost(7, 8, 10) == (1, True)  # 1 to 6 were sent before the two were connected
@@ -479,7 +479,7 @@ def test_outputs_of_unknown_turns_are_marked_or_withheld(make, monkeypatch, outp
         DIAGNOSTICS,
         *given,
     ]  # in a second it may have turned unseen
-    assert node._actuators[''].monitor.unreferenced == 3
+    assert node._actuators[''].state.monitor.unreferenced == 3
 
 
 @pytest.mark.parametrize(

@@ -14,8 +14,10 @@ from validating import validate
 
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
-from gear_kinematics.state.diagnostics import ERROR, OK, WARN, InputMonitor
 from gear_kinematics.state.gear_state import GearState
+from gear_kinematics.state.monitors import Connections
+from gear_kinematics.state.statuses import Condition, Fact
+from gear_kinematics.state.velocity_field import VelocityMeaning
 from gear_kinematics.validation.causes import FindingCause
 
 MULTI = NodeParameters.load()
@@ -32,7 +34,7 @@ class Row(NamedTuple):
     """What is changed of the good message of each number."""
     counted: dict[str, Any]
     """The counts that are not 0."""
-    diagnosed: tuple[int, str] = (OK, 'ok')
+    diagnosed: tuple[Fact, ...] = ()
     found: FindingCause | None = None
     settings: NodeParameters = MULTI
     verdict: Verdict = Verdict.PASS
@@ -57,10 +59,10 @@ def part(changed, first=60, count=1) -> list[dict[str, Any] | bytes]:
 def rejected(cause: str, changed) -> Row:
     """Return the row of messages that are rejected, which are more than half of all."""
     bad = COUNT // 2 + 1
-    told = WARN, f'rejected: {cause} {bad}'
+    told = Condition.REJECTED(counts={cause: bad})
     found = FindingCause.MOSTLY_REJECTED
     counted = {'rejected': {cause: bad}}
-    return Row(part(changed, 20, bad), counted, told, found, verdict=Verdict.FAIL)
+    return Row(part(changed, 20, bad), counted, (told,), found, verdict=Verdict.FAIL)
 
 
 def moved(offset=0.0, stamp=0) -> list[dict[str, Any]]:
@@ -73,7 +75,10 @@ def at_speed(speed: float, **fields) -> list[dict[str, Any]]:
     return [{'position': [speed * k / 100 + STEP * (k % 2)], **fields} for k in range(COUNT)]
 
 
-JUMPED = "the rotor's encoder jumped by 100 rad at 100.600 s"
+JUMPED = Condition.JUMPED(angle=pytest.approx(100.0, abs=0.01), time=pytest.approx(100.6))
+OUTSIDE = Condition.OUTSIDE(
+    angle_deg=pytest.approx(-71.77, abs=0.01), low_deg=0.0, high_deg=math.degrees(1.0)
+)
 ROWS = {
     'none': Row(part({}), {}),
     'another joint beside': Row(
@@ -89,14 +94,14 @@ ROWS = {
     'stray reading': Row(
         part({'position': [1e4]}),
         {'rejected': {'implausible': 1}},
-        (WARN, 'rejected: implausible 1'),
+        (Condition.REJECTED(counts={'implausible': 1}),),
     ),
     'repeated stamp': Row(part({'stamp': START + 59 * PERIOD}), {'duplicates': 1}),
     'no stamp': Row(part({'stamp': 0}), {'zero_stamps': 1}, found=FindingCause.ZERO_STAMPS),
     'no stamp, and a reading that repeats': Row(
         part({'stamp': 0}),
         {'zero_stamps': 1},
-        (WARN, 'zero stamps 1'),
+        (Condition.ZERO_STAMPS(count=1),),
         FindingCause.ZERO_STAMPS,
         replace(MULTI, rotor_encoder_range=1000.0),
     ),
@@ -105,24 +110,28 @@ ROWS = {
     ),
     'clock set back': Row(moved(stamp=-2 * SECOND), {'resets': 1}),
     'turns unseen': Row(
-        moved(stamp=SECOND), {'jumps': 1}, (ERROR, 'not referenced'), FindingCause.JUMPS, SINGLE
+        moved(stamp=SECOND),
+        {'jumps': 1},
+        (Condition.NOT_REFERENCED(),),
+        FindingCause.JUMPS,
+        SINGLE,
     ),
     'driver restarts': Row(
         moved(offset=100.0),
         {'rejected': {'implausible': 2}},
-        (ERROR, f'{JUMPED}; not referenced; rejected: implausible 2'),
+        (JUMPED, Condition.NOT_REFERENCED(), Condition.REJECTED(counts={'implausible': 2})),
         FindingCause.JUMPED,
     ),
     'rpm': Row(
         at_speed(50.0, velocity=[1500.0 / math.pi]),
         {},
-        (WARN, 'the velocities contradict the positions: they seem to be rpm'),
+        (Condition.VELOCITIES_ARE(meaning=VelocityMeaning.RPM),),
         FindingCause.VELOCITY_IS,
     ),
     'outside of the range': Row(
         part({}),
         {},
-        (ERROR, 'the output, at -71.77°, is outside of output_range, 0.00° to 57.30°'),
+        (OUTSIDE,),
         settings=replace(MULTI, output_range=(0.0, 1.0)),
     ),
 }
@@ -134,11 +143,12 @@ def test_a_fault_is_counted_diagnosed_and_found(fault):
     driven = [message(*each) for each in enumerate(row.driven)]
     stamps = [START + k * PERIOD + 500 for k in range(COUNT)]
     messages = [(ROTOR, stamp, data) for stamp, data in zip(stamps, driven, strict=True)]
-    gear, monitor = GearState(row.settings), InputMonitor(started=0.0, last_input=0.0)
+    gear = GearState(row.settings)
+    gear.monitor.last_input = 0.0
     homed = 1 if row.settings.rotor_period else -1
     recorded = answered(row.settings, messages, gear=gear, home_after=homed)
-    report = monitor.report(gear.input, 0.0)
-    assert (report.level, report.message) == row.diagnosed
+    report = gear.report(0.0, Connections())['rotor input']
+    assert tuple(report.facts) == row.diagnosed
     found = validate(recorded, row.settings)
     names = (
         *('rejected', 'of_others', 'duplicates', 'zero_stamps', 'unnormalised_stamps'),

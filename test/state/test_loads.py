@@ -13,8 +13,8 @@ from gear_kinematics.kinematics import MechanismError, RotorSample, loads, solve
 from gear_kinematics.kinematics.loads import Bodies
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.diagnostics import OK, WARN
 from gear_kinematics.state.loads import Acceleration, LoadEstimator, PreloadMonitor
+from gear_kinematics.state.statuses import Condition
 from gear_kinematics.wire.topics import LOAD_TOPICS
 
 DEFAULT = NodeParameters.load()
@@ -125,23 +125,27 @@ def monitored(torques):
 
 def test_margin_falls_by_half_of_the_load_of_equal_branches():
     report = monitored([0.0, 4.0, -2.0]).report()
-    assert (report.level, report.message) == (OK, 'ok')
-    assert report.values['margin (N·m)'] == '2'
-    assert report.values['least margin (N·m)'] == '1'
-    assert report.values['least margin (% of the preload)'] == '33.3'
-    assert report.values['out of mesh (% of the time)'] == '0.0'
+    assert (report.message, report.texts) == (
+        'ok',
+        {
+            'preload (N·m)': '3',
+            'margin (N·m)': '2',
+            'margin (% of the preload)': '66.7',
+            'least margin (N·m)': '1',
+            'least margin (% of the preload)': '33.3',
+            'out of mesh (% of the time)': '0.0',
+        },
+    )
 
 
 def test_time_out_of_mesh_is_a_warning_until_the_next_report():
     monitor = monitored([0.0] * 76 + [8.0] * 25)
     report = monitor.report()
-    assert report.level == WARN
-    assert report.message == 'a branch was out of mesh for 25.0 % of the time'
-    assert report.values['least margin (N·m)'] == '-1'
-    assert 'preload' in report.values['advice']
-    assert monitor.report().level == OK
+    assert report.facts == [Condition.OUT_OF_MESH(share=pytest.approx(25.0))]
+    assert report.values['least margin (N·m)'] == pytest.approx(-1.0)
+    assert monitor.report().facts == [Condition.MARGIN_UNKNOWN(lacking='effort')]
 
 
 def test_without_effort_the_margin_is_unknown_and_no_warning():
     report = monitored([math.nan, math.nan]).report()
-    assert (report.level, report.message) == (OK, 'unknown: no effort in rotor_state')
+    assert report.facts == [Condition.MARGIN_UNKNOWN(lacking='effort')]

@@ -2,6 +2,7 @@
 """The encoder at the output: simulated transmission errors are recovered."""
 
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -12,9 +13,9 @@ from gear_kinematics.correction.calibration_fit import CalibrationFit
 from gear_kinematics.correction.error_window import ErrorStatistics
 from gear_kinematics.kinematics import RotorPosition, RotorSample
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.diagnostics import OK, WARN, EncoderMonitor, InputMonitor
-from gear_kinematics.state.output_encoder import OutputEncoder
-from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.gear_state import GearState
+from gear_kinematics.state.monitors import Connections, DriverFacts
+from gear_kinematics.state.statuses import Condition
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
 MS = SECOND // 1000
@@ -23,25 +24,27 @@ NOW = 50.0
 
 
 class Bench:
-    """Both encoders and the monitor."""
+    """A gear with both encoders."""
 
     def __init__(self, settings=SETTINGS) -> None:
-        self.settings = settings
-        self.rotor = RotorInput(settings)
-        self.encoder = OutputEncoder(settings)
-        self.monitor = EncoderMonitor()
+        self.gear = GearState(settings)
+        self.encoder = self.gear.output_encoder
+        self.connections = Connections(DriverFacts(since=NOW - 1.0))
 
     def turn(self, stamp, position):
-        sample = self.rotor.accept(rotor_bytes(stamp, position=[position]), lambda: 0)
-        return self.encoder.follow(sample)
+        return self.encoder.follow(
+            self.gear.input.accept(rotor_bytes(stamp, position=[position]), int)
+        )
 
-    def measure(self, stamp, position, *, joint='shaft', now=0, at=NOW):
-        self.monitor.last_input = at
-        data = rotor_bytes(stamp, [joint], [position])
-        return self.encoder.accept(data, lambda: now)
+    def measure(self, stamp, position, *, joint='shaft'):
+        self.gear.encoder_monitor.last_input = NOW
+        return self.encoder.accept(rotor_bytes(stamp, [joint], [position]), int)
 
-    def report(self, at=NOW, **changes):
-        return self.monitor.report(self.encoder, replace(self.settings, **changes), at)
+    def report(self, at=NOW):
+        return self.gear.report(at, self.connections).get('transmission error')
+
+    def facts(self, at=NOW):
+        return self.report(at).facts
 
 
 @pytest.fixture
@@ -112,37 +115,44 @@ def swing(bench, amplitude, *, samples=400):
         bench.turn(START + k * MS, -19.0 * angle)
 
 
-def test_report_has_the_figures_of_the_window(bench):
+UNCHECKED = Condition.DIRECTION_NOT_CHECKED()
+NOT_FINITE = Condition.REJECTED(counts={'position not finite': 1})
+
+
+def test_report_has_the_figures_of_the_window():
+    bench = Bench(replace(SETTINGS, transmission_error_limit=0.00201))
     swing(bench, 0.001)
     report = bench.report()
-    assert (report.level, report.message) == (OK, 'ok')
-    values = report.values
-    assert float(values['peak to peak (rad)']) == pytest.approx(0.002, abs=1e-6)
-    assert float(values['mean (rad)']) == pytest.approx(0.0, abs=2e-5)
-    value, spread = map(float, values['lost motion (rad)'].split(' ± '))
-    assert value == pytest.approx(0.002, abs=1e-6)
-    assert 0.0 <= spread < 1e-6
-    assert float(values['delay of output_encoder (s)'].split(' ± ')[0]) == pytest.approx(
-        0, abs=1e-6
-    )
-    assert values['received'] == '400'
-    assert values['samples'] == values['compared'] == '400'
-    assert not any(key.startswith(('rejected', 'not compared')) for key in values)
-    bench.measure(START + 400 * MS, 0.001)
+    assert report.facts == []
+    values = dict(report.values)
+    for name in 'lost motion (rad)', 'delay of output_encoder (s)':
+        estimate = values.pop(name)
+        assert estimate.value == pytest.approx(0.002 if 'rad' in name else 0.0, abs=1e-6)
+        assert 0.0 <= estimate.uncertainty < 1e-6
+    assert values == {
+        'received': 400,
+        'compared': 400,
+        'direction checked': True,
+        'lost messages': 0,
+        'age of last input (s)': 0.0,
+        'samples': 400,
+        'mean (rad)': pytest.approx(0.0, abs=2e-5),
+        'peak to peak (rad)': pytest.approx(0.002, abs=1e-6),
+    }
+    assert re.fullmatch(r'0\.00[12]\d* ± \S+', report.texts['lost motion (rad)'])
+    bench.measure(START + 400 * MS, 0.0011)
     bench.turn(START + 400 * MS, 0.0)
-    report = bench.report(transmission_error_limit=0.0019)
-    assert (report.level, report.message) == (WARN, 'peak to peak 0.002 rad')
+    assert bench.facts() == [Condition.TOO_LARGE(angle=pytest.approx(0.0021))]
 
 
-@pytest.mark.parametrize(('off', 'advised'), [(0.0, 'raise transmis'), (2.9, 'call ~/home')])
-def test_only_an_error_of_a_gear_suggests_another_limit(bench, off, advised):
+@pytest.mark.parametrize(
+    ('off', 'which'), [(0.0, Condition.TOO_LARGE), (2.9, Condition.BEYOND_ANY_GEAR)]
+)
+def test_only_an_error_of_a_gear_suggests_another_limit(bench, off, which):
     for k in range(2):
         bench.measure(START + k * MS, off + 0.01 * k)
         bench.turn(START + k * MS, 0.0)
-    report = bench.report()
-    assert (report.level, report.message) == (WARN, 'peak to peak 0.01 rad')
-    assert advised in report.values['advice']
-    assert ('raise' in report.values['advice']) == (off == 0.0)
+    assert bench.facts() == [which(angle=pytest.approx(0.01))]
 
 
 @pytest.mark.parametrize('before', [True, False], ids=['after a report', 'at once'])
@@ -152,9 +162,9 @@ def test_silence_is_a_warning_and_leaves_no_figures(bench, before):
     if before:
         bench.report()
     report = bench.report(NOW + 2.5)
-    assert (report.level, report.message) == (WARN, 'no output_encoder for 2.5 s')
-    assert report.values['samples'] == '0'
-    assert report.values['mean (rad)'] == report.values['lost motion (rad)'] == 'none'
+    assert report.facts == [Condition.NO_ENCODER(age=2.5)]
+    names = 'samples', 'mean (rad)', 'lost motion (rad)'
+    assert [report.texts[name] for name in names] == ['0', 'none', 'none']
 
 
 def test_encoder_whose_stamps_are_not_the_rotors_is_a_warning(bench):
@@ -163,8 +173,8 @@ def test_encoder_whose_stamps_are_not_the_rotors_is_a_warning(bench):
         bench.measure(START - 5 * SECOND + k * MS, 0.0)
         bench.turn(START + k * MS, 0.0)
     report = bench.report()
-    assert (report.level, report.message) == (WARN, 'no rotor angle of the same time')
-    assert report.values['not compared: no ideal angle before'] == '3'
+    assert report.facts == [Condition.NOT_COMPARED()]
+    assert report.values['not compared: no ideal angle before'] == 3
 
 
 @pytest.mark.parametrize(('explained', 'fits'), [(0.4, False), (0.999, True)])
@@ -174,28 +184,26 @@ def test_calibration_that_no_longer_fits_is_a_warning(bench, monkeypatch, explai
     statistics = ErrorStatistics(calibration=fit)
     monkeypatch.setattr(bench.encoder.window, 'statistics', lambda: statistics)
     report = bench.report()
-    expected = (OK, 'ok') if fits else (WARN, 'calibration no longer fits')
-    assert (report.level, report.message) == expected
-    assert report.values['explained by the calibration (%)'] == f'{100 * explained:.1f}'
-    assert report.values['outside the interval (%)'] == '25.0'
+    assert report.facts == [Condition.FITS_NO_LONGER()] * (not fits)
+    assert report.texts['explained by the calibration (%)'] == f'{100 * explained:.1f}'
+    assert report.texts['outside the interval (%)'] == '25.0'
 
 
 def test_change_of_a_parameter_loses_no_count(bench):
     swing(bench, 0.001)
     with pytest.raises(RejectedInputError):
         bench.measure(START + 399 * MS, math.nan)
-    assert bench.report().message == 'rejected: position not finite 1'
-    bench.settings = replace(SETTINGS, transmission_error_window=5.0)
-    bench.encoder.configure(bench.settings)
+    assert bench.facts() == [NOT_FINITE]
+    bench.gear.apply(replace(SETTINGS, transmission_error_window=5.0), None)
     with pytest.raises(RejectedInputError):
         bench.measure(START + 399 * MS, math.nan)
     for k in range(400, 800):  # as many as before
         bench.measure(START + k * MS, 0.0)
         bench.turn(START + k * MS, 0.0)
     report = bench.report()
-    assert report.message == 'rejected: position not finite 1'
-    assert report.values['compared'] == '800'
-    assert report.values['rejected: position not finite'] == '2'
+    assert report.facts == [NOT_FINITE]
+    assert report.values['compared'] == 800
+    assert report.values['rejected: position not finite'] == 2
 
 
 # Slips.
@@ -214,15 +222,11 @@ def rest(bench, start, count, error, *, speed=0.0):
 def test_slip_stays_a_warning_after_the_window_has_passed(degrees, speed):
     bench = Bench(replace(SETTINGS, transmission_error_window=0.1))
     rest(bench, 0, 500, 0.0, speed=speed)
-    assert bench.report().message == ('ok' if speed else 'direction not checked')
+    assert bench.facts() == [UNCHECKED] * (not speed)
     rest(bench, 500, 5000, math.radians(degrees), speed=speed)
     for more in range(5500, 7500, 500):
-        report = bench.report()
-        when = (START + 500 * MS) / SECOND
-        assert report.level == WARN
-        assert report.message == (
-            f'the output has slipped by {degrees:.2f}° against the rotor, at {when:.3f} s'
-        )
+        angle, when = pytest.approx(degrees), (START + 500 * MS) / SECOND
+        assert bench.facts() == [Condition.SLIPPED(angle_deg=angle, time=when)]
         rest(bench, more, 500, math.radians(degrees), speed=speed)
 
 
@@ -235,8 +239,7 @@ def test_direction_is_checked_by_a_motion_alone(sense):
         bench.measure(START + k * MS, sense * angle)
         bench.turn(START + k * MS, -19.0 * angle)
         if k in {999, 2999}:
-            values = bench.report().values
-            assert values['direction checked'] == ('yes' if sense > 0 and k > 1000 else 'no')
+            assert bench.report().values['direction checked'] is (sense > 0 and k > 1000)
     bench.encoder.configure(replace(SETTINGS, output_encoder_direction=-1))
     assert not bench.encoder.direction_checked
 
@@ -254,10 +257,8 @@ def test_single_wrong_readings_and_errors_within_the_limit_are_no_slip(bench):
 def test_report_soon_after_another_keeps_its_rate_and_comparison(bench):
     """As at a change of the reference, between two reports of the timer."""
     rest(bench, 0, 100, 0.0)
-    monitor = InputMonitor(started=NOW - 1.0, last_input=NOW)
-    reports = [
-        (monitor.report(bench.rotor, NOW + late), bench.report(NOW + late)) for late in (0.0, 0.01)
-    ]
-    before, soon = ([each.message for each in both] for both in reports)
-    assert before == soon == ['ok', 'direction not checked']
-    assert [rotor.values['rate (Hz)'] for rotor, _ in reports] == ['100.0', '100.0']
+    bench.gear.monitor.last_input = NOW
+    for late in (0.0, 0.01):
+        reports = bench.gear.report(NOW + late, bench.connections)
+        assert [report.facts for report in reports.values()] == [[], [UNCHECKED]]
+        assert reports['rotor input'].values['rate (Hz)'] == 100.0

@@ -13,6 +13,7 @@ from live import SECOND, rotor_bytes
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.reach import STALEST
 from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.statuses import Condition
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
 MULTI = NodeParameters.load()
@@ -104,9 +105,9 @@ def test_no_motion_within_the_limits_is_doubted(kind, rate):
         generator = np.random.default_rng([seed, rate])
         times, angles = disturbed(kind, *motion(rate, 300, generator), rate, generator)
         rotor, _ = fed(MULTI, messages(times, angles))
-        assert complaints(rotor) == ({}, '', '')
+        assert complaints(rotor) == ({}, None, None)
         rotor, _ = fed(SINGLE, messages(times, np.mod(angles, TURN)))
-        assert complaints(rotor) == ({}, '', '')
+        assert complaints(rotor) == ({}, None, None)
 
 
 @settings(max_examples=50)
@@ -158,8 +159,7 @@ def test_a_jump_that_stays_is_named_and_ends_the_reference(rate, size):
     rotor, samples = fed(MULTI, messages(times, angles))
     assert rotor.rejected == {'implausible': 2}
     assert [n for n, sample in enumerate(samples) if sample is None] == [20, 21]
-    stamp = 100.0 + times[20]
-    jumped = f"the rotor's encoder jumped by {size:g} rad at {stamp:.3f} s"
+    jumped = Condition.JUMPED(angle=pytest.approx(size), time=pytest.approx(100.0 + times[20]))
     assert rotor.plausibility.jumped == jumped
     assert not rotor.referenced
     assert rotor.segment == 1
@@ -176,13 +176,14 @@ def test_a_rotor_that_stops_at_once_is_named(settings, rate):
         angles = np.mod(angles, TURN)
     batch = messages(times, angles)
     rotor, _ = fed(settings, batch[: rate // 2])
-    assert complaints(rotor) == ({}, '', '')
+    assert complaints(rotor) == ({}, None, None)
     rotor, samples = fed(settings, batch)
     stopped = [n for n, sample in enumerate(samples) if sample is None]
     assert len(stopped) == 2
     assert times[stopped[0]] == pytest.approx(0.5 + STALEST, abs=0.005)
-    said = rotor.plausibility.jumped or rotor.plausibility.beyond_limits
-    assert ('jumped' if settings.single_turn else 'exceed max_rotor_acceleration') in said
+    said = rotor.plausibility.jumped or rotor.plausibility.beyond_limits.values['which'][0]
+    expected = Condition.JUMPED if settings.single_turn else Condition.BEYOND_ACCELERATION
+    assert said.condition is expected
     assert rotor.referenced != settings.single_turn
 
 
@@ -201,8 +202,9 @@ def test_a_motor_beyond_the_limits_is_named_once_and_not_rejected_for_ever(speed
     start = 1e-3 * (np.arange(50) % 2)  # the resolution is known then
     rotor, _ = fed(MULTI, messages(times, np.concatenate([start, speed * times[:450]])))
     assert rotor.rejected['implausible'] <= 4
-    assert f'{abs(speed):g} rad/s exceed max_rotor_speed' in rotor.plausibility.beyond_limits
-    assert rotor.plausibility.jumped == ''
+    beyond = Condition.BEYOND_SPEED(speed=pytest.approx(abs(speed)))
+    assert beyond in rotor.plausibility.beyond_limits.values['which']
+    assert rotor.plausibility.jumped is None
     assert rotor.referenced
 
 

@@ -11,39 +11,43 @@ from live import SECOND, START, rotor_bytes
 
 from gear_kinematics.correction.corrector import Correction
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.diagnostics import InputMonitor
-from gear_kinematics.state.output_encoder import OutputEncoder
-from gear_kinematics.state.rotor_input import RotorInput
-from gear_kinematics.state.turn_reference import SAMPLES, TurnReference
+from gear_kinematics.state.gear_state import GearState
+from gear_kinematics.state.monitors import Connections
+from gear_kinematics.state.statuses import Condition
+from gear_kinematics.state.turn_reference import SAMPLES
 
 MS = SECOND // 1000
 MULTI = replace(
     NodeParameters.load(), output_encoder_reference='absolute', transmission_error_max_gap=0.001
 )
 SINGLE = replace(MULTI, rotor_encoder='single_turn')
-EXACT = 'turns of a single-turn encoder, exact'
+NO_SAMPLES = [Condition.NOT_FOUND(why=Condition.NO_SAMPLES(count=SAMPLES))]
+NOT_CHECKED = [Condition.NOT_CHECKED()]
 ENOUGH = SAMPLES + 2  # with the next rotor state, and one of the new count
 GAP = {'transmission_error_max_gap': 0.015}  # s: the longest in the recordings
 LARA = {'gear_ratio': '121'} | GAP
 PRINTED = {'gear_ratio': '-36/5', 'transmission_error_limit': 0.011} | GAP  # its ratio is 1 % off
 
 
+def near(degrees):
+    return pytest.approx(degrees, rel=5e-3, abs=5e-3)
+
+
 class Bench:
-    """A gear whose output is where the test says, its encoders, and the parts of the node."""
+    """A gear whose output is where the test says, and the state that follows its encoders."""
 
     def __init__(self, settings=SINGLE, *, switched_on_at=0.0) -> None:
         self.settings, self.switched_on_at = settings, switched_on_at
         self.zero = settings.rotor_zero
-        self.rotor = RotorInput(settings)
-        self.reference = TurnReference(self.rotor)
-        self.encoder = OutputEncoder(settings, self.reference)
-        self.monitor = InputMonitor(started=0.0, last_input=0.0)
+        self.gear = GearState(settings)
+        self.rotor, self.encoder = self.gear.input, self.gear.output_encoder
+        self.gear.monitor.last_input = 0.0
         self.stamp, self.errors = START, []
 
     def set(self, **changes) -> None:
         """Change parameters as the node does."""
-        self.settings = self.rotor.parameters = replace(self.settings, **changes)
-        self.encoder.configure(self.settings)
+        self.settings = replace(self.settings, **changes)
+        self.gear.apply(self.settings, None)
 
     def turn(self, *outputs, error=0.0, step=MS, correction=None, measured=True):
         """Send the messages at output angles, rad, and return the last one of the node."""
@@ -66,10 +70,13 @@ class Bench:
     def rest(self, output, count=ENOUGH, **how):
         return self.turn(*[output] * count, **how)
 
+    @property
     def report(self):
-        """Return message, advice and the reference's value in diagnostics."""
-        _, message, values = self.monitor.report(self.rotor, 0.0, self.reference)
-        return message, values.get('advice', ''), values['reference']
+        return self.gear.report(0.0, Connections())['rotor input']
+
+    @property
+    def facts(self):
+        return self.report.facts
 
 
 @pytest.mark.parametrize('ratio', ['-19', '36/5', '1457/26', '101', '1/3'])
@@ -80,10 +87,11 @@ def test_a_single_turn_rotor_is_found_exactly(ratio, way, zero, turns):
     settings |= {'output_encoder_zero': zero, 'transmission_error_limit': 1e-3}
     bench, output = Bench(replace(SINGLE, gear_ratio=ratio, **settings)), math.tau * turns
     bench.rest(output, SAMPLES - 1)
-    assert bench.report()[0] == 'not referenced: no 60 samples of output_encoder in a row'
+    assert bench.facts == NO_SAMPLES
     segment = bench.rotor.segment
     found = bench.rest(output, 2)
-    assert (bench.report(), bench.rotor.segment) == (('ok', '', EXACT), segment + 1)
+    assert (bench.facts, bench.rotor.segment) == ([], segment + 1)
+    assert bench.report.values['reference'] == Condition.EXACT_TURNS()
     period = math.tau * Fraction(ratio).denominator
     assert math.remainder(found - output, period) == pytest.approx(0.0, abs=1e-9)
     assert abs(found) <= period / 2
@@ -95,39 +103,41 @@ def test_a_rotor_that_counts_from_its_start_is_set_to_the_measured_angle(positio
     for error in 1e-3 * np.random.default_rng(1).uniform(-1.0, 1.0, ENOUGH):
         bench.turn(2.5, error=error)
     assert bench.rest(2.5, 1) == pytest.approx(2.5, abs=5e-4)
-    message, _, reference = bench.report()
-    assert (message, reference[:18]) == ('ok', 'output encoder, ± ')
+    report = bench.report
     # By hand: φ5 = -(reading - zero)/19, where the reading is -19 · 2.5 + 77 - `position`.
     zero = 77.0 - position
-    values = bench.monitor.report(bench.rotor, 0.0, bench.reference).values
-    assert float(values['rotor zero (rad)']) == pytest.approx(zero, abs=0.02, rel=1e-8)
-    assert 0.17 < float(reference[18:-1]) < 0.25  # limit and noise
+    assert report.values['rotor zero (rad)'] == pytest.approx(zero, abs=0.02, rel=1e-8)
+    limit_and_noise = pytest.approx(0.21, abs=0.04)
+    assert report.facts == []
+    assert report.values['reference'] == Condition.MEASURED(uncertainty_deg=limit_and_noise)
     first = bench.turn(3.0, step=SECOND)
     # An encoder that is silent for a while keeps its zero; one that was switched off gets another.
     assert bench.turn(3.0, step=2 * SECOND) == first
-    assert bench.report()[0].startswith('not referenced: no 60')
+    assert bench.facts == NO_SAMPLES
     assert bench.rest(3.0) == first
     bench.switched_on_at += 40.0
     bench.turn(3.0, step=2 * SECOND)
     assert bench.rest(3.0) == pytest.approx(3.0, abs=1e-9)
-    assert bench.report()[0] == 'ok'
+    assert bench.facts == []
 
 
 @pytest.mark.parametrize(
-    ('changes', 'error', 'speed', 'message', 'advice'),
+    ('changes', 'error', 'speed', 'used', 'margin'),
     [
-        ({}, math.radians(8.1), 0.0, '8.1° of 9.47° margin', 'Check gear_ratio, the directions'),
-        ({'transmission_error_limit': 0.2}, 0.0, 0.0, '11.5° of 9.47° margin', 'Stop'),
-        ({'gear_ratio': '1457/26'}, 0.0, 0.0, '0.172° of 0.124° margin', 'Stop'),
-        ({'rotor_encoder': 'multi_turn'}, 0.0, 30.0, '1.89° of 0.344° margin', 'Stop'),
-        ({'transmission_error_max_gap': 0.006}, 0.0, 30.0, '10.5° of 9.47° margin', 'Stop'),
+        ({}, math.radians(8.1), 0.0, 8.1, 9.47),
+        ({'transmission_error_limit': 0.2}, 0.0, 0.0, 11.5, 9.47),
+        ({'gear_ratio': '1457/26'}, 0.0, 0.0, 0.172, 0.124),
+        ({'rotor_encoder': 'multi_turn'}, 0.0, 30.0, 1.89, 0.344),
+        ({'transmission_error_max_gap': 0.006}, 0.0, 30.0, 10.5, 9.47),
     ],
 )
-def test_what_is_ambiguous_is_refused(changes, error, speed, message, advice):
+def test_what_is_ambiguous_is_refused(changes, error, speed, used, margin):
     bench = Bench(replace(SINGLE, **changes))
     bench.turn(*(1e-3 * speed * k for k in range(3 * SAMPLES)), error=error)
-    assert (bench.report()[::2], bench.errors) == ((f'not referenced: {message}', 'none'), [])
-    assert bench.report()[1].startswith(advice)
+    which = Condition.UNEXPLAINED if error else Condition.AMBIGUOUS
+    why = which(used_deg=near(used), margin_deg=near(margin))
+    assert bench.facts == [Condition.NOT_FOUND(why=why)]
+    assert (bench.report.values['reference'], bench.errors) == (None, [])
 
 
 def test_a_calibration_is_subtracted_and_noise_is_added():
@@ -136,7 +146,16 @@ def test_a_calibration_is_subtracted_and_noise_is_added():
     bench = Bench(replace(SINGLE, transmission_error_limit=0.05))
     for k in range(2 * SAMPLES):
         bench.turn(1.0, error=0.12 * (-1) ** k)
-    assert bench.report()[0] == 'not referenced: 9.74° of 9.47° margin'
+    why = Condition.AMBIGUOUS(used_deg=near(9.74), margin_deg=near(9.47))
+    assert bench.facts == [Condition.NOT_FOUND(why=why)]
+
+
+def outside(degrees):
+    return Condition.OUTSIDE(angle_deg=near(degrees), low_deg=0.0, high_deg=near(270.0))
+
+
+def disagrees(encoder, rotor):
+    return Condition.DISAGREES(encoder_deg=near(encoder), rotor_deg=near(rotor))
 
 
 QUARTERS = {'output_range': (0.0, 1.5 * math.pi)}  # a joint of 0 to 270°
@@ -155,37 +174,35 @@ def test_range_of_the_output_tells_its_turn_or_excludes_it(settings, without):
     for degrees, found in ((250.0, 250.0), (-1e-3, -1e-3), (100.0, 100.0), (270.0, 270.0)):
         bench = Bench(replace(settings, **QUARTERS))
         assert math.degrees(bench.rest(math.radians(degrees))) == pytest.approx(found, abs=0.01)
-        assert bench.report()[0] == 'ok'
+        assert bench.facts == []
     unlimited = Bench(settings)
     found = math.degrees(unlimited.rest(math.radians(250.0)))
     assert unlimited.rotor.referenced is (without is not None)
     assert found == pytest.approx(without or found, abs=0.01)
-    text = 'the output, at 300.00°, is outside of output_range, 0.00° to 270.00°'
     bench.turn(*np.radians(np.linspace(270.0, 300.0, 200)))
     bench.rest(math.radians(300.0), 2 * SAMPLES)
-    assert bench.report()[0] == text
+    assert bench.facts == [outside(300.0)]
     bench = Bench(replace(settings, **QUARTERS))
     bench.rest(math.radians(300.0))
-    message, advice, _ = bench.report()
-    assert message.replace('300.00', '-60.00') == 'not referenced: ' + text.replace('300', '-60')
-    assert advice.startswith('Check output_range')
+    found = [Condition.NOT_FOUND(why=outside(degrees)) for degrees in (300.0, -60.0)]
+    assert bench.facts in ([each] for each in found)
 
 
 def test_range_of_nearly_a_turn_does_not_tell_its_ends_apart():
     bench = Bench(replace(MULTI, output_range=(0.0, math.radians(359.9))))
     bench.rest(0.0)
-    message = 'not referenced: the output, at 0.00°, may be at either end of output_range, 0.00°'
-    assert bench.report()[0].startswith(message)
+    why = Condition.AT_EITHER_END(angle_deg=near(0.0), low_deg=0.0, high_deg=near(359.9))
+    assert bench.facts == [Condition.NOT_FOUND(why=why)]
     bench.turn(*np.radians(np.linspace(0.0, 20.0, 200)))
     assert bench.rest(math.radians(20.0)) == pytest.approx(math.radians(20.0), abs=2e-3)
 
 
 def test_range_is_checked_without_an_encoder_at_the_output():
     bench = Bench(replace(MULTI, output_encoder_reference='none', **QUARTERS))
-    for degrees, message in ((269.0, 'ok'), (-90.0, 'the output, at -90.00°, is outside of')):
+    for degrees, facts in ((269.0, []), (-90.0, [outside(-90.0)])):
         bench = Bench(bench.settings)
         bench.rest(math.radians(degrees), measured=False)
-        assert bench.monitor.report(bench.rotor, 0.0).message.startswith(message)
+        assert bench.facts == facts
 
 
 def test_when_turns_are_searched():
@@ -193,15 +210,12 @@ def test_when_turns_are_searched():
     bench.rest(1.0, 40)
     bench.rest(1.0, 5, measured=False)
     bench.rest(1.0, 40)  # in a row
-    assert bench.report()[0] == 'not referenced: no 60 samples of output_encoder in a row'
+    assert bench.facts == NO_SAMPLES
     assert bench.rest(1.0) == pytest.approx(1.0)
     assert bench.turn(*np.linspace(1.0, 20.0, 4000)) == pytest.approx(20.0)  # beyond a turn
     # In a gap the rotor turns thrice unseen; errors are those of known turns.
     assert bench.turn(21.0, step=80 * MS) != pytest.approx(21.0)
-    assert bench.report()[::2] == (
-        'not referenced: no 60 samples of output_encoder in a row',
-        'none',
-    )
+    assert (bench.facts, bench.report.values['reference']) == (NO_SAMPLES, None)
     assert bench.rest(21.0) == pytest.approx(21.0, abs=1e-9)
     assert max(abs(sample.error) for sample in bench.errors) < 1e-9
     # In a longer one, the output could have turned as well: as after the start.
@@ -209,7 +223,7 @@ def test_when_turns_are_searched():
     assert bench.rest(21.0) == pytest.approx(21.0 - 3 * math.tau)
     bench.stamp = START  # the clock is set back
     bench.rest(2.0, 2)
-    assert bench.report()[2] == 'none'
+    assert bench.report.values['reference'] is None
     assert bench.rest(2.0) == pytest.approx(2.0)
     # Parameters of the encoders begin a search, others do not.
     bench.set(transmission_error_window=5.0, transmission_error_limit=0.004)
@@ -224,9 +238,7 @@ def test_an_encoder_that_is_too_slow_is_named():
     for _ in range(2 * SAMPLES):
         bench.rest(1.0, 1)
         bench.rest(1.0, 1, measured=False)
-    message, advice, _ = bench.report()
-    assert message == 'not referenced: no 60 samples of output_encoder in a row'
-    assert advice.startswith('Check that both drivers run and send often')
+    assert bench.facts == NO_SAMPLES
 
 
 @pytest.mark.parametrize('settings', [SINGLE, MULTI])
@@ -236,43 +248,41 @@ def test_homing_ends_the_search_and_a_disagreement_moves_nothing(settings, searc
     bench.rest(1.0, searched)
     bench.set(rotor_zero=bench.rotor.zero_for(-19.0))  # as ~/home does
     bench.rotor.home(-19.0)
-    assert bench.report() == ('ok', '', 'homed')
+    assert (bench.facts, bench.report.values['reference']) == ([], Condition.HOMED())
     segment = bench.rotor.segment
-    message = 'output_encoder disagrees: 38.39° by the encoder, 57.30° by the rotor'
+    apart = [disagrees(38.39, 57.30)]
     for samples, error, found in (
-        (SAMPLES, 0.0, 'ok'),
-        (SAMPLES - 1, -0.33, 'reference not checked'),
-        (1, 0.0, 'reference not checked'),
-        (2 * SAMPLES, -0.33, message),
-        (SAMPLES // 2, 0.0, message),  # which samples of both kinds do not take back
-        (2 * SAMPLES, 0.0, 'ok'),
+        (SAMPLES, 0.0, []),
+        (SAMPLES - 1, -0.33, NOT_CHECKED),
+        (1, 0.0, NOT_CHECKED),
+        (2 * SAMPLES, -0.33, apart),
+        (SAMPLES // 2, 0.0, apart),  # which samples of both kinds do not take back
+        (2 * SAMPLES, 0.0, []),
     ):
         assert bench.rest(1.0, samples, error=error) == pytest.approx(1.0)
-        assert bench.report()[0] == found
+        assert bench.facts == found
     assert bench.rotor.segment == segment
 
 
 def test_disagreement_at_rest_is_not_taken_back_in_motion():
     bench = Bench(replace(SINGLE, transmission_error_max_gap=0.1))
     bench.rest(0.0, 400)
-    assert bench.report()[0] == 'ok'
+    assert bench.facts == []
     bench.rest(0.0, 1000, error=math.radians(12.0))
-    message = 'output_encoder disagrees: 12.00° by the encoder, 0.00° by the rotor'
-    assert bench.report()[0] == message
+    assert bench.facts == [disagrees(12.0, 0.0)]
     speed = math.radians(200.0)  # rad/s, at which a delay of 0.1 s would be 20°
     angles = [1e-3 * speed * k for k in range(2000)]
     bench.turn(*angles, error=math.radians(12.0))
-    assert bench.report()[0].startswith(message)
+    assert bench.facts == [disagrees(12.0, 0.0)]
     bench.rest(angles[-1], 1000)
-    assert bench.report()[0] == 'ok'
+    assert bench.facts == []
 
 
 def test_block_that_cannot_tell_the_turns_apart_is_said_to_check_nothing():
     bench = Bench(replace(SINGLE, transmission_error_max_gap=0.1))
     bench.rest(0.0, 400)
     bench.turn(*(3.5e-3 * k for k in range(1000)))
-    message, _, _ = bench.report()
-    assert message == 'reference not checked'
+    assert bench.facts == NOT_CHECKED
 
 
 @pytest.mark.slow

@@ -1,0 +1,273 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Monitors of a gear's inputs, which report facts; times are of a steady clock, s."""
+
+import math
+import time
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from gear_kinematics.correction.error_window import ErrorStatistics
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.output_encoder import OutputEncoder
+from gear_kinematics.state.output_range import range_fault
+from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.statuses import Condition, Fact, GearReport
+from gear_kinematics.state.turn_reference import SAMPLES, TurnReference
+from gear_kinematics.wire.cdr import SECOND
+from gear_kinematics.wire.joint_reader import JOINT_MISSING
+
+_BEYOND_ANY_GEAR = 0.1  # rad
+
+_SOON = 0.1
+"""Time, s, after a report until which the next one repeats its rates and comparisons."""
+
+
+@dataclass(slots=True)
+class DriverFacts:
+    """What is known of the drivers on a topic, by all actuators alike."""
+
+    since: float = field(default_factory=time.monotonic)
+    """Time from which on messages are awaited."""
+    publishers: int = 0
+    lost: int = 0
+    """Messages that are missing between those that came."""
+    losses_known: bool = True
+    """Whether they could be counted since the last report."""
+
+
+@dataclass(slots=True)
+class Connections:
+    """What is known of a node's connections with others."""
+
+    rotor: DriverFacts = field(default_factory=DriverFacts)
+    encoder: DriverFacts = field(default_factory=DriverFacts)
+    unsent: int = 0
+    """Messages that the middleware failed to send."""
+    graph: Sequence[Fact] = ()
+    """Faults at the last check of the ROS graph."""
+
+
+class DriverMonitor:
+    """Monitors a driver of an actuator."""
+
+    def __init__(self) -> None:
+        self.last_input: float | None = None
+        """Time of the last message, valid or not."""
+        self._counted = Counter[str]()
+        """Counts at the last report."""
+
+    def _growth(self, counts: Mapping[str, int]) -> Counter[str]:
+        """Return by how much counts have grown since the last report."""
+        grown, self._counted = Counter(counts) - self._counted, Counter(counts)
+        return grown  # another input counts from 0
+
+    @staticmethod
+    def _losses(
+        grown: Counter[str], rejected: Mapping[str, int], driver: DriverFacts
+    ) -> Iterator[Fact]:
+        """Yield what has grown of the messages that were rejected or lost."""
+        if counts := {cause: grown[cause] for cause in rejected if grown[cause]}:
+            which = Condition.JOINT_MISSING if JOINT_MISSING in counts else Condition.REJECTED
+            yield which(counts=counts)
+        if lost := grown['lost']:
+            yield Condition.LOST(count=lost)
+        if not driver.losses_known:
+            yield Condition.LOSSES_UNKNOWN()
+
+
+class InputMonitor(DriverMonitor):
+    """Monitors the rotor input."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.published = 0
+        self.unreferenced = 0
+        """Valid inputs while the turns were not known."""
+        self.zero_kept: Fact | None = None
+        """Where `rotor_zero` is kept until the next start, or why it is not."""
+        self._reported, self._rate, self._received = 0.0, 0.0, 0
+
+    def report(
+        self,
+        rotor_input: RotorInput,
+        now: float,
+        connections: Connections,
+        reference: TurnReference | None = None,
+    ) -> GearReport:
+        """Report on an input in the time since the last report, until now."""
+        driver = connections.rotor
+        elapsed = now - max(self._reported, driver.since)
+        count = rotor_input.received - rotor_input.of_others
+        received = max(0, count - self._received)  # at first, others may count as rejected
+        if elapsed > _SOON:
+            self._rate = received / elapsed
+            self._reported, self._received = now, count
+        age = now - (driver.since if self.last_input is None else self.last_input)
+        referenced = rotor_input.referenced
+        values = {
+            'rate (Hz)': self._rate,
+            'received': rotor_input.received,
+            'published': self.published,
+            'of others': rotor_input.of_others,
+            **_by_cause('rejected', rotor_input.rejected),
+            'lost messages': driver.lost if driver.losses_known else 'unknown',
+            'not sent': connections.unsent,
+            'not referenced': self.unreferenced,
+            'drivers': driver.publishers,
+            'duplicate stamps': rotor_input.duplicates,
+            'zero stamps': rotor_input.zero_stamps,
+            'unnormalised stamps': rotor_input.unnormalised_stamps,
+            'clock resets': rotor_input.resets,
+            'age of last input (s)': None if self.last_input is None else age,
+            'referenced': referenced,
+            'rotor zero (rad)': TURN * rotor_input.zero.turns + rotor_input.zero.angle,
+            'home file': self.zero_kept or '',
+        }
+        if reference:
+            values['reference'] = rotor_input.origin if referenced else None
+            values['reference checked'] = reference.checked
+        return GearReport.of(self._facts(rotor_input, age, connections, reference), values)
+
+    def _facts(
+        self,
+        rotor_input: RotorInput,
+        age: float,
+        connections: Connections,
+        reference: TurnReference | None,
+    ) -> Iterator[Fact]:
+        driver, plausibility = connections.rotor, rotor_input.plausibility
+        grown = self._growth(
+            {
+                **rotor_input.rejected,
+                'lost': driver.lost,
+                'of others': rotor_input.of_others,
+                'zero stamps': rotor_input.zero_stamps,
+                'unsent': connections.unsent,
+                'unreferenced': self.unreferenced,
+            }
+        )
+        if age > rotor_input.parameters.input_timeout:
+            yield Condition.NO_INPUT(age=age)
+        if not rotor_input.referenced:
+            if plausibility.jumped:
+                yield plausibility.jumped
+            yield _not_referenced(reference)
+        elif wrong := (reference and reference.disagreement) or _outside(rotor_input):
+            yield wrong
+        yield from self._losses(grown, rotor_input.rejected, driver)
+        for doubt in (rotor_input.velocity_field.meaning, plausibility.beyond_limits):
+            if doubt:
+                yield doubt
+        if rotor_input.parameters.rotor_period and grown['zero stamps']:
+            yield Condition.ZERO_STAMPS(count=grown['zero stamps'])
+        if grown['unsent']:
+            yield Condition.UNSENT(count=grown['unsent'])
+        if grown['unreferenced'] and rotor_input.referenced:
+            yield Condition.WERE_UNKNOWN(count=grown['unreferenced'])
+        if driver.publishers > 1 and not grown['of others']:  # of other joints on a shared topic
+            yield Condition.SEVERAL_DRIVERS(count=driver.publishers)
+        yield from connections.graph
+        if (
+            rotor_input.referenced
+            and reference
+            and reference.decision
+            and not (reference.checked or reference.disagreement)
+        ):
+            yield Condition.NOT_CHECKED()
+
+
+class EncoderMonitor(DriverMonitor):
+    """Monitors the encoder at the output, and the transmission error."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._reported, self._compared = -math.inf, 0
+
+    def report(
+        self, encoder: OutputEncoder, parameters: NodeParameters, now: float, driver: DriverFacts
+    ) -> GearReport | None:
+        """Report on an encoder in the time since the last report, until now.
+
+        Return None until the encoder has sent a message. `parameters` have the limits.
+        """
+        if self.last_input is None:
+            return None
+        age = now - self.last_input
+        matched = encoder.comparison.matched
+        soon = now - self._reported < _SOON
+        compared, silent = soon or matched != self._compared, age > parameters.input_timeout
+        if not soon:
+            self._reported, self._compared = now, matched
+
+        facts = []
+        if silent:
+            facts.append(Condition.NO_ENCODER(age=age))
+        elif not compared:
+            facts.append(Condition.NOT_COMPARED())
+        grown = self._growth({**encoder.rejected, 'lost': driver.lost})
+        facts += self._losses(grown, encoder.rejected, driver)
+        # Without new samples, the statistics are out of date.
+        error = encoder.window.statistics() if compared and not silent else ErrorStatistics()
+        found = error.reversals
+        if error.peak_to_peak and error.peak_to_peak > parameters.transmission_error_limit:
+            far = max(error.peak_to_peak, abs(error.mean or 0.0)) > _BEYOND_ANY_GEAR
+            which = Condition.BEYOND_ANY_GEAR if far else Condition.TOO_LARGE
+            facts.append(which(angle=error.peak_to_peak))
+        if slip := encoder.slip_watch.slip:
+            moved, when = math.degrees(slip.angle), slip.stamp / SECOND
+            facts.append(Condition.SLIPPED(angle_deg=moved, time=when))
+        values = {
+            'received': encoder.received,
+            'compared': matched,
+            'direction checked': encoder.direction_checked,
+            **_by_cause('rejected', encoder.rejected),
+            **_by_cause('not compared', encoder.comparison.unmatched),
+            'lost messages': driver.lost if driver.losses_known else 'unknown',
+            'age of last input (s)': age,
+            'samples': error.samples,
+            'mean (rad)': error.mean,
+            'peak to peak (rad)': error.peak_to_peak,
+            'lost motion (rad)': found and found.lost_motion,
+            'delay of output_encoder (s)': found and found.delay,
+        }
+        if fit := error.calibration:
+            if not fit.fits:
+                facts.append(Condition.FITS_NO_LONGER())
+            explained = None if fit.explained is None else 100.0 * fit.explained
+            values['explained by the calibration (%)'] = explained
+            values['outside the interval (%)'] = 100.0 * fit.outside
+        faulty = any(fact.condition.level for fact in facts)
+        if compared and not (faulty or encoder.direction_checked):
+            facts.append(Condition.DIRECTION_NOT_CHECKED())
+        return GearReport.of(facts, values)
+
+
+def _outside(rotor_input: RotorInput) -> Fact | None:
+    """Return how the last output angle contradicts `output_range`, if it does."""
+    parameters, last = rotor_input.parameters, rotor_input.last
+    if not last:
+        return None
+    turns, rest = parameters.gear.gear_ratio.output_angle(*last.position, math)
+    return range_fault(parameters, TURN * turns + rest, parameters.transmission_error_limit)
+
+
+def _not_referenced(reference: TurnReference | None) -> Fact:
+    """Return why the turns are not known."""
+    if not reference:
+        return Condition.NOT_REFERENCED()
+    if not (decision := reference.decision):
+        why = Condition.NO_SAMPLES(count=SAMPLES)
+    elif decision.outside:
+        why = decision.outside
+    else:
+        known = decision.budget < decision.margin
+        which = Condition.UNEXPLAINED if known else Condition.AMBIGUOUS
+        used, margin = (math.degrees(angle) for angle in (decision.used, decision.margin))
+        why = which(used_deg=used, margin_deg=margin)
+    return Condition.NOT_FOUND(why=why)
+
+
+def _by_cause(what: str, counts: Counter[str]) -> dict[str, int]:
+    return {f'{what}: {cause}': count for cause, count in sorted(counts.items())}

@@ -1,0 +1,216 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Everything that diagnostics can say, each with its level, message and advice.
+
+Messages and advice are formatted with the values of a `Fact`: counts by cause, other facts, and
+numbers in SI units; the names of others end with their unit.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from enum import Enum
+from typing import Any, NamedTuple, Self
+
+from gear_kinematics.statistics.uncertainty import Estimate
+
+OK, WARN, ERROR = 0, 1, 2
+"""Levels of diagnostic_msgs/DiagnosticStatus."""
+
+_DRIVER = 'Check that the driver is running, and that its topic is remapped.'
+_HOME = 'Move the output to its home angle, then call ~/home.'
+_CLOCKS = 'Check that both drivers run and send often, and that their clocks agree.'
+_RANGE = 'Check output_range, gear_ratio and the zeros of both encoders.'
+_VELOCITY = 'Let the driver send rad/s of the rotor, or no velocities.'
+_QOS = 'Change the quality of service of one of the two.'
+_TWO_NODES = 'Stop one of the two nodes, or give each its own namespace.'
+
+_VELOCITIES = 'the velocities contradict the positions: they seem to be {meaning}'
+_AT = 'the output, at {angle_deg:.2f}°, '
+_ENDS = 'output_range, {low_deg:.2f}° to {high_deg:.2f}°'
+_MARGIN = '{used_deg:.3g}° of {margin_deg:.3g}° margin'
+_BOTH = '{encoder_deg:.2f}° by the encoder, {rotor_deg:.2f}° by the rotor'
+_PEAK_TO_PEAK = 'peak to peak {angle:.3g} rad'
+
+
+class Condition(Enum):
+    """A condition of a gear, its drivers or its connections: level, message and advice."""
+
+    # The rotor's driver
+    NO_INPUT = ERROR, 'no input for {age:.1f} s', _DRIVER
+    JUMPED = (
+        ERROR,
+        "the rotor's encoder jumped by {angle:.4g} rad at {time:.3f} s",
+        'Check whether the drive restarted, and the encoder and its cable.',
+    )
+    REJECTED = (
+        WARN,
+        'rejected: {counts}',
+        'docs/diagnostics.md explains why messages are rejected.',
+    )
+    JOINT_MISSING = (
+        WARN,
+        'rejected: {counts}',
+        'Set rotor_joint to one of the joints of the driver.',
+    )
+    LOST = WARN, 'lost {count}', 'Check the network, and whether the computer is too busy.'
+    LOSSES_UNKNOWN = OK, 'losses unknown', ''
+    VELOCITIES_ARE = WARN, _VELOCITIES, _VELOCITY
+    VELOCITIES_UNKNOWN = WARN, _VELOCITIES + ', {factor:.3g} times the slope', _VELOCITY
+    BEYOND_LIMITS = (
+        WARN,
+        '{which}',
+        'Raise the limit to what the motor can do, or check that positions are in rad.',
+    )
+    BEYOND_SPEED = WARN, '{speed:.4g} rad/s exceed max_rotor_speed', ''
+    BEYOND_ACCELERATION = WARN, '{acceleration:.4g} rad/s² exceed max_rotor_acceleration', ''
+    ZERO_STAMPS = (
+        WARN,
+        'zero stamps {count}',
+        'Let the driver stamp its messages: without stamps, turns may be miscounted.',
+    )
+    SEVERAL_DRIVERS = WARN, '{count} drivers', 'Stop all drivers but one.'
+    # The rotor's turns, and the encoder at the output that can tell them
+    NOT_REFERENCED = ERROR, 'not referenced', _HOME
+    NOT_FOUND = ERROR, 'not referenced: {why}', '{why.advice} Or: ' + _HOME
+    NO_SAMPLES = ERROR, 'no {count} samples of output_encoder in a row', _CLOCKS
+    UNEXPLAINED = (
+        ERROR,
+        _MARGIN,
+        'Check gear_ratio, the directions and zeros of both encoders, and the gear.',
+    )
+    AMBIGUOUS = (
+        ERROR,
+        _MARGIN,
+        'Stop the output; or calibrate the gear, or lower transmission_error_limit.',
+    )
+    OUTSIDE = ERROR, _AT + 'is outside of ' + _ENDS, _RANGE
+    AT_EITHER_END = ERROR, _AT + 'may be at either end of ' + _ENDS, _RANGE
+    DISAGREES = (
+        ERROR,
+        'output_encoder disagrees: ' + _BOTH,
+        'Check whether an encoder has slipped; then call ~/home, or restart the node.',
+    )
+    NOT_CHECKED = OK, 'reference not checked', ''
+    WERE_UNKNOWN = (
+        WARN,
+        'turns unknown for {count} inputs',
+        'Do not use the outputs of that time.',
+    )
+    HOMED = OK, 'homed', ''
+    EXACT_TURNS = OK, 'turns of a single-turn encoder, exact', ''
+    EXACT_PERIODS = OK, 'periods of the encoder, exact', ''
+    MEASURED = OK, 'output encoder, ± {uncertainty_deg:.2g}°', ''
+    # Where the zero is kept
+    ZERO_KEPT = OK, 'kept in {path}', ''
+    ZERO_NOT_KEPT = OK, 'not kept: {path}: {why}', ''
+    ZERO_NOT_SET = OK, 'not kept: not homed yet', ''
+    ZERO_IS_LOST = OK, 'lost at restart: set home_file', ''
+    # The transmission error
+    NO_ENCODER = WARN, 'no output_encoder for {age:.1f} s', _DRIVER
+    NOT_COMPARED = WARN, 'no rotor angle of the same time', _CLOCKS
+    TOO_LARGE = (
+        WARN,
+        _PEAK_TO_PEAK,
+        'Check the gear and its encoders, or raise transmission_error_limit.',
+    )
+    BEYOND_ANY_GEAR = WARN, _PEAK_TO_PEAK, _HOME
+    SLIPPED = (
+        WARN,
+        'the output has slipped by {angle_deg:.2f}° against the rotor, at {time:.3f} s',
+        'Check the couplings and the zeros of both encoders; then call ~/home.',
+    )
+    FITS_NO_LONGER = WARN, 'calibration no longer fits', 'Calibrate the gear again.'
+    DIRECTION_NOT_CHECKED = OK, 'direction not checked', ''
+    # The preload
+    MARGIN_UNKNOWN = OK, 'unknown: no {lacking} in rotor_state', ''
+    OUT_OF_MESH = (
+        WARN,
+        'a branch was out of mesh for {share:.1f} % of the time',
+        'Raise the preload (gearkin preload) or lower the torque of the output.',
+    )
+    # The ROS graph
+    DRIVER_QOS = ERROR, 'incompatible QoS on {topic}: {policy} (driver {node})', _QOS
+    LISTENER_QOS = WARN, 'incompatible QoS on {topic}: {policy} (listener {node})', _QOS
+    UNSENT = WARN, 'not sent {count}', 'Look for a listener that is stuck.'
+    ALSO_PUBLISHES = WARN, '{node} also publishes {topics}', _TWO_NODES
+    SAME_NAME = WARN, 'another node is named {node}', _TWO_NODES
+
+    def __init__(self, level: int, message: str, advice: str) -> None:
+        self.level, self.message, self.advice = level, message, advice
+
+    def __call__(self, **values: Any) -> 'Fact':
+        """Return the fact that the condition holds, with its values."""
+        return Fact(self, values)
+
+
+class Fact(NamedTuple):
+    """A condition that holds, with its values; as text it is the message."""
+
+    condition: Condition
+    values: Mapping[str, Any]
+
+    def __str__(self) -> str:
+        values = {name: _listed(value) for name, value in self.values.items()}
+        return self.condition.message.format(**values)
+
+    @property
+    def advice(self) -> str:
+        """What to do about it, in sentences; '' if it is no fault."""
+        return self.condition.advice.format(**self.values)
+
+
+def _listed(value: Any) -> Any:
+    """List several things, or counts by cause; leave other values as they are."""
+    if isinstance(value, Mapping):
+        value = [f'{cause} {count}' for cause, count in value.items()]
+    return ', '.join(map(str, value)) if isinstance(value, list) else value
+
+
+class GearReport(NamedTuple):
+    """Facts on one subject in the time since the last report."""
+
+    facts: Sequence[Fact]
+    """The gravest first."""
+    values: Mapping[str, Any]
+    """Counts, numbers in the unit of their name, and facts; None where there is none."""
+
+    @classmethod
+    def of(cls, facts: Iterable[Fact], values: Mapping[str, Any]) -> Self:
+        """Report facts in any order; those of the same level keep theirs."""
+        return cls(sorted(facts, key=lambda fact: -fact.condition.level), values)
+
+    @property
+    def level(self) -> int:
+        """The level of the gravest fact."""
+        return self.facts[0].condition.level if self.facts else OK
+
+    @property
+    def message(self) -> str:
+        """All facts."""
+        return '; '.join(map(str, self.facts)) or 'ok'
+
+    @property
+    def texts(self) -> dict[str, str]:
+        """The values as text, with `advice` where there are faults."""
+        texts = {name: _text(name, value) for name, value in self.values.items()}
+        if self.level:
+            advice = (fact.advice for fact in self.facts if fact.condition.level)
+            texts['advice'] = ' '.join(dict.fromkeys(advice))
+        return texts
+
+
+_FORMATS = {'Hz': '.1f', '%': '.1f', 'N·m': '.4g'}
+"""Formats of numbers by the first word of their unit."""
+_OWN_FORMATS = {'age of last input (s)': '.3f', 'rotor zero (rad)': '.9g'}
+
+
+def _text(name: str, value: Any) -> str:
+    if value is None:
+        return 'none'
+    if isinstance(value, bool):
+        return str(value).lower() if name == 'referenced' else 'yes' if value else 'no'
+    if isinstance(value, Estimate):
+        spread = value.uncertainty
+        return f'{value.value:.6g}' + ('' if spread is None else f' ± {spread:.2g}')
+    if isinstance(value, float):
+        unit = name.rpartition('(')[2].rstrip(')').partition(' ')[0]
+        return format(value, _OWN_FORMATS.get(name) or _FORMATS.get(unit, '.6g'))
+    return str(value)

@@ -1,0 +1,173 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The facts that are reported of the rotor input, with a simulated clock."""
+
+import math
+import struct
+
+import pytest
+from live import SECOND, rotor_bytes
+
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.monitors import Connections, DriverFacts, InputMonitor
+from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.statuses import Condition
+from gear_kinematics.wire.joint_reader import RejectedInputError
+
+SETTINGS = NodeParameters.load()
+START = 1000.0
+
+
+class Bench:
+    """An input and its monitor, with a clock that the test sets."""
+
+    def __init__(self) -> None:
+        self.input, self.monitor = RotorInput(SETTINGS), InputMonitor()
+        self.connections = Connections(DriverFacts(since=START))
+
+    def feed(self, at, *messages) -> None:
+        for data in messages:
+            self.monitor.last_input = at
+            try:
+                self.input.accept(data, lambda: SECOND)
+            except RejectedInputError:
+                continue
+            self.monitor.published += 1
+
+    def report(self, at):
+        return self.monitor.report(self.input, at, self.connections)
+
+    def facts(self, at):
+        return self.report(at).facts
+
+
+def good(stamp=1, position=1.0) -> bytes:
+    return rotor_bytes(stamp, position=[position])
+
+
+def unnormalised(seconds, nanoseconds) -> bytes:
+    return good()[:4] + struct.pack('<iI', seconds, nanoseconds) + good()[12:]
+
+
+BAD = rotor_bytes(1, position=[math.nan])
+NO_JOINT = rotor_bytes(1, ['wheel'], [1.0])
+NOT_FINITE = Condition.REJECTED(counts={'position not finite': 1})
+
+
+@pytest.fixture
+def bench() -> Bench:
+    return Bench()
+
+
+def test_rejects_and_losses_are_facts_of_the_next_report_alone(bench):
+    driver = bench.connections.rotor
+    bench.feed(START + 0.5, good(), BAD, b'', BAD)
+    driver.lost, bench.connections.unsent = 3, 2
+    assert bench.facts(START + 1.0) == [
+        Condition.REJECTED(counts={'position not finite': 2, 'not a JointState': 1}),
+        Condition.LOST(count=3),
+        Condition.UNSENT(count=2),
+    ]
+    bench.feed(START + 1.5, good(2))
+    report = bench.report(START + 2.0)
+    names = 'rejected: position not finite', 'lost messages', 'not sent'
+    assert (report.facts, *(report.values[name] for name in names)) == ([], 2, 3, 2)
+    bench.feed(START + 2.5, BAD)
+    assert bench.facts(START + 3.0) == [NOT_FINITE]
+    driver.losses_known = False
+    bench.feed(START + 3.5, good(3))
+    report = bench.report(START + 4.0)
+    assert report.facts == [Condition.LOSSES_UNKNOWN()]
+    assert report.values['lost messages'] == 'unknown'
+
+
+def test_drivers_of_other_joints_are_no_fault(bench):
+    bench.feed(START + 0.5, NO_JOINT)
+    assert bench.facts(START + 0.6) == [Condition.JOINT_MISSING(counts={'joint missing': 1})]
+    bench.feed(START + 0.7, good(1), NO_JOINT, good(2))
+    bench.connections.rotor.publishers = 3
+    report = bench.report(START + 1.6)
+    assert (report.facts, report.values['of others']) == ([], 2)
+    bench.feed(START + 1.7, good(3))  # the others are silent, and one of them sends the joint
+    assert bench.facts(START + 2.0) == [Condition.SEVERAL_DRIVERS(count=3)]
+
+
+def test_silence_beyond_the_timeout_is_an_error(bench):
+    def no_input(age):
+        return [Condition.NO_INPUT(age=pytest.approx(age))]
+
+    assert bench.facts(START + 1.0) == []
+    report = bench.report(START + 1.1)
+    assert (report.facts, report.values['age of last input (s)']) == (no_input(1.1), None)
+    bench.feed(START + 10.0, BAD)  # no silence
+    assert bench.facts(START + 11.0) == [NOT_FINITE]
+    assert bench.facts(START + 70.0) == no_input(60.0)
+    bench.feed(START + 70.5, good())
+    assert bench.facts(START + 71.0) == []
+
+
+def test_time_without_a_reference_is_told_once_with_a_count(bench):
+    bench.feed(START + 0.5, good())
+    bench.monitor.unreferenced += 77
+    assert bench.facts(START + 1.0) == [Condition.WERE_UNKNOWN(count=77)]
+    assert bench.facts(START + 1.5) == []
+
+
+def test_fault_in_the_graph_is_reported_as_long_as_it_lasts(bench):
+    bench.feed(START + 0.5, good())
+    listener, driver = (
+        condition(topic='out', policy='DURABILITY', node='/other')
+        for condition in (Condition.LISTENER_QOS, Condition.DRIVER_QOS)
+    )
+    bench.connections.graph = [listener, driver]
+    for _ in range(2):
+        assert bench.facts(START + 1.0) == [driver, listener]  # the error first
+    bench.connections.graph = []
+    assert bench.facts(START + 1.0) == []
+
+
+def test_values_count_what_happened(bench):
+    bench.feed(
+        START + 1.0,
+        rotor_bytes(0, position=[1.0]),  # no stamp: 1 s of the clock
+        good(SECOND),  # duplicate
+        good(SECOND + 5),
+        good(SECOND),  # out of order
+        good(20 * SECOND),
+        good(5 * SECOND),  # reset
+        unnormalised(5, SECOND + 1),
+        rotor_bytes(6 * SECOND, position=[1e17]),
+        BAD,
+        b'garbage',
+    )
+    assert bench.report(START + 1.25).texts == {
+        'rate (Hz)': '8.0',  # 10 messages in 1.25 s
+        'received': '10',
+        'published': '6',
+        'rejected: not a JointState': '1',
+        'rejected: out of order': '1',
+        'rejected: position not finite': '1',
+        'rejected: position too large': '1',
+        'lost messages': '0',
+        'of others': '0',
+        'not sent': '0',
+        'not referenced': '0',
+        'drivers': '0',
+        'duplicate stamps': '1',
+        'zero stamps': '1',
+        'unnormalised stamps': '1',
+        'clock resets': '1',
+        'age of last input (s)': '0.250',
+        'referenced': 'true',
+        'rotor zero (rad)': '0',
+        'home file': '',
+        'advice': 'docs/diagnostics.md explains why messages are rejected.',
+    }
+
+
+def test_rate_is_that_since_the_last_report(bench):
+    bench.feed(START + 0.5, *(good(n) for n in range(1, 31)))
+    assert bench.report(START + 1.0).values['rate (Hz)'] == 30.0
+    bench.feed(START + 1.5, *(good(n) for n in range(31, 41)))
+    assert bench.report(START + 3.0).values['rate (Hz)'] == 5.0
+    for _ in range(2):  # the second time without any time in between
+        assert bench.report(START + 4.0).values['rate (Hz)'] == 0.0
