@@ -47,7 +47,10 @@ def run(options: argparse.Namespace) -> ExitCode:
             )
     print(f'{options.out}: {sum(polled.count for polled in heard.values())} messages')
     for topic, polled in sorted(heard.items()):
-        print(f'    {topic}: {polled.count} messages, {polled.mean_rate:.0f} Hz')
+        lost = f', {polled.lost} lost on the way' * bool(polled.lost)
+        print(f'    {topic}: {polled.count} messages, {polled.mean_rate:.0f} Hz{lost}')
+    if any(polled.lost for polled in heard.values()):
+        print('the computer is too busy to record every message')
     if missing:
         print(f'nothing came on {missing}')
     return ExitCode.DONE

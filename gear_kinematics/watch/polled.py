@@ -11,6 +11,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.ros.drivers import DEPTH
+from gear_kinematics.state.losses import Losses
 from gear_kinematics.wire.cdr import SECOND
 
 _SPAN = 1.0  # s, over which rates are measured
@@ -58,6 +59,8 @@ class Polled:
         )
         self.last: Taken | None = None
         self.count = 0
+        self.losses = Losses()
+        """Of a topic with one publisher."""
         self._rate: float | None = None  # messages per second, once a second is over
         self._begun = 0  # ns
         self._before = time.monotonic(), 0  # s, and the count then
@@ -71,6 +74,7 @@ class Polled:
                 if (taken := source.handle.take_message(source.msg_type, source.raw)) is None:
                     break
                 data, about = taken
+                self.losses.note(about.get('publication_sequence_number'))
                 if self._wanted(data):
                     received = about['received_timestamp'] or time.time_ns()
                     new.append(Taken(data, received, about['source_timestamp'] or received))
@@ -95,6 +99,11 @@ class Polled:
         """Messages per second, from the first to the last."""
         span = self.last.received - self._begun if self.last else 0
         return SECOND * (self.count - 1) / span if span else 0.0
+
+    @property
+    def lost(self) -> int:
+        """Number of messages that did not arrive, as far as it is known."""
+        return self.losses.missing if self.losses.numbered else 0
 
     def close(self) -> None:
         """Unsubscribe."""

@@ -81,6 +81,8 @@ class Recorder:
                     qos = QoSProfile(depth=DEPTH, durability=durability)
                     self._open[topic] = kind, Polled(self._node, topic, message_type, qos=qos)
                     self._best_effort[topic] = Polled(self._node, topic, message_type)
+                if len(offers) > 1:
+                    self._open[topic][1].losses.numbered = False
                 if offers and (unused := self._best_effort.pop(topic, None)):
                     if any(offer.qos_profile.reliability == _BEST_EFFORT for offer in offers):
                         (_, other), self._open[topic] = self._open[topic], (kind, unused)
