@@ -5,7 +5,6 @@ The default values are in config/actuator.yaml alone.
 """
 
 import math
-import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -25,9 +24,6 @@ from gear_kinematics.share import share_directory
 
 NODE = 'gear_state_publisher'
 """The default name of the node."""
-
-_EVERY_NODE = re.compile(r'use_sim_time|start_type_description_service|qos_overrides\..*')
-"""Parameters that every node has and that are ignored here."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
