@@ -30,24 +30,16 @@ from gear_kinematics.bag import Bag
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.share import share_directory
-from gear_kinematics.state.monitors import (
-    Connections,
-    DriverFacts,
-    EncoderMonitor,
-    InputMonitor,
-)
-from gear_kinematics.state.output_encoder import OutputEncoder
+from gear_kinematics.state.gear_state import GearState
+from gear_kinematics.state.monitors import Connections, DriverFacts
 from gear_kinematics.state.reach import FLOOR, STALEST
-from gear_kinematics.state.rotor_input import RotorInput
-from gear_kinematics.state.state_messages import state_messages
-from gear_kinematics.state.turn_reference import TurnReference
 from gear_kinematics.validation.findings import sentence
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validator import Validator
 from gear_kinematics.wire.batches import decode_joint_states
 from gear_kinematics.wire.cdr import JointStateTemplate
 from gear_kinematics.wire.joint_reader import RejectedInputError, joints_of
-from gear_kinematics.wire.topics import ROTOR_STATE
+from gear_kinematics.wire.topics import OUTPUT_STATE, ROTOR_STATE
 
 SECOND = 1_000_000_000  # ns
 START = 1_700_000_000 * SECOND
@@ -454,60 +446,49 @@ KINDS = (
 
 
 class Node:
-    """The objects of the node, with a clock that is that of the recording."""
+    """The state of the node, with a clock that is that of the recording."""
 
     def __init__(self, parameters: NodeParameters, begun: int, phase: float) -> None:
         """Start at a time, ns; the first report is a phase, s, later."""
-        self.input = RotorInput(parameters)
-        self.reference = TurnReference(self.input)
-        self.encoder = OutputEncoder(parameters, self.reference)
-        self.monitor, self.encoder_monitor = InputMonitor(), EncoderMonitor()
-        self.connections = Connections(DriverFacts(since=begun * 1e-9))
+        self.gear = GearState(parameters)
+        self.gear.choose([OUTPUT_STATE])
+        self._connections = Connections(DriverFacts(since=begun * 1e-9))
         self.due = begun + round(phase * SECOND)
         self.reports: list[tuple[int, str]] = []
         """Time, ns, and what is said; '' if all is well."""
         self.outputs: list[tuple[int, float, float, bytes]] = []
         """Time, ns, error and its bound, rad, and message."""
-        self._messages = state_messages(parameters)
 
     def take(self, each: Sent, *, encoded: bool) -> None:
         """Process a message, as the node does."""
         while each.received >= self.due:
             self.report()
+        gear, encoder = self.gear, math.isnan(each.true)
+        monitor = gear.encoder_monitor if encoder else gear.monitor
+        monitor.last_input = each.received * 1e-9
         try:
-            if math.isnan(each.true):
-                self.encoder_monitor.last_input = each.received * 1e-9
-                self.encoder.accept(each.data, lambda: each.received)
+            if encoder:
+                gear.encoder(each.data, lambda: each.received)
                 return
-            self.monitor.last_input = each.received * 1e-9
-            sample = self.input.accept(each.data, lambda: each.received)
+            answer = gear.rotor(each.data, lambda: each.received)
         except RejectedInputError:
             return
-        parameters = self.input.parameters
-        if not self.outputs and parameters.single_turn:
-            self.input.home(each.true)
-        position, referenced = sample.position, self.input.referenced
-        if not referenced:
-            self.monitor.unreferenced += 1
+        if not self.outputs and gear.parameters.single_turn:
+            gear.input.home(each.true)
+        position, referenced = answer.sample.position, gear.input.referenced
+        gear.monitor.unreferenced += not referenced
         error = TURN * position.turns + position.angle - each.true
         self.outputs.append((
             each.received,
             abs(error) if referenced and len(self.outputs) else 0.0,
             each.bound,
-            next(iter(self._messages.encode(sample, ['output_state'])))[1] if encoded else b'',
+            gear.encode(answer)[0][1] if encoded else b'',
         ))  # fmt: skip
-        if self.encoder.received and (referenced or parameters.absolute):
-            self.encoder.follow(sample)
 
     def report(self) -> None:
         """Take the diagnostics."""
-        now, parameters = self.due * 1e-9, self.input.parameters
-        reports = (
-            self.encoder_monitor.report(self.encoder, parameters, now, self.connections.encoder),
-            self.monitor.report(self.input, now, self.connections, self.encoder.reference),
-        )
-        said = '; '.join(each.message for each in reports if each and each.level)
-        self.reports.append((self.due, said))
+        reports = self.gear.report(self.due * 1e-9, self._connections).values()
+        self.reports.append((self.due, '; '.join(each.message for each in reports if each.level)))
         self.due += SECOND
 
 
@@ -596,7 +577,7 @@ def false_alarms(recording: Recording) -> list[str]:
     node = live(recording, list(as_it_is.sent()), 1.0)
     # An absolute encoder first has to find the turns.
     reports = node.reports[recording.output is not None :]
-    return sorted({text for _, text in reports if text} | set(node.input.rejected))
+    return sorted({text for _, text in reports if text} | set(node.gear.input.rejected))
 
 
 # The table.

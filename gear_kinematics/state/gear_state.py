@@ -75,7 +75,8 @@ class GearState:
         self._configure(parameters, calibration)
         self.input = RotorInput(parameters)
         self.output_encoder = OutputEncoder(parameters, TurnReference(self.input))
-        self.monitor, self.encoder_monitor = InputMonitor(), EncoderMonitor()
+        self.monitor = InputMonitor(self.input, self.output_encoder)
+        self.encoder_monitor = EncoderMonitor(self.output_encoder)
         self.preload_monitor: PreloadMonitor | None = None
         """Set where samples are noted for reports on the preload."""
 
@@ -188,11 +189,8 @@ class GearState:
             now: time of a steady clock, s, as in `monitors`.
             connections: those of the node.
         """
-        encoder = self.output_encoder
-        rotor = self.monitor.report(self.input, now, connections, encoder.reference)
-        reports = {'rotor input': rotor}
-        limits, driver = self.parameters, connections.encoder
-        if errors := self.encoder_monitor.report(encoder, limits, now, driver):
+        reports = {'rotor input': self.monitor.report(now, connections)}
+        if errors := self.encoder_monitor.report(now, connections.encoder):
             reports['transmission error'] = errors
         if self.preload_monitor:
             reports['preload'] = self.preload_monitor.report()

@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 
 from gear_kinematics.correction.error_window import ErrorStatistics
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.output_range import range_fault
 from gear_kinematics.state.rotor_input import RotorInput
@@ -80,8 +79,10 @@ class DriverMonitor:
 class InputMonitor(DriverMonitor):
     """Monitors the rotor input."""
 
-    def __init__(self) -> None:
+    def __init__(self, rotor_input: RotorInput, encoder: OutputEncoder) -> None:
+        """Monitor an input, whose turns the encoder at the output may find."""
         super().__init__()
+        self._input, self._encoder = rotor_input, encoder
         self.published = 0
         self.unreferenced = 0
         """Valid inputs while the turns were not known."""
@@ -89,15 +90,9 @@ class InputMonitor(DriverMonitor):
         """Where `rotor_zero` is kept until the next start, or why it is not."""
         self._reported, self._rate, self._received = 0.0, 0.0, 0
 
-    def report(
-        self,
-        rotor_input: RotorInput,
-        now: float,
-        connections: Connections,
-        reference: TurnReference | None = None,
-    ) -> GearReport:
-        """Report on an input in the time since the last report, until now."""
-        driver = connections.rotor
+    def report(self, now: float, connections: Connections) -> GearReport:
+        """Report on the time since the last report, until now."""
+        rotor_input, driver = self._input, connections.rotor
         elapsed = now - max(self._reported, driver.since)
         count = rotor_input.received - rotor_input.of_others
         received = max(0, count - self._received)  # at first, others may count as rejected
@@ -125,19 +120,14 @@ class InputMonitor(DriverMonitor):
             'rotor zero (rad)': TURN * rotor_input.zero.turns + rotor_input.zero.angle,
             'home file': self.zero_kept or '',
         }
-        if reference:
+        if reference := self._encoder.reference:
             values['reference'] = rotor_input.origin if referenced else None
             values['reference checked'] = reference.checked
-        return GearReport.of(self._facts(rotor_input, age, connections, reference), values)
+        return GearReport.of(self._facts(age, connections), values)
 
-    def _facts(
-        self,
-        rotor_input: RotorInput,
-        age: float,
-        connections: Connections,
-        reference: TurnReference | None,
-    ) -> Iterator[Fact]:
-        driver, plausibility = connections.rotor, rotor_input.plausibility
+    def _facts(self, age: float, connections: Connections) -> Iterator[Fact]:
+        driver, rotor_input = connections.rotor, self._input
+        plausibility, reference = rotor_input.plausibility, self._encoder.reference
         grown = self._growth(
             {
                 **rotor_input.rejected,
@@ -181,19 +171,17 @@ class InputMonitor(DriverMonitor):
 class EncoderMonitor(DriverMonitor):
     """Monitors the encoder at the output, and the transmission error."""
 
-    def __init__(self) -> None:
+    def __init__(self, encoder: OutputEncoder) -> None:
+        """Monitor an encoder."""
         super().__init__()
+        self._encoder = encoder
         self._reported, self._compared = -math.inf, 0
 
-    def report(
-        self, encoder: OutputEncoder, parameters: NodeParameters, now: float, driver: DriverFacts
-    ) -> GearReport | None:
-        """Report on an encoder in the time since the last report, until now.
-
-        Return None until the encoder has sent a message. `parameters` have the limits.
-        """
+    def report(self, now: float, driver: DriverFacts) -> GearReport | None:
+        """Report on the time since the last report, until now; None before the first message."""
         if self.last_input is None:
             return None
+        encoder, parameters = self._encoder, self._encoder.parameters
         age = now - self.last_input
         matched = encoder.comparison.matched
         soon = now - self._reported < _SOON

@@ -37,16 +37,16 @@ class OutputEncoder:
         self._turn_reference = reference
         self.direction_checked = False
         """Whether both encoders have moved in the same sense; at rest, any direction fits."""
-        self._parameters = parameters
+        self.parameters = parameters
         self.configure(parameters)
 
     def configure(self, parameters: NodeParameters) -> None:
         """Compare anew, after a change of parameters or homing; all counts go on."""
         self.window = ErrorWindow(round(parameters.transmission_error_window * SECOND))
-        if _directions(parameters) != _directions(self._parameters):
+        if _directions(parameters) != _directions(self.parameters):
             self.direction_checked = False
         self._first: ErrorSample | None = None
-        self._parameters = parameters
+        self.parameters = parameters
         self._reader = JointReader(parameters.output_encoder_joint)
         self._ratio = parameters.gear.gear_ratio
         self.comparison.configure(
@@ -74,7 +74,7 @@ class OutputEncoder:
         except RejectedInputError as rejection:
             self.rejected[str(rejection)] += 1
             raise
-        angle = measured_angle(self._parameters, position)
+        angle = measured_angle(self.parameters, position)
         return self._note(self.comparison.add_measured(stamp or now(), angle))
 
     def follow(
@@ -101,7 +101,7 @@ class OutputEncoder:
 
     def _check_direction(self, sample: ErrorSample) -> None:
         """See whether the error grows by twice the travel, as it does the wrong way round."""
-        first, parameters = self._first or sample, self._parameters
+        first, parameters = self._first or sample, self.parameters
         self._first = first
         travel = abs(TURN * (sample.turns - first.turns) + sample.ideal - first.ideal)
         least = parameters.transmission_error_travel, 4.0 * parameters.transmission_error_limit

@@ -8,8 +8,8 @@ import pytest
 from live import SECOND, rotor_bytes
 
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.monitors import Connections, DriverFacts, InputMonitor
-from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.gear_state import GearState
+from gear_kinematics.state.monitors import Connections, DriverFacts
 from gear_kinematics.state.statuses import Condition
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
@@ -21,20 +21,21 @@ class Bench:
     """An input and its monitor, with a clock that the test sets."""
 
     def __init__(self) -> None:
-        self.input, self.monitor = RotorInput(SETTINGS), InputMonitor()
+        self.gear = GearState(SETTINGS)
+        self.monitor = self.gear.monitor
         self.connections = Connections(DriverFacts(since=START))
 
     def feed(self, at, *messages) -> None:
         for data in messages:
             self.monitor.last_input = at
             try:
-                self.input.accept(data, lambda: SECOND)
+                self.gear.rotor(data, lambda: SECOND)
             except RejectedInputError:
                 continue
             self.monitor.published += 1
 
     def report(self, at):
-        return self.monitor.report(self.input, at, self.connections)
+        return self.gear.report(at, self.connections)['rotor input']
 
     def facts(self, at):
         return self.report(at).facts
