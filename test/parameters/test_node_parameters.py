@@ -286,17 +286,6 @@ def test_one_of_several_files_has_something_for_the_node(tmp_path):
         require_any([*files, tmp_path / 'empty.yaml'], LEFT)
 
 
-def test_parameters_of_every_ros_node_are_known(tmp_path):
-    """gearkin reads the same file as the node."""
-    values = {
-        'use_sim_time': True,
-        'start_type_description_service': False,
-        'qos_overrides': {'/rotor_state': {'subscription': {'reliability': 'reliable'}}},
-        'qos_overrides./output_state.publisher.depth': 5,
-    }
-    assert load(config(tmp_path, ring_teeth=90, **values)).ring_teeth == 90
-
-
 @pytest.mark.parametrize('number', ['1.5e-3', '15e-4', '.0015'])
 def test_every_way_to_write_a_number_in_a_node_file_is_read(tmp_path, number):
     # YAML 1.1 as PyYAML reads it sees a text in 15e-4; rcl sees a number.

@@ -188,7 +188,8 @@ ROOT = '/gear_state_publisher'
 TEETH = 'ring_teeth: 81'
 OF_ANY_NODE = (
     f'{TEETH}, use_sim_time: false, start_type_description_service: false, '
-    'qos_overrides: {/rotor_state: {subscription: {reliability: reliable}}}'
+    'qos_overrides: {/rotor_state: {subscription: {reliability: reliable}}}, '
+    'qos_overrides./output_state.publisher.depth: 5'
 )
 
 

@@ -73,12 +73,8 @@ def test_messages_are_those_of_the_contract():
     )
     assert (cam.x, cam.y) == pytest.approx((-mesh.x, -mesh.y))
     assert [w.torque.z for w in joints.wrench] == [0.0] * 6 + [-9.5, 9.5]
-
-
-def test_without_effort_there_are_no_messages():
-    followed = LoadEstimator(BRACED)
-    found = followed.follow(RotorSample(5, split_turns(0.3), 10.0, None), 0)
-    assert not list(followed.rows(found, LOAD_TOPICS))
+    unknown = followed.follow(sample._replace(effort=None), 0)
+    assert not list(followed.rows(unknown, LOAD_TOPICS))
 
 
 def test_acceleration_lags_by_half_of_its_window():
@@ -143,9 +139,5 @@ def test_time_out_of_mesh_is_a_warning_until_the_next_report():
     report = monitor.report()
     assert report.facts == [Condition.OUT_OF_MESH(share=pytest.approx(25.0))]
     assert report.values['least margin (N·m)'] == pytest.approx(-1.0)
-    assert monitor.report().facts == [Condition.MARGIN_UNKNOWN(lacking='effort')]
-
-
-def test_without_effort_the_margin_is_unknown_and_no_warning():
-    report = monitored([math.nan, math.nan]).report()
-    assert report.facts == [Condition.MARGIN_UNKNOWN(lacking='effort')]
+    unknown = [Condition.MARGIN_UNKNOWN(lacking='effort')]
+    assert monitor.report().facts == monitored([math.nan] * 2).report().facts == unknown

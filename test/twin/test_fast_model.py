@@ -3,13 +3,11 @@
 
 import math
 from dataclasses import replace
-from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
-from gear_kinematics.correction.calibration_file import Order
 from gear_kinematics.kinematics import MechanismError
 from gear_kinematics.kinematics.preload import Preload, Stiffness
 from gear_kinematics.parameters import NodeParameters
@@ -126,34 +124,6 @@ def test_friction_holds_until_it_slides_and_opens_the_loop_by_twice_its_torque()
     assert 3000.0 * model.output_angle == pytest.approx(3.5, rel=2e-3)
     ramp(model, 3.001, 1.0)
     assert 3000.0 * model.output_angle == pytest.approx(1.5, rel=2e-3)
-
-
-def test_output_follows_the_errors_of_the_gear():
-    error = Order('output', Fraction(1, 19), 0.0, 2e-3)
-    model = FastModel(replace(gear(friction=0.02), errors=(error,)))
-    model.rotor_locked = True
-    model.rotor_angle, model.output_angle = RATIO * math.pi / -2.0, -math.pi / 2.0
-    ramp(model, 0.0, 0.0, seconds=2.0)
-    assert model.output_angle == pytest.approx(-math.pi / 2.0 + 2e-3, abs=1e-5)
-
-
-def test_locks_hold_either_side():
-    model = FastModel(gear())
-    model.output_locked = True
-    for _ in range(500):
-        model.advance(1e-3, 0.05, 0.0)
-    assert (model.output_angle, model.output_velocity) == (0.0, 0.0)
-    model.rotor_locked, angle = True, model.rotor_angle
-    model.advance(1e-3, 1.0, 0.0)
-    assert (model.rotor_angle, model.rotor_velocity) == (angle, 0.0)
-
-
-def test_wear_takes_the_preload():
-    model = FastModel(gear())
-    assert model.branch_torques == pytest.approx((1.5, -1.5))
-    model.gear = model.gear.worn(0.5 * model.gear.interference)
-    model.advance(1e-3, 0.0, 0.0)
-    assert model.branch_torques == pytest.approx((0.75, -0.75))
 
 
 def test_a_gear_that_is_too_stiff_for_its_inertia_is_refused():
