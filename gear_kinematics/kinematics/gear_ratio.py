@@ -12,7 +12,13 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.kinematics.rotor_turns import TURN, largest, lists_as_arrays, nearest_turn
+from gear_kinematics.kinematics.rotor_turns import (
+    BELOW_HALF,
+    TURN,
+    largest,
+    lists_as_arrays,
+    nearest_turn,
+)
 
 _TEXT = re.compile(r'[-+]?\d{1,16}(/\d{1,16}|\.\d{1,16})?', re.ASCII)
 _LARGEST_PRODUCT = 2**53
@@ -82,20 +88,22 @@ class GearRatio(Fraction):
         modulo q, so no digits cancel.
         """
         p, q, cycle = self._p, self._q, self._cycle
-        few = (abs(turns) if xp is math else largest(turns)) < cycle
+        few = -cycle < turns < cycle if xp is math else largest(turns) < cycle
         if not few:  # whole turns of the output as well
             cycles = xp.trunc(turns / cycle)
             turns = turns - cycle * cycles
         whole = xp.floor((turns + angle / TURN) * self._inverse + 0.5)  # nearest, up to rounding
         rest = (TURN * (p * turns - q * whole) + p * angle) / q
-        whole, rest = nearest_turn(whole, rest, xp)
+        if xp is not math or not -BELOW_HALF < rest < BELOW_HALF:  # without a call in most cases
+            whole, rest = nearest_turn(whole, rest, xp)
         if not few:
             whole = xp.trunc(whole + p * (cycle // q) * cycles)
         return whole, rest
 
     def output_rate(self, rotor_rate: Any) -> Any:
         """Output rate ω5 = ω2/i (eq. 3); accelerations are converted in the same way."""
-        return self._p * lists_as_arrays(rotor_rate) / self._q
+        rate = rotor_rate if isinstance(rotor_rate, float) else lists_as_arrays(rotor_rate)
+        return self._p * rate / self._q
 
     def rotor_angle(self, output_angle: Any) -> Any:
         """Rotor angle φ2 = i φ5 (eq. 5), rad."""

@@ -31,7 +31,7 @@ _TURN_LOW = TURN - _TURN_HIGH
 _EXACT_TURN = Fraction(TURN) + Fraction(TURN_TAIL)  # 2π to 32 digits
 _WHOLE = 1e-6  # relative difference of a period from the whole turns that are meant
 _NOISE = 0.05  # rad, greatest noise of any encoder
-_BELOW_HALF = math.nextafter(math.pi, 0.0)  # rad; any smaller angle is 0 turns, however rounded
+BELOW_HALF = math.nextafter(math.pi, 0.0)  # rad; any smaller angle is 0 turns, however rounded
 
 
 class RotorPosition(NamedTuple):
@@ -87,10 +87,15 @@ def split_turns(angle: Any) -> Any:
     Raises:
         ValueError: if a float angle is not finite or too large.
     """
-    # A float is recognised first and fast: the node calls this for every message.
-    if not isinstance(angle, float):
-        angle = lists_as_arrays(angle)
-    xp = np if not isinstance(angle, float) and isinstance(angle, np.ndarray) else math
+    # The node calls this for every message.
+    if isinstance(angle, float) and -_MANY_TURNS < angle < _MANY_TURNS:
+        turns = math.floor(angle / TURN + 0.5)
+        rest = angle - turns * _TURN_HIGH - turns * _TURN_LOW
+        if not -BELOW_HALF < rest < BELOW_HALF:
+            turns, rest = nearest_turn(turns, rest, math)
+        return _position((turns, rest - turns * TURN_TAIL))
+    angle = lists_as_arrays(angle)
+    xp = np if isinstance(angle, np.ndarray) else math
     size = abs(angle) if xp is math else largest(angle)
     if not size <= LARGEST_ANGLE:  # NaN compares false
         if xp is math:
@@ -113,7 +118,7 @@ def nearest_turn(turns: Any, rest: Any, xp: ModuleType) -> tuple[Any, Any]:
 
     `xp` is `math` for floats, else numpy. Most arrays need no correction, which is quickly seen.
     """
-    if (abs(rest) if xp is math else largest(rest)) < _BELOW_HALF:
+    if (abs(rest) if xp is math else largest(rest)) < BELOW_HALF:
         return turns, rest
     more = xp.floor(rest / TURN + 0.5)
     return turns + more, rest - TURN * more

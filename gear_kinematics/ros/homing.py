@@ -22,8 +22,8 @@ from gear_kinematics.state.statuses import Condition
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.cdr import SECOND
 
-_SPEED_SPAN = 0.1
-"""s between the positions that give a speed, at least: of messages at 1 kHz, one step of an
+_SPEED_SPAN = 100_000_000
+"""ns between the positions that give a speed, at least: of messages at 1 kHz, one step of an
 encoder with 4096 counts per turn would be 1.5 rad/s, and 0.08 rad/s at an output that rests."""
 
 
@@ -57,7 +57,7 @@ class Shaft:
         self.input, self.monitor = rotor_input, monitor
         self._seen = 0.0  # time of the last valid input; s of a steady clock
         self._before: RotorSample | None = None  # where `_speed` was measured
-        self._segment = 0  # of that
+        self._segment, self._due = -1, 0  # of that, and the stamp of the next measurement, ns
         self._speed = 0.0  # of the rotor, rad/s
 
     def note(self, sample: RotorSample, segment: int, now: float) -> None:
@@ -66,14 +66,16 @@ class Shaft:
         Without a velocity the speed is the mean over `_SPEED_SPAN`; 0 until there is one.
         """
         self._seen = now
-        if not self._before or self._segment != segment:  # other turns or zero
-            self._before, self._segment, self._speed = sample, segment, 0.0
-        elapsed = (sample.stamp - self._before.stamp) / SECOND
-        if elapsed >= _SPEED_SPAN:
-            travel = sample.position.since(self._before.position)
-            self._before, self._speed = sample, travel / elapsed
-        if sample.velocity is not None:
-            self._speed = sample.velocity
+        stamp, position, velocity, _ = sample
+        if not (before := self._before) or self._segment != segment:  # other turns or zero
+            self._segment, self._speed = segment, 0.0
+            self._before, self._due = sample, stamp + _SPEED_SPAN
+        elif stamp >= self._due:
+            elapsed = (stamp - before.stamp) / SECOND
+            self._speed = position.since(before.position) / elapsed
+            self._before, self._due = sample, stamp + _SPEED_SPAN
+        if velocity is not None:
+            self._speed = velocity
 
     @property
     def rotor_angle(self) -> float:

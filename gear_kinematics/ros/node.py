@@ -216,11 +216,13 @@ class GearStatePublisher(PublishingNode):
             return
         if self._driver_log.awaited:
             self._driver_log.heard({name: answer.sample for name, answer in answers})
-        self._publish_referenced(changed)
+        if changed:
+            self._publish_referenced(changed)
         self._outputs.send(self._arm.encode(answers))
         for name, answer in answers:
             self._actuators[name].state.note_published(answer)
-        self._publish_referenced(self._found_turns(answers))  # by the output's encoder
+        if found := self._found_turns(answers):  # by the output's encoder
+            self._publish_referenced(found)
 
     def _found_turns(self, taken: Iterable[tuple[str, object]]) -> dict[str, bool]:
         """Return whether turns are known, for the actuators for which that has changed."""
@@ -234,8 +236,6 @@ class GearStatePublisher(PublishingNode):
 
     def _publish_referenced(self, changed: Mapping[str, bool]) -> None:
         """Publish at once which turns have become known or unknown."""
-        if not changed:
-            return
         known, values = False, {}
         for name, value in changed.items():
             known |= self._actuators[name].referenced is not None
@@ -259,7 +259,8 @@ class GearStatePublisher(PublishingNode):
             else:
                 errors.append((name, answer))
         self._outputs.send(self._arm.encode_errors(errors))
-        self._publish_referenced(self._found_turns(errors))
+        if found := self._found_turns(errors):
+            self._publish_referenced(found)
 
     def _note_unsent(self, publisher: Publisher, error: Exception) -> None:
         # For example, with history keep_all and a blocked subscriber.

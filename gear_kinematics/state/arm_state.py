@@ -79,7 +79,10 @@ class ArmState:
         self, data: bytes, now: Callable[[], int], joints: JointsReader, take: _Take[_Answer]
     ) -> _Taken[_Answer]:
         if self._single:
-            return [_outcome('', take, self._single, data, now)]
+            try:
+                return [('', take(self._single, data, now))]
+            except RejectedInputError as rejection:
+                return [('', rejection)]
         if data[STAMP_BYTES] == _NO_STAMP:
             now = partial(int, now())  # all joints get the same
         found: Sequence[JointMessage | None]
@@ -90,7 +93,10 @@ class ArmState:
         taken: _Taken[_Answer] = []
         for (name, state), values in zip(self.actuators.items(), found, strict=True):
             if values is not None:
-                taken.append(_outcome(name, take, state, values, now))
+                try:
+                    taken.append((name, take(state, values, now)))
+                except RejectedInputError as rejection:
+                    taken.append((name, rejection))
             elif joints is self._rotors:
                 state.input.received += 1
                 state.input.of_others += 1
@@ -132,44 +138,37 @@ class ArmState:
         ]
 
 
-def _outcome(
-    name: str, take: _Take[_Answer], state: GearState, data: JointMessage, now: Callable[[], int]
-) -> tuple[str, _Answer | RejectedInputError]:
-    try:
-        return name, take(state, data, now)
-    except RejectedInputError as rejection:
-        return name, rejection
-
-
 def _joined(stamp: int, rows: Sequence[_Row]) -> bytes:
     """Encode a JointState with the joints of several."""
-    template, fields = _joined_template(tuple(template for template, _ in rows))
-    numbers: list[float] = []
-    for field in fields:
-        for (_, given), (start, end) in zip(rows, field, strict=True):
-            numbers += given[start:end] if start >= 0 else (end - start) * [math.nan]
-    return template.encode(stamp, numbers)
+    template, places = _joined_template(tuple([template for template, _ in rows]))
+    given: list[float] = []
+    for _, numbers in rows:
+        given += numbers
+    given.append(math.nan)
+    return template.encode(stamp, [given[place] for place in places])
 
 
 @lru_cache(maxsize=1024)
 def _joined_template(
     templates: tuple[JointStateTemplate, ...],
-) -> tuple[JointStateTemplate, list[list[tuple[int, int]]]]:
-    """Return the template of the joined message, and where the numbers of each field are.
+) -> tuple[JointStateTemplate, list[int]]:
+    """Return the template of the joined message, and the places of its numbers.
 
-    Where a template lacks the field, the place begins below 0.
+    A place is an index in the numbers of all templates; NaN, for what one lacks, follows them.
     """
     names = [name for template in templates for name in template.names]
-    present = [(True, template.velocity, template.effort) for template in templates]
-    fields = []
-    for field in range(3):
-        if not any(each[field] for each in present):
-            continue
-        places = []
-        for each, template in zip(present, templates, strict=True):
-            count = len(template.names)
-            start = count * sum(each[:field]) if each[field] else -count
-            places.append((start, start + count))
-        fields.append(places)
-    velocity, effort = (any(each[k] for each in present) for k in (1, 2))
-    return JointStateTemplate(names, velocity=velocity, effort=effort), fields
+    velocity = any(template.velocity for template in templates)
+    effort = any(template.effort for template in templates)
+    positions, velocities, efforts = list[int](), list[int](), list[int]()
+    total, start = sum(len(template.offsets) for template in templates), 0
+    for template in templates:
+        count = len(template.names)
+        for field, given in (
+            (positions, True),
+            (velocities, template.velocity),
+            (efforts, template.effort),
+        ):
+            field.extend(range(start, start + count) if given else [total] * count)
+            start += count if given else 0
+    places = positions + velocity * velocities + effort * efforts
+    return JointStateTemplate(names, velocity=velocity, effort=effort), places

@@ -70,7 +70,7 @@ class OutputEncoder:
         self.received += 1
         self._compare_one_segment()
         try:
-            stamp, _, position, *_ = self._reader.values(data)
+            stamp, _, position, *_ = self._reader.read(data)
         except RejectedInputError as rejection:
             self.rejected[str(rejection)] += 1
             raise

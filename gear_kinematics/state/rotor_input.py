@@ -146,7 +146,7 @@ class RotorInput:
         """
         self.received += 1
         try:
-            stamp, unnormalised, position, velocity, effort = self._reader.values(data)
+            stamp, unnormalised, position, velocity, effort = self._reader.read(data)
             self.unnormalised_stamps += unnormalised
             return self._take(stamp or self._clock(now), position, velocity, effort)
         except RejectedInputError as rejection:

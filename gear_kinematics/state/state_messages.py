@@ -62,7 +62,8 @@ class OutputMessages:
         """Return what the messages for a sample are encoded of."""
         output_turns, output_rest = self._ratio.output_angle(*sample.position, math)
         angle = TURN * output_turns + output_rest
-        return [(topic, *self._output_state(sample, angle)) for topic in topics]
+        _, _, velocity, effort = sample
+        return [(topic, *self._output_state(angle, velocity, effort)) for topic in topics]
 
     @np.errstate(over='ignore')  # an effort can overflow, as it does for a single sample
     def encode_outputs(self, samples: RotorSamples) -> dict[str, list[bytes]]:
@@ -81,11 +82,10 @@ class OutputMessages:
             if topic == CORRECTED_STATE:
                 turns, rest = self._ratio.output_angle(*sample.position, math)
                 angle = TURN * turns + rest + correction.deviation
-                stamp, position, velocity, effort = sample
+                _, _, velocity, effort = sample
                 if velocity is not None:
                     velocity *= 1.0 + correction.slope
-                corrected = RotorSample(stamp, position, velocity, effort)
-                yield topic, *self._output_state(corrected, angle)
+                yield topic, *self._output_state(angle, velocity, effort)
             else:
                 yield topic, self.angle, [correction.half_width]
 
@@ -103,36 +103,29 @@ class OutputMessages:
         }
 
     def _output_state(
-        self, sample: RotorSample, output_angle: float
-    ) -> tuple[Template, Sequence[float]]:
-        _, _, velocity, effort = sample
-        present = velocity is not None, effort is not None
-        numbers = self._output_numbers(present, output_angle, velocity, effort)
-        return self._output_states[present], numbers
+        self, output_angle: Any, velocity: Any, effort: Any
+    ) -> tuple[Template, list[Any]]:
+        """Template and numbers of an output_state: floats or arrays; None where absent."""
+        numbers = [output_angle]
+        if velocity is not None:
+            numbers.append(self._ratio.output_rate(velocity))
+        if effort is not None:
+            numbers.append(self._torque_ratio * effort)
+        return self._output_states[velocity is not None, effort is not None], numbers
 
     def _output_states_of(self, samples: RotorSamples, output_angle: Array) -> list[bytes]:
         output_states = len(samples.stamp) * [b'']
-        for present, template in self._output_states.items():
-            absent = np.isnan([samples.velocity, samples.effort])
+        absent = np.isnan([samples.velocity, samples.effort])
+        for present in self._output_states:
             rows = np.flatnonzero(np.all(present != absent.T, axis=1))
-            numbers = self._output_numbers(
-                present, output_angle[rows], samples.velocity[rows], samples.effort[rows]
+            rates, torques = samples.velocity[rows], samples.effort[rows]
+            template, numbers = self._output_state(
+                output_angle[rows], rates if present[0] else None, torques if present[1] else None
             )
             encoded = encode(template, samples.stamp[rows], numbers)
             for row, message in zip(rows.tolist(), encoded, strict=True):
                 output_states[row] = message
         return output_states
-
-    def _output_numbers(
-        self, present: tuple[bool, bool], output_angle: Any, velocity: Any, effort: Any
-    ) -> list[Any]:
-        """The numbers of an output_state: floats or arrays."""
-        numbers = [output_angle]
-        if present[0]:
-            numbers.append(self._ratio.output_rate(velocity))
-        if present[1]:
-            numbers.append(self._torque_ratio * effort)
-        return numbers
 
 
 class StateMessages(OutputMessages):
@@ -153,14 +146,14 @@ class StateMessages(OutputMessages):
 
     def rows(self, sample: RotorSample, topics: Iterable[str]) -> list[Row]:
         """Return what the messages for a sample are encoded of."""
-        turns, angle = sample.position
+        _, (turns, angle), velocity, effort = sample
         output_turns, output_rest = self._ratio.output_angle(turns, angle, math)
         output_angle = TURN * output_turns + output_rest
         branches: list[BranchPosition] = []
         rows: list[Row] = []
         for topic in topics:
             if topic == OUTPUT_STATE:
-                rows.append((topic, *self._output_state(sample, output_angle)))
+                rows.append((topic, *self._output_state(output_angle, velocity, effort)))
                 continue
             branches = branches or self._form.branches(angle, output_rest, math)
             if topic == BODY_POSES:

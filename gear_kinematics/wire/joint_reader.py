@@ -44,9 +44,7 @@ _MOST_LAYOUTS = 64  # kept; an arm has at most a driver for each joint
 JointValues = tuple[int, bool, float, float | None, float | None]
 """Stamp (ns, 0 if absent), whether it has a second or more of nanoseconds, position, velocity and
 effort; None for a value that is absent or not finite."""
-_Reads = list[Callable[[bytes], JointValues] | None]
-_JointsLayout = tuple[Callable[[bytes], tuple[Any, ...]], tuple[Any, ...], _Reads]
-"""What takes the defining bytes, those of the layout, and what reads each joint."""
+_Unpack = Callable[[bytes], tuple[Any, ...]]
 
 
 class RejectedInputError(ValueError):
@@ -106,33 +104,34 @@ class JointReader:
         """Read the joint of a name, or an index if no joint has a name; '' for the only one."""
         self._joint = joint.encode()
 
-    def values(self, data: JointMessage) -> JointValues:
-        """Return or raise what a message has."""
-        if isinstance(data, bytes):
-            return self.read(data)
-        if isinstance(data, tuple):
-            return data
-        raise data
-
-    def read(self, data: bytes) -> JointValues:
-        """Read a message.
+    def read(self, data: JointMessage) -> JointValues:
+        """Read a message, or return or raise what was read from it.
 
         Raises:
             RejectedInputError: if it has no usable position of the joint.
         """
+        if not isinstance(data, bytes):
+            if isinstance(data, RejectedInputError):
+                raise data
+            return data
         try:
             if len(data) != self._size or self._fixed_of(data) != self._fixed:
                 self._learn(data)
         except MalformedMessageError as error:
             raise RejectedInputError(MALFORMED) from error
-        return self._joint_of(data)
+        return self._take(self._numbers_of(data), data)
 
     def _learn(self, data: bytes) -> None:
         """Keep the layout of a message for the next ones."""
         layout = joint_state_layout(data)
         self._fixed_of = _definition(layout)
         self._fixed = self._fixed_of(data)
-        self._joint_of = _Joint(layout, self._joint).read
+        joint = _Joint(layout, self._joint)
+        offsets = joint.present
+        unpack, pick = _numbers(layout, offsets), joint.pick_from(offsets)
+        complete = len(offsets) == len(joint.offsets)
+        self._numbers_of = unpack if complete else lambda data: pick((*unpack(data), None))
+        self._take = joint.take
         self._size = layout.size if layout.size <= _MAX_KEPT else -1
 
 
@@ -157,32 +156,55 @@ class JointsReader:
         Raises:
             RejectedInputError: if the message is none.
         """
-        known = self._layouts.get(len(data), ())
-        reads = next((reads for fixed_of, fixed, reads in known if fixed_of(data) == fixed), None)
-        reads = reads or self._learn(data)
-        if not any(reads):
+        for layout in self._layouts.get(len(data), ()):
+            if layout.fixed_of(data) == layout.fixed:
+                break
+        else:
+            layout = self._learn(data)
+        if not layout.any_there:
             return [_missing(joint, data) for joint in self._joints]
-        return [read and _values_or_cause(read, data) for read in reads]
+        numbers = (*layout.unpack(data), None)
+        found: list[JointValues | RejectedInputError | None] = []
+        for joint in layout.joints:
+            if joint is None:
+                found.append(None)
+                continue
+            pick, take = joint
+            try:
+                found.append(take(pick(numbers), data))
+            except RejectedInputError as rejection:
+                found.append(rejection)
+        return found
 
-    def _learn(self, data: bytes) -> _Reads:
+    def _learn(self, data: bytes) -> '_JointsLayout':
         """Keep the layout of a message for the next ones."""
         try:
             layout = joint_state_layout(data)
         except MalformedMessageError as error:
             raise RejectedInputError(MALFORMED) from error
-        reads: _Reads = [
-            None if joint_index(layout, joint) is None else _Joint(layout, joint).read
-            for joint in self._joints
-        ]
+        learnt = _JointsLayout(layout, self._joints, data)
         if layout.size <= _MAX_KEPT:
             if sum(map(len, self._layouts.values())) >= _MOST_LAYOUTS:
                 self._layouts.clear()
                 self.there.clear()
             self.there.update(joints_of(data))
-            definition = _definition(layout)
-            kept = self._layouts.setdefault(layout.size, [])
-            kept.append((definition, definition(data), reads))
-        return reads
+            self._layouts.setdefault(layout.size, []).append(learnt)
+        return learnt
+
+
+class _JointsLayout:
+    """Several joints in the messages of one layout, whose numbers are unpacked in one call."""
+
+    def __init__(self, layout: MessageLayout, joints: Iterable[bytes], data: bytes) -> None:
+        self.fixed_of = _definition(layout)
+        self.fixed = self.fixed_of(data)
+        found = [_Joint(layout, joint) for joint in joints]
+        offsets = sorted({offset for each in found for offset in each.present})
+        self.unpack = _numbers(layout, offsets)
+        self.joints = [
+            None if each.missing else (each.pick_from(offsets), each.take) for each in found
+        ]
+        self.any_there = any(self.joints)
 
 
 class _Joint:
@@ -192,59 +214,50 @@ class _Joint:
         self._joint = joint
         index = joint_index(layout, joint)
         fit = arrays_fit(layout)
-        offsets = [
+        self.offsets = [
             offset + 8 * index if fit and index is not None and count else None
             for offset, count in layout.arrays
         ]
-        present = [offset for offset in offsets if offset is not None]
-        numbers = [(STAMP_OFFSET, 'iI'), *((offset, 'd') for offset in present)]
-        self._numbers_of = _unpacker(layout, numbers)
-        if None in offsets:
-            # After the stamp, which is two numbers; the None behind all stands for absent ones.
-            places = [-1 if offset is None else 2 + present.index(offset) for offset in offsets]
-            unpack, pick = self._numbers_of, itemgetter(0, 1, *places)
-            self._numbers_of = lambda data: pick((*unpack(data), None))
+        """Those of its position, velocity and effort; None for one that is absent."""
+        self.present = [offset for offset in self.offsets if offset is not None]
+        self.missing = index is None
         self._fault = POSITION_MISSING if fit else ARRAY_SIZES
-        if index is None:
-            self._fault = JOINT_MISSING
 
-    def read(self, data: bytes) -> JointValues:
-        """Read a message; raises RejectedInputError if it has no usable position."""
-        seconds, nanoseconds, position, velocity, effort = self._numbers_of(data)
+    def pick_from(self, offsets: Sequence[int]) -> Callable[[Sequence[Any]], tuple[Any, ...]]:
+        """Make a function that takes the joint's numbers out of all, and None behind them."""
+        # The stamp, which is two numbers, comes first.
+        places = [-1 if each is None else 2 + offsets.index(each) for each in self.offsets]
+        return itemgetter(0, 1, *places)
+
+    def take(self, numbers: Sequence[Any], data: bytes) -> JointValues:
+        """Check the numbers of a message; raises RejectedInputError if it has no position."""
+        seconds, nanoseconds, position, velocity, effort = numbers
         stamp = seconds * SECOND + nanoseconds
         if stamp > LATEST:
             raise RejectedInputError(STAMP_OUT_OF_RANGE)
         if position is None:
-            if self._fault != JOINT_MISSING:
-                raise RejectedInputError(self._fault)
-            raise _missing(self._joint, data)
-        if not abs(position) <= LARGEST_ANGLE:  # NaN compares false
+            raise _missing(self._joint, data) if self.missing else RejectedInputError(self._fault)
+        if not -LARGEST_ANGLE <= position <= LARGEST_ANGLE:  # NaN compares false
             finite = math.isfinite(position)
             raise RejectedInputError(POSITION_TOO_LARGE if finite else POSITION_NOT_FINITE)
-        if velocity is not None and not abs(velocity) <= GREATEST:
+        if velocity is not None and not -GREATEST <= velocity <= GREATEST:
             velocity = None
-        if effort is not None and not abs(effort) <= GREATEST:
+        if effort is not None and not -GREATEST <= effort <= GREATEST:
             effort = None
         return stamp, nanoseconds >= SECOND, position, velocity, effort
 
 
-def _values_or_cause(
-    read: Callable[[bytes], JointValues], data: bytes
-) -> JointValues | RejectedInputError:
-    try:
-        return read(data)
-    except RejectedInputError as rejection:
-        return rejection
+def _numbers(layout: MessageLayout, offsets: Iterable[int]) -> _Unpack:
+    """Make a function that takes the stamp and the float64 at offsets out of a message."""
+    return _unpacker(layout, [(STAMP_OFFSET, 'iI'), *((offset, 'd') for offset in offsets)])
 
 
-def _definition(layout: MessageLayout) -> Callable[[bytes], tuple[Any, ...]]:
+def _definition(layout: MessageLayout) -> _Unpack:
     """Make a function that takes the bytes that define a layout out of a message."""
     return _unpacker(layout, [(start, f'{end - start}s') for start, end in layout.fixed])
 
 
-def _unpacker(
-    layout: MessageLayout, items: Iterable[tuple[int, str]]
-) -> Callable[[bytes], tuple[Any, ...]]:
+def _unpacker(layout: MessageLayout, items: Iterable[tuple[int, str]]) -> _Unpack:
     """Make a function that takes items, given by offset and format, out of a message."""
     code, end = layout.order, 0
     for offset, item in items:
