@@ -21,7 +21,6 @@ _MOST_FRAMES = 2000
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     drawing.add_image(parser, '.gif')
     arguments.group(parser, 'motion').add_argument(
         '--rate', type=arguments.positive, default=1.0, help='playback speed (default: 1)'

@@ -80,15 +80,20 @@ def add_mechanism(parser: argparse.ArgumentParser, *, sizes: bool = False) -> No
     """Add the options for a mechanism: parameters of the node, tooth numbers and sizes."""
     add_config(parser)
     gear = group(parser, 'gear')
-    gear.add_argument(
-        '--ring-teeth', type=int, metavar='ZK', help='replace the parameter ring_teeth'
-    )
-    gear.add_argument(
-        '--satellite-teeth', type=int, metavar='ZS', help='replace the parameter satellite_teeth'
-    )
+    for name, metavar in ('ring', 'ZK'), ('satellite', 'ZS'):
+        text = f'replace the parameter {name}_teeth'
+        gear.add_argument(f'--{name}-teeth', type=int, metavar=metavar, help=text)
     for name in ('eccentricity', 'module') if sizes else ():
         text = f'replace the parameter {name}, m'
         gear.add_argument(f'--{name}', type=float, metavar='M', help=text)
+
+
+def add_running(parser: argparse.ArgumentParser, node: str, actuator: str) -> None:
+    """Add the options for a running node and its actuator, with texts on their defaults."""
+    text = f'the node, such as /left/{NODE} (default: {node})'
+    parser.add_argument('--node', default='', metavar='FULL_NAME', help=text)
+    text = f'actuator of an arm (default: {actuator})'
+    parser.add_argument('--actuator', default='', metavar='NAME', help=text)
 
 
 def add_quiet(parser: argparse.ArgumentParser) -> None:

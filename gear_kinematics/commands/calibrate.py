@@ -21,7 +21,6 @@ from gear_kinematics.parameters import NodeParameters
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     add_recordings(parser, 'rotor', 'output', 'torque')
     output = arguments.group(parser, 'output')
     output.add_argument(

@@ -30,7 +30,6 @@ from gear_kinematics.wire.topics import JOINT_STATE
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     add_recordings(parser, 'rotor', 'output', configured=False)
     recording = arguments.group(parser, 'recording')
     recording.add_argument(

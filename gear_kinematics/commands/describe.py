@@ -39,7 +39,6 @@ class _Fact(NamedTuple):
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     arguments.add_mechanism(parser, sizes=True)
     add_report_forms(parser)
 

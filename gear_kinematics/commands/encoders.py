@@ -75,17 +75,13 @@ def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
             help='take angle and torque as those of the rotor, unless a column is named after '
             'the output',
         )
-    count = arguments.between(1, kind=int)
-    group.add_argument(
-        '--rotor-counts',
-        type=count,
-        metavar='N',
-        help="steps per turn of the rotor's encoder, or that of the angle column, for angles in "
-        'counts, as in a column motor_inc (default: from the readings)',
+    of_rotor = (
+        "the rotor's encoder, or that of the angle column, for angles in counts, as in a column "
+        'motor_inc (default: from the readings)'
     )
-    group.add_argument(
-        '--output-counts', type=count, metavar='N', help='steps per turn of the output encoder'
-    )
+    for name, encoder in ('rotor', of_rotor), ('output', 'the output encoder'):
+        count, text = arguments.between(1, kind=int), f'steps per turn of {encoder}'
+        group.add_argument(f'--{name}-counts', type=count, metavar='N', help=text)
 
 
 def add_known_ratio(

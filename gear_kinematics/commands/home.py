@@ -3,21 +3,12 @@
 
 import argparse
 
-from gear_kinematics.commands import ExitCode
+from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import complain, warn_of_shared_memory
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
-    parser.add_argument(
-        '--node',
-        default='',
-        metavar='FULL_NAME',
-        help='the node, such as /left/gear_state_publisher (default: the only one that runs)',
-    )
-    parser.add_argument(
-        '--actuator', default='', metavar='NAME', help='actuator of an arm (default: all)'
-    )
+    arguments.add_running(parser, 'the only one that runs', 'all')
 
 
 def run(options: argparse.Namespace) -> ExitCode:

@@ -30,7 +30,6 @@ _NEIGHBOURS = 3
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     pinning.add_turn(parser, required=False)
     arguments.add_mechanism(parser)
     add_report_forms(parser)

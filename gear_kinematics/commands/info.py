@@ -20,7 +20,6 @@ _JOINTS = 4  # in the line
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     parser.add_argument('bags', nargs='+', metavar='BAG', help='file, directory or glob')
     bags.add_rotor(parser, configured=False)
     arguments.add_config(

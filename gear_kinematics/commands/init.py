@@ -26,7 +26,6 @@ from gear_kinematics.wire.nearest import among, listed
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     parser.add_argument('--topic', metavar='NAME', help="the driver's topic, if there are several")
     parser.add_argument('--joint', metavar='NAME', help="the rotor's joint, if there are several")
     add_known_ratio(

@@ -20,26 +20,22 @@ from gear_kinematics.report.document import Verdict, printable
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     parser.add_argument('bags', nargs='+', metavar='RECORDING', help='file, directory or glob')
     bags.add_rotor(parser)
     arguments.add_config(parser, actuator=arguments.ALL)
     add_columns(parser, 'rotor', 'angle', 'torque')
     gear = arguments.group(parser, 'gear')
-    gear.add_argument(
-        '--cam-rating',
-        type=arguments.positive,
-        default=math.nan,
-        metavar='N',
-        help="basic dynamic load rating C of a cam's ball bearing, for its L10 life",
-    )
-    gear.add_argument(
-        '--slot-friction',
-        type=arguments.positive,
-        default=math.nan,
-        metavar='MU',
-        help='coefficient of friction of the slots, for an estimate of their loss',
-    )
+    for name, unit, text in (
+        (
+            'cam-rating',
+            'N',
+            "dynamic load rating C of a cam's ball bearing, for its L10 life",
+        ),
+        ('slot-friction', 'MU', 'coefficient of friction of the slots, to estimate their loss'),
+    ):
+        gear.add_argument(
+            f'--{name}', type=arguments.positive, default=math.nan, metavar=unit, help=text
+        )
     way = arguments.group(parser, 'several recordings').add_mutually_exclusive_group()
     bags.add_jobs(way)
     add_report_forms(parser)

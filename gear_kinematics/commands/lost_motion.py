@@ -23,7 +23,6 @@ from gear_kinematics.report.document import Verdict
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     add_recordings(parser, 'angle', 'torque', 'rotor', 'output')
     arguments.group(parser, 'gear').add_argument(
         '--rated-torque',

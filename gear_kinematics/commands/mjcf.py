@@ -19,7 +19,6 @@ from gear_kinematics.twin.parameters import NODE, default_config
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     arguments.add_config(parser, NODE, 'config/simulated_actuator.yaml')
     gear = arguments.group(parser, 'gear')
     gear.add_argument(

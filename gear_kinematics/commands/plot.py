@@ -20,7 +20,6 @@ _OF_ONE = {'degrees': 'scheme', 'torque': 'scheme', 'speed': 'slides', 'bag': 'o
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     parser.add_argument(
         'figure',
         choices=_FIGURES,
@@ -30,18 +29,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     drawing.add_image(parser, '.png, .svg or .pdf')
     motion = arguments.group(parser, 'motion')
-    motion.add_argument(
-        '--degrees',
-        type=arguments.finite,
-        metavar='DEG',
-        help=f'rotor angle of the scheme (default: {_DEGREES:g})',
-    )
-    motion.add_argument(
-        '--speed',
-        type=arguments.finite,
-        metavar='RAD/S',
-        help='rotor speed of slides (default: 3000 rpm)',
-    )
+    for name, unit, text in (
+        ('degrees', 'DEG', f'rotor angle of the scheme (default: {_DEGREES:g})'),
+        ('speed', 'RAD/S', 'rotor speed of slides (default: 3000 rpm)'),
+    ):
+        motion.add_argument(f'--{name}', type=arguments.finite, metavar=unit, help=text)
 
 
 def run(options: argparse.Namespace) -> ExitCode:

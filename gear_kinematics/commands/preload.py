@@ -36,7 +36,6 @@ class _Answer(NamedTuple):
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     turns = pinning.add_turn(parser, required=True)
     turns.add_argument(
         '--setting',
@@ -45,18 +44,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar=('TOOTH', 'RING_HOLE', 'CHASSIS_HOLE'),
         help='pin setting of the ring gear',
     )
-    turns.add_argument(
-        '--wanted-preload',
-        type=float,
-        metavar='N·m',
-        help='torque in both branches without load; negative for a turn in the other direction',
-    )
-    turns.add_argument(
-        '--wanted-threshold',
-        type=float,
-        metavar='N·m',
-        help='load up to which both branches stay in mesh',
-    )
+    for name, text in (
+        ('preload', 'torque in both branches without load; negative: turn in the other direction'),
+        ('threshold', 'load up to which both branches stay in mesh'),
+    ):
+        turns.add_argument(f'--wanted-{name}', type=float, metavar='N·m', help=text)
     turns.add_argument(
         '--from',
         dest='recording',

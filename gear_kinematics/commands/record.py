@@ -10,7 +10,6 @@ from gear_kinematics.wire.nearest import listed
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     parser.add_argument('out', type=Path, metavar='OUT', help='folder to create')
     arguments.add_config(
         parser, default='none; a copy of FILE is kept in OUT, for validate', actuator=arguments.ALL

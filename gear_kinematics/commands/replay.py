@@ -15,7 +15,6 @@ from gear_kinematics.wire.topics import ROTOR_STATE
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     parser.add_argument('bag', type=Path, metavar='BAG')
     bags.add_rotor(parser, configured=False)
     playing = arguments.group(parser, 'motion')

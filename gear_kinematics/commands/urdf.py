@@ -18,7 +18,6 @@ from gear_kinematics.wire.nearest import listed
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     arguments.add_config(
         parser, actuator='print only this one of the `actuators` of an arm (default: all)'
     )

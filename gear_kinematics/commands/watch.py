@@ -3,26 +3,17 @@
 
 import argparse
 
-from gear_kinematics.commands import ExitCode
+from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import Console, warn_of_shared_memory
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     parser.add_argument(
         '--text',
         action='store_true',
         help='show text in the terminal, or lines in a pipe, instead of a page',
     )
-    parser.add_argument(
-        '--node',
-        default='',
-        metavar='FULL_NAME',
-        help='the node, such as /left/gear_state_publisher (default: the first that runs)',
-    )
-    parser.add_argument(
-        '--actuator', default='', metavar='NAME', help='actuator of an arm (default: the first)'
-    )
+    arguments.add_running(parser, 'the first that runs', 'the first')
 
 
 def run(options: argparse.Namespace) -> ExitCode:
