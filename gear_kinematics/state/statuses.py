@@ -89,11 +89,7 @@ class Condition(Enum):
         'Check whether an encoder has slipped; then call ~/home, or restart the node.',
     )
     NOT_CHECKED = OK, 'reference not checked', ''
-    WERE_UNKNOWN = (
-        WARN,
-        'turns unknown for {count} inputs',
-        'Do not use the outputs of that time.',
-    )
+    WERE_UNKNOWN = WARN, 'turns unknown for {count} inputs', 'Do not use the outputs of that time.'
     HOMED = OK, 'homed', ''
     EXACT_TURNS = OK, 'turns of a single-turn encoder, exact', ''
     EXACT_PERIODS = OK, 'periods of the encoder, exact', ''

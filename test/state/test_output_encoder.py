@@ -82,16 +82,6 @@ def test_error_is_the_measured_minus_the_ideal_angle(direction, zero):
     assert bench.encoder.comparison.unmatched == {'no ideal angle before': 1}
 
 
-def test_nothing_is_compared_across_a_gap(bench):
-    bench.measure(START, 0.0)
-    bench.turn(START, 0.0)
-    assert len(bench.turn(START + 100 * MS, 0.0)) == 1
-    assert len(bench.measure(START + 50 * MS, 0.0)) == 1
-    assert len(bench.measure(START + 150 * MS, 0.0)) == 0
-    assert len(bench.turn(START + 201 * MS, 0.0)) == 0
-    assert bench.encoder.comparison.unmatched['gap of the ideal angle'] == 1
-
-
 def test_joint_is_looked_up_by_its_name():
     bench = Bench(replace(SETTINGS, output_encoder_joint='shaft'))
     with pytest.raises(RejectedInputError, match='joint missing'):
