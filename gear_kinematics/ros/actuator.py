@@ -1,26 +1,84 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""An actuator of the node: its state, and its shaft."""
+"""An actuator of the node: its state, where its shaft is, and how fast its rotor turns."""
+
+import math
+import time
 
 from gear_kinematics.correction.calibration_file import Calibration
+from gear_kinematics.kinematics import RotorSample
+from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.ros.homing import Shaft
 from gear_kinematics.state.gear_state import GearState, RotorAnswer
 from gear_kinematics.state.loads import PreloadMonitor
+from gear_kinematics.wire import topics
+from gear_kinematics.wire.cdr import SECOND
+
+_SPEED_SPAN = 100_000_000
+"""ns between the positions that give a speed, at least: of messages at 1 kHz, one step of an
+encoder with 4096 counts per turn would be 1.5 rad/s, and 0.08 rad/s at an output that rests."""
+
+
+class RefusedError(RuntimeError):
+    """Why a shaft cannot be homed."""
 
 
 class Actuator:
-    """The state of an actuator, which is reported, and where its shaft is."""
+    """The state of an actuator, and the motion of its shaft."""
 
     def __init__(self, parameters: NodeParameters, calibration: Calibration | None) -> None:
         """Start without messages."""
         self.state = GearState(parameters, calibration)
         if parameters.preload:
             self.state.preload_monitor = PreloadMonitor(parameters)
-        self.shaft = Shaft(self.state.input, self.state.monitor)
         self.referenced: bool | None = None
         """Whether the turns are known, as it was published last."""
+        self._seen = 0.0  # time of the last valid input; s of a steady clock
+        self._before: RotorSample | None = None  # where `_speed` was measured
+        self._segment, self._due = -1, 0  # of that, and the stamp of the next measurement, ns
+        self._speed = 0.0  # of the rotor, rad/s
 
     def note(self, answer: RotorAnswer, now: float) -> None:
-        """Take note of a valid message of the rotor, which came now."""
-        self.state.monitor.last_input = now
-        self.shaft.note(answer.sample, answer.segment, now)
+        """Take note of a valid message of the rotor, which came now.
+
+        Without a velocity the speed is the mean over `_SPEED_SPAN`; 0 until there is one.
+        """
+        self.state.monitor.last_input = self._seen = now
+        sample, segment, *_ = answer
+        stamp, position, velocity, _ = sample
+        if not (before := self._before) or self._segment != segment:  # other turns or zero
+            self._segment, self._speed = segment, 0.0
+            self._before, self._due = sample, stamp + _SPEED_SPAN
+        elif stamp >= self._due:
+            elapsed = (stamp - before.stamp) / SECOND
+            self._speed = position.since(before.position) / elapsed
+            self._before, self._due = sample, stamp + _SPEED_SPAN
+        if velocity is not None:
+            self._speed = velocity
+
+    @property
+    def rotor_angle(self) -> float:
+        """The angle of the rotor at `home_angle`, rad."""
+        parameters = self.state.parameters
+        return float(parameters.gear.gear_ratio.rotor_angle(parameters.home_angle))
+
+    def home_zero(self) -> tuple[float, str]:
+        """Find `rotor_zero` for a shaft at `home_angle`, rad; says where the shaft was and is.
+
+        Raises:
+            RefusedError: if the shaft cannot be homed; the text says why.
+        """
+        parameters, rotor = self.state.parameters, self.state.input
+        ratio, limit = parameters.gear.gear_ratio, parameters.home_max_speed
+        try:
+            zero = rotor.zero_for(self.rotor_angle)
+            before = rotor.turns.relative_to(rotor.zero, parameters.rotor_direction)
+        except RuntimeError as error:  # after the joint was changed, too
+            raise RefusedError(f'there was no valid {topics.ROTOR_STATE} yet') from error
+        if (age := time.monotonic() - self._seen) > parameters.input_timeout:
+            raise RefusedError(f'the last valid {topics.ROTOR_STATE} came {age:.1f} s ago')
+        if (speed := abs(ratio.output_rate(self._speed))) > limit:
+            too_fast = f'the shaft turns at {speed:.3g} rad/s'
+            raise RefusedError(f'{too_fast}; home_max_speed is {limit:g} rad/s')
+        whole, rest = ratio.output_angle(*before, math)
+        was, now = math.degrees(TURN * whole + rest), math.degrees(parameters.home_angle)
+        return zero, f'the shaft was at {was:z.1f}° and is now {now:z.1f}°'

@@ -99,8 +99,7 @@ class GearStatePublisher(PublishingNode):
             self._display = Display(self, shown, self._outputs)
             self._display.update(shown)
         self.add_post_set_parameters_callback(self._configure)
-        shafts = {name: each.shaft for name, each in self._actuators.items()}
-        self._homing = Homing(self, home_file, shafts, zeros)
+        self._homing = Homing(self, home_file, self._actuators, zeros)
         # A missing input must be reported even while a simulated clock is paused.
         self.create_timer(
             _REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME)

@@ -90,7 +90,7 @@ def test_turns_that_the_output_encoder_adds_are_no_speed(homing):
         node._on_output_encoder(shaft)
         drive(node, [-38.0 % math.tau], number * MILLISECOND)
         if node._actuators[''].state.input.referenced:
-            answers.append(node._actuators[''].shaft._speed)
+            answers.append(node._actuators['']._speed)
     assert len(answers) > 100
     assert set(answers) == {0.0}
     assert home(node).message.startswith('the shaft was at 114.6° and is now 0.0°')
@@ -99,7 +99,7 @@ def test_turns_that_the_output_encoder_adds_are_no_speed(homing):
 def test_position_that_is_old_is_not_homed(homing):
     node = homing()
     drive(node, [1.0])
-    node._actuators[''].shaft._seen -= 1234.5
+    node._actuators['']._seen -= 1234.5
     node._on_rotor_state(b'no message')
     assert home(node).message == 'the last valid rotor_state came 1234.5 s ago'
 
