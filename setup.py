@@ -29,6 +29,7 @@ WATCH = ['tornado>=6.2']
 ROSBAGS = ['rosbags>=0.11']
 MESH = ['mapbox-earcut']
 PANDAS = ['pandas>=2.1']
+TABLES = ['scipy>=1.11', 'h5py', 'pyarrow>=14', 'openpyxl>=3.1', 'npTDMS>=1.7', 'asammdf>=7.4']
 
 setup(
     name=PACKAGE,
@@ -88,8 +89,8 @@ setup(
         'plot': ['matplotlib>=3.6', 'pillow'],
         # `gearkin lost-motion` and `calibrate`, and the load spectrum of `gearkin loads`
         'measure': ['scipy>=1.11', 'rainflow>=3.1', *PANDAS],
-        # Tables that are no text: .parquet, .tdms, .mf4; rosdep has no keys for the last two.
-        'tables': [*PANDAS, 'scipy>=1.11', 'pyarrow>=14', 'npTDMS>=1.7', 'asammdf>=7.4'],
+        # Tables that are no text: .parquet, .mat, .xlsx, .tdms, .mf4
+        'tables': [*PANDAS, *TABLES],
         # `--scheduler` of `gearkin validate` and `gearkin loads`
         'cluster': ['distributed>=2024.1'],
         # `gearkin urdf --meshes`

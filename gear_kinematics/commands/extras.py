@@ -14,6 +14,8 @@ EXTRAS = {
     'pyarrow': 'tables',
     'nptdms': 'tables',
     'asammdf': 'tables',
+    'h5py': 'tables',
+    'openpyxl': 'tables',
     'rainflow': 'measure',
     'rosbags': 'rosbags',
     'distributed': 'cluster',

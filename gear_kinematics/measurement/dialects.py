@@ -6,25 +6,22 @@ import io
 import math
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from itertools import takewhile
 from operator import itemgetter
 from pathlib import Path
-from typing import Any, NamedTuple
-
-import numpy as np
+from typing import IO, Any, NamedTuple
 
 from gear_kinematics.measurement.cells import Element, cells_of, elements_of, numbers, weight
 from gear_kinematics.measurement.columns import known_units, time_among
 
 _MOST_ROWS = 1_000_000
 """A quarter of an hour at 1 kHz: measuring takes up to 250 bytes a row, beside pandas itself."""
-_HEAD, _BLOCK = 2**16, 2**23
-"""Bytes in which the dialect shows, and that are read at once."""
+_HEAD, _BLOCK = 2**16, 2**20
+"""Bytes in which the dialect shows, and characters that are read at once."""
 _ROWS, _BEGIN = 100, 3
 """Rows of the head that show what the columns contain; rows of numbers that begin a table."""
-_LONG = 2**16
-"""Bytes that have some rows in them."""
 _SEPARATORS = ';', '\t', ',', '|', ' '
 _COMMENT = ('#', '//', '%', 'sep=', 'SEP=')
 _BOMS = {b'\xef\xbb\xbf': 'utf-8-sig', b'\xff\xfe': 'utf-16', b'\xfe\xff': 'utf-16'}
@@ -64,7 +61,6 @@ def loaded(
 class _Layout(NamedTuple):
     """What is where in a text."""
 
-    encoding: str
     separator: str
     point: str
     start: int
@@ -76,51 +72,83 @@ class _Layout(NamedTuple):
     clocks: dict[str, str]
 
 
-def open_text(path: Path) -> TableFile:
-    """Find out the dialect of a text.
+class _Rows(io.TextIOBase):
+    """One row of so many of a text, of which pandas need not parse the others."""
+
+    def __init__(self, file: IO[str], every: int) -> None:
+        self._file, self._every, self._skip = file, every, 0
+
+    def read(self, _size: int | None = None) -> str:
+        chosen: list[str] = []
+        while not chosen and (rows := self._file.readlines(_BLOCK)):
+            *others, last = rows
+            if last[-1] not in '\r\n' and len(last) < min(map(len, others), default=0) - 1:
+                rows = others  # the last one was cut
+            chosen = rows[self._skip :: self._every]
+            self._skip = (self._skip - len(rows)) % self._every
+        return ''.join(chosen)
+
+
+def open_text(path: Path, content: bytes | None = None) -> TableFile:
+    """Find out the dialect of a text, which may be compressed, or of the content of a workbook.
 
     Raises:
         OSError: if it cannot be read.
         ValueError: if it is no table.
     """
-    with path.open('rb') as file:
-        head = file.read(_HEAD)
+    import pandas as pd  # noqa: PLC0415, of an extra
+    from pandas.io.common import get_handle  # noqa: PLC0415, which decompresses
+
+    def opened(**how: Any) -> Any:
+        return get_handle(path if content is None else io.BytesIO(content), **how)
+
+    with opened(mode='rb', compression='infer', is_text=False) as file:
+        head = file.handle.read(_HEAD)
+        size = len(head) + sum(map(len, iter(partial(file.handle.read, _BLOCK), b'')))
     encoding = _encoding(head)
-    lines = codecs.getincrementaldecoder(encoding)('replace').decode(head).splitlines()
-    if len(head) == _HEAD and not (lines := lines[:-1]):
+    text = codecs.getincrementaldecoder(encoding)('replace').decode(head)
+    lines = [*io.StringIO(text, newline=None)]
+    if size > _HEAD and not (lines := lines[:-1]):
         raise ValueError(f'the first row is longer than {_HEAD} characters')
-    layout = _layout(lines, encoding)
+    layout = _layout(lines)
+
+    def read(places: Sequence[int], every: int) -> Any:
+        with opened(mode='r', compression='infer', encoding=encoding, errors='replace') as file:
+            for _ in range(layout.start):  # pandas would heed quotation marks in them
+                file.handle.readline()
+            return pd.read_csv(
+                _Rows(file.handle, every),
+                sep=r'\s+' if layout.separator == ' ' else layout.separator,
+                decimal=layout.point if layout.point != layout.separator else '.',
+                header=None,
+                names=range(len(layout.names)),
+                usecols=places,
+                index_col=False,
+                skipinitialspace=True,
+                low_memory=False,
+            )
+
     lower = [name.lower() for name in layout.names]
     if _VALUE in lower and (topics := [name for name in _TOPICS if name in lower]):
+        frame = read(range(len(lower)), 1).set_axis(layout.names, axis=1)
         columns = (layout.names[lower.index(name)] for name in (topics[0], _VALUE))
-        return _long(path, layout, *columns)
+        return _long(frame, layout.point, *columns)
     elements = elements_of(lines[layout.start :][:_ROWS], layout.names, layout.separator)
     arrays = {element.place for element in elements.values()}
     names = [name for k, name in enumerate(layout.names) if k not in arrays] + [*elements]
 
     def load(wanted: Sequence[str]) -> tuple[dict[str, Any], int]:
-        rows = path.stat().st_size / len(head) * len(lines)
-        every = 2 ** max(0, math.ceil(math.log2(rows / _MOST_ROWS)))
+        every = 2 ** max(0, math.ceil(math.log2(size / len(head) * len(lines) / _MOST_ROWS)))
         sources = [elements.get(name) or layout.names.index(name) for name in wanted]
         places = {k for one in sources for k in (one[:2] if isinstance(one, Element) else [one])}
-        parts: list[list[Any]] = [[] for _ in wanted]
-        for frame in _frames(path, layout, sorted(places), every):
-            for part, one in zip(parts, sources, strict=True):
-                column = one.of(frame) if isinstance(one, Element) else frame[one]
-                part.append(numbers(column, layout.point))
-        return {name: _joined(part) for name, part in zip(wanted, parts, strict=True)}, every
+        frame = read(sorted(places), every)
+        columns = (one.of(frame) if isinstance(one, Element) else frame[one] for one in sources)
+        values = (numbers(column, layout.point) for column in columns)
+        return dict(zip(wanted, values, strict=True)), every
 
     first = dict(zip(layout.names, layout.row, strict=False))
     units = layout.units | {name: 'rad' for name, one in elements.items() if one.is_position}
     return TableFile(names, units, layout.clocks, first, load)
-
-
-def _joined(parts: Sequence[Any]) -> Any:
-    """Join numbers, or times where there are any."""
-    if 'M' in {part.dtype.kind for part in parts}:
-        none = np.datetime64('NaT', 'ns')
-        parts = [part if part.dtype.kind == 'M' else np.full(len(part), none) for part in parts]
-    return np.concatenate(parts)
 
 
 def _encoding(head: bytes) -> str:
@@ -128,8 +156,9 @@ def _encoding(head: bytes) -> str:
     if encoding := next((_BOMS[mark] for mark in _BOMS if head.startswith(mark)), ''):
         return encoding
     if 0 in head:
-        if head[::2].count(0) == 0 and head[1::2].count(0) > len(head) // 4:
-            return 'utf-16-le'
+        zeros = head[::2].count(0), head[1::2].count(0)
+        if min(zeros) == 0 and max(zeros) > len(head) // 4:
+            return 'utf-16-le' if zeros[1] else 'utf-16-be'
         raise ValueError('not text')
     try:
         codecs.getincrementaldecoder('utf-8')().decode(head)
@@ -138,55 +167,7 @@ def _encoding(head: bytes) -> str:
     return 'utf-8'
 
 
-def _blocks(path: Path, layout: _Layout, every: int) -> Iterator[bytes]:
-    """Yield one row of so many as UTF-8, some at a time; a last one that was cut as nan."""
-    decoder = codecs.getincrementaldecoder(layout.encoding)('replace')
-    skip, row, rest = layout.start, 0, b''
-    with path.open('rb') as file:
-        block = file.read(_BLOCK)
-        while block:
-            following = file.read(_BLOCK)
-            if not layout.encoding.startswith('utf-8'):
-                block = decoder.decode(block).encode()
-            end = block.rfind(b'\n') + 1
-            lines, rest = (rest + block[:end], block[end:]) if end else (b'', rest + block)
-            lines = lines.split(b'\n', skip)[-1] if skip else lines
-            if rest and not following:
-                before = lines[-_LONG:].split(b'\n')[1:-1]
-                cut = before and len(rest) < min(map(len, before))
-                none = layout.separator.join(['nan'] * len(layout.names)).encode()
-                lines += (none if cut else rest) + b'\n'
-            if every > 1:
-                ends = 1 + np.flatnonzero(np.frombuffer(lines, np.uint8) == ord('\n'))
-                chosen = slice(-row % every, None, every)
-                row += len(ends)
-                starts = np.append(0, ends[:-1])[chosen].tolist()
-                spans = zip(starts, ends[chosen].tolist(), strict=True)
-                lines = b''.join([lines[start:end] for start, end in spans])
-            block, skip = following, 0
-            yield lines
-
-
-def _frames(path: Path, layout: _Layout, places: Sequence[int], every: int) -> Iterator[Any]:
-    """Read some columns of one row of so many, some rows at a time."""
-    import pandas as pd  # noqa: PLC0415, of an extra
-
-    for block in _blocks(path, layout, every):
-        if block.strip():
-            yield pd.read_csv(
-                io.BytesIO(block),
-                sep=r'\s+' if layout.separator == ' ' else layout.separator,
-                decimal=layout.point if layout.point != layout.separator else '.',
-                header=None,
-                names=range(len(layout.names)),
-                usecols=places,
-                index_col=False,
-                skipinitialspace=True,
-                encoding_errors='replace',
-            )
-
-
-def _layout(lines: list[str], encoding: str) -> _Layout:
+def _layout(lines: Sequence[str]) -> _Layout:
     """Find separator, decimal point, names and units.
 
     Raises:
@@ -223,7 +204,7 @@ def _layout(lines: list[str], encoding: str) -> _Layout:
         found = _names(above, separator, max(width, len(row)), 1 + max(numeric))
     else:
         found = _joint_state(row)
-    return _Layout(encoding, separator, point, start, row, *found)
+    return _Layout(separator, point, start, row, *found)
 
 
 def _score(lines: Sequence[str], separator: str, point: str) -> float:
@@ -284,17 +265,13 @@ def _joint_state(row: Sequence[str]) -> tuple[list[str], dict[str, str], dict[st
     return names, dict.fromkeys(joints, 'rad'), {}
 
 
-def _long(path: Path, layout: _Layout, topic: str, value: str) -> TableFile:
+def _long(frame: Any, point: str, topic: str, value: str) -> TableFile:
     """Return the series in a table with a row for each value, as exports of plots have them."""
-    import pandas as pd  # noqa: PLC0415, of an extra
-
-    places = range(len(layout.names))
-    frame = pd.concat([*_frames(path, layout, places, 1)]).set_axis(layout.names, axis=1)
-    clock, unit = time_among(layout.names)
+    clock, unit = time_among(frame.columns)
     columns, clocks = {}, {}
     for name, series in frame.groupby(topic, sort=False):
-        columns[str(name)] = numbers(series[value], layout.point)
+        columns[str(name)] = numbers(series[value], point)
         if clock:
             clocks[str(name)] = own = f'{clock} of {name}'
-            columns[own] = numbers(series[clock], layout.point)
+            columns[own] = numbers(series[clock], point)
     return loaded(columns, dict.fromkeys(clocks.values(), f'={unit}'), clocks)

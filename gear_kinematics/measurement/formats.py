@@ -1,10 +1,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The formats of tables, and the libraries that read those that are no text."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from itertools import zip_longest
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -16,17 +17,14 @@ from gear_kinematics.measurement.dialects import TableFile, loaded, open_text
 
 def _parquet(path: Path) -> TableFile:
     """Columns of numbers, and the elements of vectors, as LeRobot has them."""
-    import pyarrow.parquet as pq  # noqa: PLC0415, of an extra
+    import pandas as pd  # noqa: PLC0415, of an extra
 
     columns: dict[str, Any] = {}
-    for name, column in pq.read_table(path).to_pandas().items():
-        filled = column.dropna()
-        if column.dtype.kind == 'O' and len(filled) and np.ndim(filled.iloc[0]) == 1:
-            vectors = np.full((len(column), filled.map(len).max()), np.nan)
-            for row, vector in zip(vectors, column, strict=True):
-                if np.ndim(vector):
-                    row[: len(vector)] = vector
-            columns |= {f'{name}[{k}]': vectors[:, k] for k in range(vectors.shape[1])}
+    for name, column in pd.read_parquet(path, engine='pyarrow').items():
+        if np.ndim(next(iter(column.dropna()), 0)) == 1:
+            vectors = (vector if np.ndim(vector) else () for vector in column)
+            elements = enumerate(zip_longest(*vectors, fillvalue=np.nan))
+            columns |= {f'{name}[{k}]': np.array(values, float) for k, values in elements}
         else:
             columns[str(name)] = numbers(column)
     return loaded(columns)
@@ -46,37 +44,42 @@ def _mat(path: Path) -> TableFile:
             values = np.squeeze(value)
             if values.ndim == 1 and values.size > 1:
                 columns[name] = values
-            elif values.ndim == 2:  # noqa: PLR2004, a matrix
-                columns.update({f'{name}[{k}]': one for k, one in enumerate(values.T)})
+            elif values.ndim == 2:  # noqa: PLR2004, a matrix, of Simulink with a row for a signal
+                values = min(values, values.T, key=len)
+                columns.update({f'{name}[{k}]': one for k, one in enumerate(values)})
 
     try:
         found = loadmat(path, simplify_cells=True)
-    except NotImplementedError as error:
-        raise ValueError('MATLAB 7.3 is not read: save it with -v7') from error
-    add('', {key: value for key, value in found.items() if not key.startswith('__')})
+    except NotImplementedError:  # version 7.3
+        import h5py  # noqa: PLC0415, of an extra
+
+        with h5py.File(path) as file:
+            found = _of_hdf5(file)
+    add('', {key: value for key, value in found.items() if key[:1] not in '_#'})
     if len({name.partition('.')[0] for name in columns}) == 1:  # all are in one structure
         columns = {name.partition('.')[2] or name: values for name, values in columns.items()}
     return loaded(columns)
 
 
-class _Channel(NamedTuple):
-    """A channel of a measuring system."""
-
-    group: Any
-    """Its name or its number."""
-    name: str
-    values: Any
-    unit: str
-    times: Any = None
-    """s, if it has its own."""
+def _of_hdf5(group: Any) -> dict[str, Any]:
+    """Structures and matrices but texts, as MATLAB 7.3 writes them, by columns."""
+    return {
+        key: _of_hdf5(one) if hasattr(one, 'keys') else one[()].T
+        for key, one in group.items()
+        if one.attrs.get('MATLAB_class') != b'char'
+    }
 
 
-def _of_channels(channels: Sequence[_Channel]) -> TableFile:
-    """Return a table of channels, with their groups if they share a name."""
+def _of_channels(channels: Iterable[tuple[Any, str, Any, str, Any]]) -> TableFile:
+    """Return a table of channels, with their groups if they share a name.
+
+    Of each the group, the name, the values, the unit, and the times, s, or None.
+    """
     columns: dict[str, Any] = {}
     units, clocks = {}, {}
-    several = len({one.name for one in channels}) < len(channels)
-    for group, own, values, unit, times in channels:
+    found = [*channels]
+    several = len({name for _, name, *_ in found}) < len(found)
+    for group, own, values, unit, times in found:
         name = f'{group}/{own}' if several else own
         columns[name], units[name] = values, unit
         if times is not None:
@@ -99,7 +102,7 @@ def _tdms(path: Path) -> TableFile:
                     begin = begin or start
                     times += (start - begin) / np.timedelta64(1, 's')
             unit = str(known.get('unit_string', ''))
-            found.append(_Channel(group.name, channel.name, channel[:], unit, times))
+            found.append((group.name, channel.name, channel[:], unit, times))
     return _of_channels(found)
 
 
@@ -108,27 +111,44 @@ def _mf4(path: Path) -> TableFile:
     from asammdf import MDF  # noqa: PLC0415, of an extra
 
     with MDF(path) as file:
-        signals = file.iter_channels(skip_master=True)
-        return _of_channels([
-            _Channel(one.group_index, one.name, one.samples, one.unit, one.timestamps)
-            for one in signals
+        return _of_channels(
+            (one.group_index, one.name, one.samples, one.unit, one.timestamps)
+            for one in file.iter_channels(skip_master=True)
             if one.samples.dtype.kind in 'iuf' and one.samples.ndim == 1
-        ])  # fmt: skip
+        )
 
 
+def _workbook(path: Path) -> TableFile:
+    """The first sheet, in which names and units are found as in a text."""
+    import pandas as pd  # noqa: PLC0415, of an extra
+
+    sheet = pd.read_excel(path, header=None)
+    return open_text(path, sheet.to_csv(header=False, index=False).encode())
+
+
+_TEXTS = '.csv', '.tsv', '.txt', '.dat', '.asc', '.lvm'
+_COMPRESSED = '.gz', '.zst', '.zip', '.bz2', '.xz'
 READERS: Mapping[str, Callable[[Path], TableFile]] = {
-    **dict.fromkeys(('.csv', '.tsv', '.txt', '.dat', '.asc', '.lvm'), open_text),
+    **dict.fromkeys(_TEXTS, open_text),
+    **dict.fromkeys((text + end for text in _TEXTS for end in _COMPRESSED), open_text),
     '.parquet': _parquet,
     '.mat': _mat,
     '.tdms': _tdms,
     **dict.fromkeys(('.mf4', '.mdf'), _mf4),
+    **dict.fromkeys(('.xlsx', '.xlsm'), _workbook),
 }
 """What opens a table, by the end of its name."""
 
 
+def _ending(path: Path) -> str:
+    """The end of a name that says the format, compressed or not."""
+    *_, inner, last = '', '', *path.suffixes
+    return (inner + last if last.lower() in _COMPRESSED else last).lower()
+
+
 def is_table(path: Path) -> bool:
     """Return whether a recording is a table, by its name; otherwise it is a bag."""
-    return path.suffix.lower() in READERS
+    return _ending(path) in READERS
 
 
 @contextmanager
@@ -139,7 +159,11 @@ def open_bag(path: Path) -> Iterator[Bag]:
             yield bag
     except BagError as error:
         if path.is_file() and not BAG_NAME.search(path.name):
-            kinds = f'{error}; bags are .mcap, .db3, .bag and folders, tables {", ".join(READERS)}'
+            tables = ', '.join(one for one in READERS if one.count('.') == 1)
+            kinds = (
+                f'{error}; bags are .mcap, .db3, .bag and folders, tables {tables}, texts also '
+                f'compressed as {", ".join(_COMPRESSED)}'
+            )
             raise BagError(kinds) from error
         raise
 
@@ -148,7 +172,7 @@ def open_table(path: Path) -> TableFile:
     """Open a table; OSError or ValueError if it cannot be read."""
     if path.exists() and not path.is_file():
         raise ValueError('not a regular file')
-    suffix = path.suffix.lower()
+    suffix = _ending(path)
     try:
         return READERS[suffix](path)
     except (ImportError, OSError, ValueError):

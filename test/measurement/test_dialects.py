@@ -2,6 +2,7 @@
 """Tables as benches write them: each is read as without its fault, or refused."""
 
 import math
+import re
 import shlex
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
@@ -140,6 +141,7 @@ ENCODERS = {
     'UTF-8 with BOM': lambda t, r, o: written([t, r, o], NAMES).encode('utf-8-sig'),
     'UTF-16': lambda t, r, o: written([t, r, o], NAMES, mark=',').encode('utf-16'),
     'UTF-16 without BOM': lambda t, r, o: written([t, r, o], NAMES).encode('utf-16-le'),
+    'UTF-16 of big endian': lambda t, r, o: written([t, r, o], NAMES).encode('utf-16-be'),
     'cp1252': lambda t, r, o: written(
         [t, r * DEG, o * DEG], 'Prüfling 3\ntime,rotor [°],output [°]').encode('cp1252'),
     'CR LF': lambda t, r, o: written([t, r, o], NAMES).replace('\n', '\r\n'),
@@ -370,13 +372,39 @@ def parquet(path, time, rotor, output):
 
     state = [[*pair] for pair in zip(rotor, output, strict=True)]
     pq.write_table(pa.table({'timestamp': time.astype('f4'), 'observation.state': state}), path)
-    return Sources(rotor='observation.state[0]', output='observation.state[1]')
+    return Sources(rotor='observation.state[0]', output='observation.state[1]', unit='rad')
 
 
 def mat(path, time, rotor, output):
     io = pytest.importorskip('scipy.io')
     io.savemat(path, {'run': {'time': time, 'rotor_deg': DEG * rotor, 'output': {'rad': output}}})
     return Sources(output='output.rad')
+
+
+def hdf5(path, time, rotor, output):
+    """As MATLAB 7.3 has it, with a signal in each row, as Simulink does."""
+    with pytest.importorskip('h5py').File(path, 'w', userblock_size=512) as file:
+        file['run/time'], file['run/name'] = time[None, :], np.zeros((4, 1), 'u2')
+        file['run/angle'] = np.stack([rotor, output]).T
+        file['run/name'].attrs['MATLAB_class'] = np.bytes_('char')
+    with path.open('r+b') as file:
+        file.write(b'MATLAB 7.3 MAT-file'.ljust(124) + b'\0\2IM')
+    return Sources(rotor='angle[0]', output='angle[1]')
+
+
+def text(path, time, rotor, output):
+    pd = pytest.importorskip('pandas')
+    pd.DataFrame({'time': time, 'rotor': rotor, 'output': output}).to_csv(path, index=False)
+    return Sources()
+
+
+def workbook(path, time, rotor, output):
+    pytest.importorskip('openpyxl')
+    pd = pytest.importorskip('pandas')
+    rows = zip(time, DEG * rotor, output, strict=True)
+    head = [('Bench 3', None, None), ('Time', 'Rotor', 'Output'), ('s', '°', 'rad')]
+    pd.DataFrame([*head, *rows]).to_excel(path, header=False, index=False)
+    return Sources()
 
 
 def tdms(path, time, rotor, output):
@@ -398,22 +426,26 @@ def mf4(path, time, rotor, output):
     return Sources()
 
 
-@pytest.mark.parametrize('write', [parquet, mat, tdms, mf4])
-def test_other_formats(tmp_path, gear, reference, write):
-    path = tmp_path / f'r.{write.__name__}'
-    given = write(path, *reference('encoders'))
+FORMATS = {'parquet': parquet, 'mat': mat, '7.3.mat': hdf5, 'tdms': tdms, 'mf4': mf4}
+FORMATS |= {'xlsx': workbook, **dict.fromkeys(('csv.gz', 'tsv.zst', 'TXT.zip'), text)}
+
+
+@pytest.mark.parametrize('name', FORMATS)
+def test_other_formats(tmp_path, gear, reference, name):
+    path = tmp_path / f'r.{name}'
+    given = FORMATS[name](path, *reference('encoders'))
     recording = read(path, gear, given)
     lost = measure(recording, gear).transmission.lost_motion
     assert lost.value == pytest.approx(18.0 * ARCMIN, abs=0.6 * ARCMIN)
     path.write_bytes(b'nothing at all')
-    with pytest.raises(RecordingError, match=rf'r\.{write.__name__}: '):
+    with pytest.raises(RecordingError, match=f'{re.escape(name)}: '):
         read(path, gear, given)
 
 
 def test_what_is_neither_table_nor_bag_is_refused_with_what_can_be_read(tmp_path, gear):
-    (tmp_path / 'r.xlsx').write_bytes(b'PK\x03\x04')
-    with pytest.raises(BagError, match=r'bags are .mcap.* tables .csv.*\.parquet'):
-        read(tmp_path / 'r.xlsx', gear)
+    (tmp_path / 'r.ods').write_bytes(b'PK\x03\x04')
+    with pytest.raises(BagError, match=r'bags are .mcap.* tables .csv.*\.parquet.* as \.gz'):
+        read(tmp_path / 'r.ods', gear)
 
 
 @pytest.mark.parametrize(

@@ -39,7 +39,7 @@ ROSDEP_KEYS = {
 }
 # Extras, libraries of compressed recordings, and what Python itself has from 3.14 on.
 WITHOUT_KEY = {'compression', 'distributed', 'mapbox_earcut', 'mujoco', 'plotly', 'rainflow'}
-WITHOUT_KEY |= {'asammdf', 'backports', 'lz4', 'nptdms', 'pyarrow', 'rosbags', 'zstandard'}
+WITHOUT_KEY |= {'asammdf', 'backports', 'h5py', 'lz4', 'nptdms', 'pyarrow', 'rosbags', 'zstandard'}
 PYPI_NAMES = {'PIL': 'pillow', 'yaml': 'pyyaml', 'backports': 'backports.zstd'}
 
 
