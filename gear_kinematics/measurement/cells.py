@@ -44,12 +44,15 @@ def numbers(column: Any, point: str = '.') -> Any:
     if np.isfinite(values).any():
         return values
     text = text.str.replace(',', '.')
-    text = text.str.replace(r'^(\d\d)\.(\d\d)\.(\d{4}) (?=\d\d:)', r'\3-\2-\1T', regex=True)
     moments = pd.to_datetime(text, format='ISO8601', utc=True, errors='coerce')
-    moments = moments.dt.tz_localize(None)
     if not moments.notna().any():
         of_day = text.where(text.str.fullmatch(_MOMENT.pattern))
         moments = pd.Timestamp(0) + pd.to_timedelta(of_day, errors='coerce')
+    if not moments.notna().any():  # others, of which 1/2/2026 is in January
+        dates = text.where(text.str.match(r'\d\d?[./-]\d\d?[./-]\d{4} +\d\d?:\d\d'))
+        day_first = dates.str.match(r'\d+\.').any()
+        moments = pd.to_datetime(dates, dayfirst=day_first, utc=True, errors='coerce')
+    moments = moments.dt.tz_localize(None)
     return moments.to_numpy('datetime64[ns]') if moments.notna().any() else values
 
 

@@ -2,6 +2,7 @@
 """What the columns of a table mean: quantities and units by their names, or as they are given."""
 
 import re
+import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -188,6 +189,11 @@ def _column(role: str, name: str, given: Sources, common: str, below: Mapping[st
         raise ValueError(f'{name}: the unit {unit} is not known; known: {listed}')
     if role in _ANGULAR:
         unit = given.unit or unit or common
+        if not unit and not _roles(name):
+            raise ValueError(
+                f'{name} does not say that it is an angle: give its unit with --angle-unit, or as '
+                f'in {shlex.quote(f"{name} [rad]")}'
+            )
     scale = _UNITS[role].get(unit, 1.0)
     if scale is None:
         encoder = 'output' if role == 'output' else 'rotor'

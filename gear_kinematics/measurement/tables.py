@@ -3,7 +3,7 @@
 
 import re
 import shlex
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from fractions import Fraction
@@ -54,8 +54,13 @@ _WHOLE = 50
 """Levels that show whole numbers to be no coincidence."""
 _TRIED, _FEWEST, _ROWS = 12, 10, 10_000
 """Columns among which two are sought for an example, least and most rows that tell them."""
-_NO_ANGLE = re.compile(r'(?i)torque|effort|current|vel|speed|temp|time|stamp|erpm')
+_NO_ANGLE = re.compile(r'(?i)torq|effort|curr|vel|speed|rpm|temp|time|stamp|target|goal|cmd|^t$')
 """In names of columns that are not proposed as angles."""
+_LIKELY = re.compile(r'(?i)pos|ang|enc|theta|winkel|rad\b|deg\b|rev\b')
+"""In names of those that are proposed before others."""
+_COUNTS = 'counts', '--rotor-counts', '4096', '--output-counts', '4096'
+"""Of columns with whole numbers, for an example."""
+_PART = 'one row of {} is used: no more are kept in memory'
 _SHOWN = 800
 """Characters of an error, as those of a file can be many."""
 
@@ -82,15 +87,15 @@ def read_rotor(path: Path, sources: Sources, ratio: Fraction) -> tuple[Array, Ar
         RecordingError: if it cannot be read, or has no such columns.
     """
     with _naming(path):
-        found, series, said, _ = _read(path, open_table(path), sources, ratio)
-        if 'torque' not in found or not said[0].startswith('time'):
+        read = _Samples(path, open_table(path), sources, ratio)
+        if 'torque' not in read.found or not read.timed:
             raise ValueError('no times or no torque: give --time-column and --torque-column')
-        _steps(found, series, sources, timed=True)
-        role = 'rotor' if 'rotor' in found else 'angle'
-        one, torque = series[role], _torque(found, series, series[role], ratio) / float(ratio)
-        on_rotor = role == 'rotor' or found[role].on_rotor
-        angle = _unwrapped(one, role) * (1.0 if on_rotor else float(ratio))
-        return one.stamp, angle, torque, ', '.join(said)
+        read.steps()
+        role = 'rotor' if 'rotor' in read.found else 'angle'
+        on_rotor = role == 'rotor' or read.found[role].on_rotor
+        angle = read.unwrapped(role) * (1.0 if on_rotor else float(ratio))
+        torque = read.torque_at(read.series[role]) / float(ratio)
+        return read.series[role].stamp, angle, torque, ', '.join(read.said)
 
 
 @contextmanager
@@ -116,156 +121,167 @@ class _Series(NamedTuple):
     """Number that changes where rows were left out, as the motion in them is unknown."""
 
 
-def _unwrapped(series: _Series, role: str, period: float = 0.0) -> Array:
-    """Positions without the wraps of an encoder with a period, rad, or with one that shows."""
-    values, seconds = series.values[role], (series.stamp - series.stamp[0]) / SECOND
-    return unwrapped(values, seconds, find_step(values), period)
+class _Samples:
+    """Columns and samples of a table by role, what was taken, and remarks."""
 
+    def __init__(self, path: Path, table: TableFile, sources: Sources, ratio: Fraction) -> None:
+        """Read the columns; ValueError if there are no such ones, or they have no numbers."""
+        self._sources, self._ratio = sources, ratio
+        try:
+            found = find_columns(table.names, sources, table.units, table.clocks)
+        except ColumnsError as error:
+            raise ValueError(f'{error} {_advice(path, table, sources, ratio)}') from error
+        clock = found.pop('time', None)
+        rest = nanoseconds_beside(clock.name, table.names) if clock else None
+        usual = clock.name if clock else ''
+        clocks = {role: table.clocks.get(column.name, usual) for role, column in found.items()}
+        wanted = {column.name for column in found.values()} | {*clocks.values(), rest or ''}
+        raw, every = table.load(sorted(wanted - {''}))
+        self.remarks = [_PART.format(every)] if every > 1 else []
+        if clock and rest:
+            raw[usual] = raw[usual].astype(np.int64) * SECOND + raw[rest].astype(np.int64)
+            clock = clock._replace(unit='ns', scale=1.0 / SECOND)
+        if dates := [c.name for c in found.values() if raw[c.name].dtype.kind == 'M']:
+            raise ValueError(f'{dates[0]} has dates in place of numbers')
+        data = {role: raw[column.name] * column.scale for role, column in found.items()}
+        usable = {role: np.abs(values) <= LARGEST_ANGLE for role, values in data.items()}  # no NaN
+        if 'rotor' in found and 'torque' in found and not usable['torque'].any():
+            del found['torque'], data['torque'], usable['torque']
+        counts = [*map(np.count_nonzero, usable.values())]
+        fewest, apart = min(counts), len({*clocks.values()}) > 1
+        if not apart and len(lengths := {*map(len, data.values())}) > 1:
+            raise ValueError(
+                f'columns of {" and ".join(map(str, sorted(lengths)))} rows, without times'
+            )
+        both = np.zeros(1, bool) if apart else np.all([*usable.values()], axis=0)
+        # PlotJuggler writes each at its own times, with nothing in the columns of the others.
+        apart = apart or bool(clock and 2 * np.count_nonzero(both) < max(counts))
+        if not fewest or not (apart or both.any()):
+            names = ', '.join(column.name for column in found.values())
+            raise ValueError(f'no usable rows: none has numbers in all of {names}')
+        if clock and not clock.unit:
+            role = 'rotor' if 'rotor' in found else 'angle'
+            clock = with_unit(clock, raw[clocks[role]], data[role], role)
+        self.found, self.timed = found, clock is not None
+        self.series: dict[str, _Series] = {}
+        for roles in [[role] for role in found] if apart else [[*found]]:
+            kept = usable[roles[0]] if apart else both
+            if (left_out := np.count_nonzero(~kept)) and not apart:
+                self.remarks.append(f'{left_out} rows were left out: no numbers, or too large')
+            stamp, chosen = stamps(clock, raw.get(clocks[roles[0]]), kept, self.remarks)
+            values = {role: data[role][chosen] for role in roles}
+            values = {role: np.where(np.abs(v) < _LEAST, 0.0, v) for role, v in values.items()}
+            for role in roles:
+                if 'counts' in found[role].unit:
+                    values[role] = signed(values[role], found[role].scale)
+            gaps = 0 if apart else np.cumsum(np.diff(chosen, prepend=chosen[0]) > _GAP)
+            self.series |= dict.fromkeys(roles, _Series(stamp, values, gaps + 0 * stamp))
+        base = self.series['output' if 'output' in found else 'angle']
+        self.used = len(base.stamp)
+        self.said = [f'time [{clock.unit}] from {clock.name}'] if clock else []
+        self.said += map(_described, found, found.values())
+        rows = fewest if apart else len(data[next(iter(base.values))])
+        self.said.append(f'{self.used} of {rows} rows')
 
-def _recording(
-    path: Path, table: TableFile, sources: Sources, ratio: Fraction, period: float = 0.0
-) -> Recording:
-    found, series, said, remarks = _read(path, table, sources, ratio)
-    timed = said[0].startswith('time')
-    encoders, locked = _measured(found, series, sources, ratio, period, timed=timed)
-    used = len(series['output' if 'output' in found else 'angle'].stamp)
-    return Recording(path, path.name, tuple(said), used, encoders, locked, tuple(remarks))
+    def unwrapped(self, role: str, period: float = 0.0) -> Array:
+        """Positions without the wraps of an encoder with a period, rad, or with one that shows."""
+        series = self.series[role]
+        values, seconds = series.values[role], (series.stamp - series.stamp[0]) / SECOND
+        return unwrapped(values, seconds, find_step(values), period)
 
+    def torque_at(self, at: _Series) -> Array:
+        """Torque at the output, N·m, at the stamps of other samples."""
+        own = self.series['torque']
+        torque = own.values['torque']
+        torque = torque if own is at else np.interp(at.stamp, own.stamp, torque)
+        return torque * float(self._ratio) if self.found['torque'].on_rotor else torque
 
-def _read(
-    path: Path, table: TableFile, sources: Sources, ratio: Fraction
-) -> tuple[dict[str, Column], dict[str, _Series], list[str], list[str]]:
-    """Return columns and samples by role, what was taken, and remarks."""
-    try:
-        found = find_columns(table.names, sources, table.units, table.clocks)
-    except ColumnsError as error:
-        raise ValueError(f'{error} {_advice(path, table, sources, ratio)}') from error
-    clock = found.pop('time', None)
-    rest = nanoseconds_beside(clock.name, table.names) if clock else None
-    usual = clock.name if clock else ''
-    clocks = {role: table.clocks.get(column.name, usual) for role, column in found.items()}
-    wanted = {column.name for column in found.values()} | {*clocks.values(), rest or ''}
-    raw, every = table.load(sorted(wanted - {''}))
-    remarks = [f'one row of {every} is used: no more are kept in memory'] if every > 1 else []
-    if clock and rest:
-        raw[usual] = raw[usual].astype(np.int64) * SECOND + raw[rest].astype(np.int64)
-        clock = clock._replace(unit='ns', scale=1.0 / SECOND)
-    if dates := [c.name for c in found.values() if raw[c.name].dtype.kind == 'M']:
-        raise ValueError(f'{dates[0]} has dates in place of numbers')
-    data = {role: raw[column.name] * column.scale for role, column in found.items()}
-    usable = {role: np.abs(values) <= LARGEST_ANGLE for role, values in data.items()}  # no NaN
-    if 'rotor' in found and 'torque' in found and not usable['torque'].any():
-        del found['torque'], data['torque'], usable['torque']
-    counts = [*map(np.count_nonzero, usable.values())]
-    fewest, apart = min(counts), len({*clocks.values()}) > 1
-    if not apart and len(lengths := {*map(len, data.values())}) > 1:
-        raise ValueError(
-            f'columns of {" and ".join(map(str, sorted(lengths)))} rows, without times'
-        )
-    both = np.zeros(1, bool) if apart else np.all([*usable.values()], axis=0)
-    # PlotJuggler writes each at its own times, with nothing in the columns of the others.
-    apart = apart or bool(clock and 2 * np.count_nonzero(both) < max(counts))
-    if not fewest or not (apart or both.any()):
-        names = ', '.join(column.name for column in found.values())
-        raise ValueError(f'no usable rows: none has numbers in all of {names}')
-    if clock and not clock.unit:
-        role = 'rotor' if 'rotor' in found else 'angle'
-        clock = with_unit(clock, raw[clocks[role]], data[role], role)
-    series: dict[str, _Series] = {}
-    for roles in [[role] for role in found] if apart else [[*found]]:
-        kept = usable[roles[0]] if apart else both
-        if (left_out := np.count_nonzero(~kept)) and not apart:
-            remarks.append(f'{left_out} rows were left out: no numbers, or too large')
-        stamp, chosen = stamps(clock, raw.get(clocks[roles[0]]), kept, remarks)
-        values = {role: data[role][chosen] for role in roles}
-        values = {role: np.where(np.abs(v) < _LEAST, 0.0, v) for role, v in values.items()}
-        for role in roles:
-            if 'counts' in found[role].unit:
-                values[role] = signed(values[role], found[role].scale)
-        gaps = 0 if apart else np.cumsum(np.diff(chosen, prepend=chosen[0]) > _GAP)
-        one = _Series(stamp, values, gaps + 0 * stamp)
-        series |= dict.fromkeys(roles, one)
-    base = series['output' if 'output' in found else 'angle']
-    said = [f'time [{clock.unit}] from {clock.name}'] if clock else []
-    said += map(_described, found, found.values())
-    rows = len(data[next(iter(base.values))]) if not apart else fewest
-    return found, series, [*said, f'{len(base.stamp)} of {rows} rows'], remarks
+    def steps(self) -> dict[str, Step]:
+        """Steps of the encoders by role; ValueError if what is assumed of a unit cannot be."""
+        steps = {}
+        for role, column in self.found.items():
+            values = self.series[role].values[role]
+            if role != 'torque':
+                of_output = role == 'output'
+                known = self._sources.output_counts if of_output else self._sources.rotor_counts
+                steps[role] = step_of(known, values)
+            cause = '' if column.unit else self._against(role, steps.get(role))
+            if cause:
+                option = f"as in --torque-column '{column.name} [Nmm]'"
+                how = option if role == 'torque' else 'with --angle-unit'
+                raise ValueError(f'{column.name} has {cause}: give its unit {how}')
+        return steps
 
+    def _against(self, role: str, step: Step | None) -> str:
+        """What shows that numbers without a unit are not in rad or N·m, if anything."""
+        stamp, values = self.series[role].stamp, self.series[role].values[role]
+        moved, whole = np.abs(np.diff(values)), bool(np.all(values == np.round(values)))
+        if not step:
+            return 'whole numbers' if whole and len(np.unique(values)) > _WHOLE else ''
+        if whole and np.ptp(values) > TURN:
+            return 'whole numbers, such as counts'
+        if _HALF_TURN < np.max(moved, initial=0.0) <= np.ptp(values) <= 2.0 * _HALF_TURN:
+            return 'turns of 360, such as degrees'
+        if unit := other_unit(values, step).partition(':')[0]:
+            return f'positions in {unit}'
+        if self.timed and (moving := moved > 0.0).any():
+            seconds = np.maximum(np.diff(stamp)[moving], 1) / SECOND
+            if (speed := np.quantile(moved[moving] / seconds, MOST)) > FASTEST:
+                return f'speeds of {speed:.3g} a second, as in degrees'
+        return ''
 
-def _measured(
-    found: Mapping[str, Column],
-    series: Mapping[str, _Series],
-    sources: Sources,
-    ratio: Fraction,
-    period: float,
-    *,
-    timed: bool,
-) -> tuple[Encoders | None, Loading | None]:
-    """Both encoders, or angles under torque; ValueError if what is assumed cannot be."""
-    steps = _steps(found, series, sources, timed=timed)
-    main = series.get('rotor') or series['angle']
-    torque = _torque(found, series, main, ratio) if 'torque' in found else None
-    if torque is not None and 'angle' in found:
-        angle = found['angle']
+    def locked(self, period: float) -> Loading:
+        """Angles under torque; ValueError if the shaft turns."""
+        angle = self.found['angle']
         locked = locked_shaft(
-            torque, _unwrapped(main, 'angle', period * angle.on_rotor), steps['angle'],
-            ratio if angle.on_rotor else Fraction(1), measured=angle.on_output,
-        )  # fmt: skip
+            self.torque_at(self.series['angle']),
+            self.unwrapped('angle', period * angle.on_rotor),
+            self.steps()['angle'],
+            self._ratio if angle.on_rotor else Fraction(1),
+            measured=angle.on_output,
+        )
         if (twist := np.ptp(locked.angle)) > _MOST_TWIST:
             raise ValueError(
                 f'the output turns by {np.degrees(twist):.3g}° under torque: it is not '
                 'locked, or the unit is another, which --angle-unit gives'
             )
-        return None, locked
-    rotor, output = (series[role].values[role] for role in ('rotor', 'output'))
-    if not sources.as_recorded:
-        rotor, output = _unwrapped(main, 'rotor', period), _unwrapped(series['output'], 'output')
-    rows = len(output)
-    before, share, inside = np.arange(rows), np.zeros(rows), np.ones(rows, bool)
-    if series['output'] is not main:
-        gap = _GAP * float(np.median(np.diff(main.stamp)))
-        before, share, inside = match(main.stamp, series['output'].stamp, gap)
-    effort = None if torque is None or not torque.any() else torque / float(ratio)
-    motion = RotorMotion(main.stamp, *split_turns(rotor), effort, main.segment)
-    both = Encoders(
-        motion, timed, before, share, output[inside], steps['rotor'], steps['output'],
-    )  # fmt: skip
-    assumed = not (found['rotor'].unit or found['output'].unit)
-    turned = rotor if not sources.as_recorded else _unwrapped(main, 'rotor', period)
-    if assumed and min(_LIKE) < _error(both.at_measured(turned), both.measured) < max(_LIKE):
-        raise ValueError(
-            f'{found["output"].name} differs from {found["rotor"].name} by more than gears do '
-            'in rad, as in degrees: give the unit with --angle-unit'
-        )
-    return both, None
+        return locked
+
+    def encoders(self, period: float) -> Encoders:
+        """Both encoders; ValueError if they cannot be of one gear in rad, as is assumed."""
+        steps, main, other = self.steps(), self.series['rotor'], self.series['output']
+        rotor, output = main.values['rotor'], other.values['output']
+        if not self._sources.as_recorded:
+            rotor, output = self.unwrapped('rotor', period), self.unwrapped('output')
+        before, share, inside = np.arange(self.used), np.zeros(self.used), np.ones(self.used, bool)
+        if other is not main:
+            gap = _GAP * float(np.median(np.diff(main.stamp)))
+            before, share, inside = match(main.stamp, other.stamp, gap)
+        torque = self.torque_at(main) / float(self._ratio) if 'torque' in self.found else None
+        effort = None if torque is None or not torque.any() else torque
+        motion = RotorMotion(main.stamp, *split_turns(rotor), effort, main.segment)
+        steps_of_both = steps['rotor'], steps['output']
+        both = Encoders(motion, self.timed, before, share, output[inside], *steps_of_both)
+        if not (self.found['rotor'].unit or self.found['output'].unit):
+            turned = self.unwrapped('rotor', period) if self._sources.as_recorded else rotor
+            error = _error(both.at_measured(turned), both.measured)
+            if min(_LIKE) < error < max(_LIKE):
+                names = (self.found[role].name for role in ('output', 'rotor'))
+                raise ValueError(
+                    f'{" differs from ".join(names)} by more than gears do in rad, as in degrees: '
+                    'give the unit with --angle-unit'
+                )
+        return both
 
 
-def _steps(
-    found: Mapping[str, Column], series: Mapping[str, _Series], sources: Sources, *, timed: bool
-) -> dict[str, Step]:
-    """Steps of the encoders by role; ValueError if what is assumed of a unit cannot be."""
-    steps = {}
-    for role, column in found.items():
-        if role != 'torque':
-            counts = sources.output_counts if role == 'output' else sources.rotor_counts
-            steps[role] = step_of(counts, series[role].values[role])
-        if not column.unit and (
-            cause := _against(series[role], role, steps.get(role), timed=timed)
-        ):
-            option = f"as in --torque-column '{column.name} [Nmm]'"
-            how = option if role == 'torque' else 'with --angle-unit'
-            raise ValueError(f'{column.name} has {cause}: give its unit {how}')
-    return steps
-
-
-def _torque(
-    found: Mapping[str, Column], series: Mapping[str, _Series], at: _Series, ratio: Fraction
-) -> Array:
-    """Torque at the output, N·m, at the stamps of other samples."""
-    own = series['torque']
-    torque = own.values['torque']
-    torque = torque if own is at else np.interp(at.stamp, own.stamp, torque)
-    return torque * float(ratio) if found['torque'].on_rotor else torque
+def _recording(
+    path: Path, table: TableFile, sources: Sources, ratio: Fraction, period: float = 0.0
+) -> Recording:
+    read = _Samples(path, table, sources, ratio)
+    encoders = None if 'angle' in read.found else read.encoders(period)
+    locked = None if encoders else read.locked(period)
+    said, remarks = tuple(read.said), tuple(read.remarks)
+    return Recording(path, path.name, said, read.used, encoders, locked, remarks)
 
 
 def _error(rotor: Array, output: Array) -> float:
@@ -284,26 +300,6 @@ def _error(rotor: Array, output: Array) -> float:
     return float(np.median(spreads))
 
 
-def _against(series: _Series, role: str, step: Step | None, *, timed: bool) -> str:
-    """What shows that numbers without a unit are not in rad or N·m, if anything."""
-    values = series.values[role]
-    moved = np.abs(np.diff(values))
-    if not step:
-        whole = np.all(values == np.round(values)) and len(np.unique(values)) > _WHOLE
-        return 'whole numbers' if whole else ''
-    if np.ptp(values) > TURN and np.all(values == np.round(values)):
-        return 'whole numbers, such as counts'
-    if _HALF_TURN < np.max(moved, initial=0.0) <= np.ptp(values) <= 2.0 * _HALF_TURN:
-        return 'turns of 360, such as degrees'
-    if unit := other_unit(values, step).partition(':')[0]:
-        return f'positions in {unit}'
-    if timed and (moving := moved > 0.0).any():
-        seconds = np.maximum(np.diff(series.stamp)[moving], 1) / SECOND
-        if (speed := np.quantile(moved[moving] / seconds, MOST)) > FASTEST:
-            return f'speeds of {speed:.3g} a second, as in degrees'
-    return ''
-
-
 def _described(role: str, column: Column) -> str:
     unit = column.unit or {'torque': 'N·m'}.get(role, 'rad, assumed')
     side = ' of the rotor' if column.on_rotor else ' at the output'
@@ -315,11 +311,15 @@ def _advice(path: Path, table: TableFile, sources: Sources, ratio: Fraction) -> 
     """List the columns with their first values, and end with a command line that works, if any."""
     names = [name for name in table.names if name]
     listed = ', '.join(f'{name} ({table.first.get(name, "")})' for name in names)
-    raw, _ = table.load([name for name in names if names.count(name) == 1][:_TRIED])
+    single = [name for name in filterfalse(_NO_ANGLE.search, names) if names.count(name) == 1]
+    likely = [*filter(_LIKELY.search, single)]
+    raw, _ = table.load((likely if len(likely) > 1 else single)[:_TRIED])
+    raw = {
+        name: values.astype(float) for name, values in raw.items() if values.dtype.kind in 'iuf'
+    }
     pairs = {}
-    for rotor, output in permutations(filterfalse(_NO_ANGLE.search, raw), 2):
-        kinds = raw[rotor].dtype.kind + raw[output].dtype.kind
-        if kinds != 'ff' or len(raw[rotor]) != len(raw[output]):
+    for rotor, output in permutations(raw, 2):
+        if len(raw[rotor]) != len(raw[output]):
             continue
         pair = np.array([raw[rotor], raw[output]])[:, :_ROWS]
         pair = np.diff(pair[:, np.isfinite(pair).all(axis=0)])
@@ -335,7 +335,8 @@ def _advice(path: Path, table: TableFile, sources: Sources, ratio: Fraction) -> 
         except ValueError as error:
             if '--angle-unit' not in str(error):
                 continue
-            words += ['--angle-unit', 'deg']
+            parts = np.concatenate([raw[rotor], raw[output]]) % 1.0
+            words += ['--angle-unit', *(['deg'] if np.any(parts > 0.0) else _COUNTS)]
         command = shlex.join([*sources.command.split(), str(path), *words])
-        return f'{text}, for example: {command}'
+        return f'{text} with their units, for example: {command}'
     return f'{text} with --angle-column, --torque-column, --rotor-column, --output-column'

@@ -98,6 +98,7 @@ def in_german(text):
 
 DEG, REV = 180.0 / math.pi, 0.5 / math.pi
 NAMES = 'time,rotor,output'
+NOON = datetime(2026, 11, 26, 11, 59, 40, tzinfo=UTC)
 WITH_DEG = 'time_s;rotor_deg;output_deg'
 DECIMALS = '{:.2f}', '{:.5f}', '{:.5f}'
 SEC_NANOSEC = ('{:.0f}', '{:.0f}', '{:.5f}', '{:.5f}')
@@ -184,6 +185,10 @@ ENCODERS = {
         [t, r, o], 'timestamps,rotor,output', (moment(zone='+01:00'), *DECIMALS[1:])),
     'dates with a decimal comma': lambda t, r, o: in_german(written(
         [t, r, o], 'time;rotor;output', (moment(' '), *DECIMALS[1:]), ';')),
+    'dates of the month first, and noon': lambda t, r, o: written(
+        [t, r, o], 'time,rotor,output',
+        (lambda v: (NOON + timedelta(seconds=v)).strftime('%m/%d/%Y %I:%M:%S.%f %p'),
+         *DECIMALS[1:])),
     'time of the day': lambda t, r, o: written(
         [t, r, o], NAMES, (lambda v: moment(' ')(v)[11:], *DECIMALS[1:])),
     'seconds and nanoseconds': lambda t, r, o: written(
@@ -454,11 +459,12 @@ def test_what_is_neither_table_nor_bag_is_refused_with_what_can_be_read(tmp_path
         ('time,angle_arcmin,torque\n0,1,2\n', 'the unit arcmin is not known'),
         ('time,angle,torque\ns,gon,Nm\n0,1,2\n', 'the unit gon is not known'),
         ('rotor,output\n1.5,20\n359.5,30.5\n', 'rotor has turns of 360'),
+        ('Data1,torque\n0,2\n', 'Data1 does not say that it is an angle: .* --angle-unit'),
     ],
 )
 def test_units_are_never_assumed(tmp_path, gear, content, cause):
     path = tmp_path / 'r.csv'
     path.write_text(content, 'utf-8')
-    angle = next((name for name in content.split('\n')[0].split(',') if 'angle' in name), None)
+    angle = re.search(r'angle\w*|Data1', content)
     with pytest.raises(RecordingError, match=cause):
-        read(path, gear, Sources(angle=angle))
+        read(path, gear, Sources(angle=angle and angle[0]))
