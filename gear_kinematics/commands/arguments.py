@@ -56,9 +56,14 @@ def add_config(
     node: str = NODE,
     default: str = 'config/actuator.yaml',
     *,
+    chosen: str = '',
     actuator: str = 'use this one of the `actuators` in the file',
 ) -> None:
-    """Add the options for the parameters of a node; `actuator` is the help on `--actuator`."""
+    """Add the options for the parameters of a node.
+
+    `chosen` and `actuator` are the help on `--node`, if it has a purpose of its own, and on
+    `--actuator`.
+    """
     gear = group(parser, 'gear')
     gear.add_argument(
         '--config',
@@ -70,7 +75,8 @@ def add_config(
         '--node',
         default=node,
         metavar='NAME',
-        help='node to select in a file for several nodes, with or without namespace, such as '
+        help=chosen
+        or 'node to select in a file for several nodes, with or without namespace, such as '
         f'/left/{node} (default: %(default)s)',
     )
     gear.add_argument('--actuator', default='', metavar='NAME', help=actuator)

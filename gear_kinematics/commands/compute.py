@@ -16,7 +16,7 @@ from gear_kinematics.wire.nearest import listed
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('bag', type=Path, metavar='BAG')
+    parser.add_argument('bag', type=Path, metavar='BAG', help='file or folder')
     parser.add_argument('out', type=Path, metavar='OUT', help='folder to create')
     bags.add_rotor(parser)
     arguments.add_config(parser, actuator=arguments.ALL)
@@ -25,8 +25,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     output.add_argument(
         '--topics', nargs='*', metavar='NAME', help='other topics to copy (default: all)'
     )
-    output.add_argument('--storage', choices=('mcap', 'sqlite3'), default='mcap')
-    output.add_argument('--compression', choices=('none', 'zstd'), default='none')
+    for name, *choices in ('storage', 'mcap', 'sqlite3'), ('compression', 'none', 'zstd'):
+        text = f'{name} of the files (default: {choices[0]})'
+        output.add_argument(f'--{name}', choices=choices, default=choices[0], help=text)
     arguments.add_quiet(parser)
 
 

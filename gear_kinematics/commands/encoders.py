@@ -35,7 +35,8 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: boo
         configured: whether the command takes parameters of the node, and a ratio.
     """
     number = '+' if configured else '*'  # --live takes their place
-    parser.add_argument('recordings', nargs=number, type=Path, metavar='BAG|TABLE')
+    text = 'recording by ROS, or table such as a CSV file'
+    parser.add_argument('recordings', nargs=number, type=Path, metavar='BAG|TABLE', help=text)
     add_rotor(parser, configured=configured)
     recording = arguments.group(parser, 'recording')
     recording.add_argument(

@@ -34,8 +34,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         'limits', 'exit code 1 where one is exceeded, or cannot be shown to hold'
     )
     for name in ('hysteresis', 'lost-motion', 'backlash'):
-        limits.add_argument(f'--max-{name}', type=_arc_minutes, metavar='ARCMIN')
-    limits.add_argument('--min-stiffness', type=arguments.positive, metavar='N·m/rad')
+        text = f'greatest {name.replace("-", " ")}'
+        limits.add_argument(f'--max-{name}', type=_arc_minutes, metavar='ARCMIN', help=text)
+    limits.add_argument(
+        '--min-stiffness', type=arguments.positive, metavar='N·m/rad', help='least stiffness'
+    )
     several = parser.add_argument_group('several recordings')
     several.add_argument(
         '--group',

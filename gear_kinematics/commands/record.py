@@ -6,13 +6,18 @@ from pathlib import Path
 
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Console, warn_of_shared_memory
+from gear_kinematics.parameters import NODE
 from gear_kinematics.wire.nearest import listed
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('out', type=Path, metavar='OUT', help='folder to create')
     arguments.add_config(
-        parser, default='none; a copy of FILE is kept in OUT, for validate', actuator=arguments.ALL
+        parser,
+        default='none; a copy of FILE is kept in OUT, for validate',
+        chosen=f'record this node alone, such as /left/{NODE}, with its parameters in FILE '
+        '(default: all nodes)',
+        actuator=arguments.ALL,
     )
     parser.set_defaults(calibration=None)
 

@@ -15,7 +15,7 @@ from gear_kinematics.wire.topics import ROTOR_STATE
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('bag', type=Path, metavar='BAG')
+    parser.add_argument('bag', type=Path, metavar='BAG', help='file or folder')
     bags.add_rotor(parser, configured=False)
     playing = arguments.group(parser, 'motion')
     playing.add_argument('--rate', type=float, default=1.0, help='playback speed (default: 1)')

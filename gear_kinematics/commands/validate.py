@@ -11,6 +11,7 @@ from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import complain, warn_of_shared_memory
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
+from gear_kinematics.parameters import NODE
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.document import document
 from gear_kinematics.validation.report import BagReport, unusable
@@ -28,7 +29,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('bags', nargs='+', metavar='BAG', help='file, directory or glob')
     bags.add_rotor(parser)
     bags.add_outputs(parser)
-    arguments.add_config(parser, actuator=arguments.ALL)
+    arguments.add_config(
+        parser,
+        chosen='node to select in a file for several nodes and, with its namespace, in a '
+        f'recording of several, such as /left/{NODE} (default: %(default)s)',
+        actuator=arguments.ALL,
+    )
     bags.add_calibration(parser)
     limits = arguments.group(parser, 'limits')
     for unit, quantity in QUANTITIES.items():
