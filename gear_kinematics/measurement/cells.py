@@ -3,9 +3,8 @@
 
 import csv
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cache
-from itertools import repeat
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -74,26 +73,20 @@ class Element(NamedTuple):
     beside: int
     """The place of the column whose arrays name the elements; that of the arrays if none does."""
     key: int | str
-    """Its number, or its name."""
-
-    @property
-    def is_position(self) -> bool:
-        """Whether it is one of sensor_msgs/JointState."""
-        return isinstance(self.key, str)
+    """Its number, or its name, as in sensor_msgs/JointState."""
 
     def of(self, frame: Any) -> Any:
         """The column of it; `nan` in rows without it."""
         import pandas as pd  # noqa: PLC0415, of an extra
 
-        @cache
-        def number(names: str) -> int | None:
-            found = _array(names)
-            return found.index(self.key) if self.key in found else None
-
-        keys = map(number, frame[self.beside]) if isinstance(self.key, str) else repeat(self.key)
-        rows = zip(map(_array, frame[self.place]), keys, strict=False)
-        cells = [row[k] if k is not None and k < len(row) else 'nan' for row, k in rows]
-        return pd.Series(cells, dtype=object)
+        rows: Iterable[Iterable[tuple[Any, str]]]
+        arrays = map(_array, frame[self.place])
+        if isinstance(self.key, str):
+            names = map(cache(_array), frame[self.beside])
+            rows = (zip(*pair, strict=False) for pair in zip(names, arrays, strict=True))
+        else:
+            rows = map(enumerate, arrays)
+        return pd.Series([dict(row).get(self.key, 'nan') for row in rows], dtype=object)
 
 
 def _array(cell: Any) -> list[str]:

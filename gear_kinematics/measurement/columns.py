@@ -18,20 +18,10 @@ _ANGLE = (
     'position', 'positions', 'pos', 'angle', 'encoder', 'enc', 'theta', 'deflection', 'twist',
     'winkel',
 )  # fmt: skip
+_STAMP = ('stamp', 'timestamp', 'timestamps')
 _TORQUE = ('torque', 'torques', 'effort', 'efforts', 'trq', 'drehmoment')
 _KNOWN_WORDS = (*_ROTOR, *_OUTPUT, *_ANGLE, *_TORQUE, 'current')
-_TIME = (
-    'time',
-    't',
-    'stamp',
-    'timestamp',
-    'timestamps',
-    'today',
-    'datetime',
-    'elapsed',
-    'zeit',
-    'x',
-)
+_TIME = ('time', 't', *_STAMP, 'today', 'datetime', 'elapsed', 'zeit', 'x')
 _FILLING = {
     'header', 'receive', 'log', 'measured', 'actual', 'act', 'filtered', 'raw', 'field', 'data',
     'value', 'values', 'feedback', 'state', 'states', 'axis', 'present', 'sensor', 'abs', 'side',
@@ -139,13 +129,13 @@ def find_columns(
             named[role] = name
     ranks: dict[str, list[tuple[tuple[int, ...], int, str]]] = {}
     for place, name in enumerate(header):
-        for role, rank in _roles(name):
-            ranks.setdefault(role, []).append((rank, place, name))
+        role, rank = _role(name)
+        ranks.setdefault(role, []).append((rank, place, name))
     found = {}
     for role, those in ranks.items():
         rank, _, name = min(those)
         alike = {other for same, _, other in those if same == rank}
-        if len(alike) == 1 or role == 'time':  # of position[0] and position[1], neither is known
+        if role and (len(alike) == 1 or role == 'time'):  # not of position[0] and position[1]
             found[role] = name
     found |= named
     if {'rotor', 'output'} <= found.keys() and 'angle' not in named:
@@ -157,9 +147,8 @@ def find_columns(
         raise ColumnsError(f'neither an angle and a torque nor a rotor and an output ({known})')
     if own := [clocks[name] for name in found.values() if name in clocks]:
         found['time'] = own[0]
-    for name in found.values():
-        if list(header).count(name) > 1:
-            raise ValueError(f'more than one column {name!r}')
+    if repeated := [name for name in found.values() if list(header).count(name) > 1]:
+        raise ValueError(f'more than one column {repeated[0]!r}')
     angles = [found[role] for role in _ANGULAR if role in found]
     for name in angles:
         if not (below.get(name) or _split(name)[1]) and _REVOLUTIONS.search(name):
@@ -189,7 +178,7 @@ def _column(role: str, name: str, given: Sources, common: str, below: Mapping[st
         raise ValueError(f'{name}: the unit {unit} is not known; known: {listed}')
     if role in _ANGULAR:
         unit = given.unit or unit or common
-        if not unit and not _roles(name):
+        if not unit and not _role(name)[0]:
             raise ValueError(
                 f'{name} does not say that it is an angle: give its unit with --angle-unit, or as '
                 f'in {shlex.quote(f"{name} [rad]")}'
@@ -210,25 +199,25 @@ def _column(role: str, name: str, given: Sources, common: str, below: Mapping[st
     return Column(name, scale, unit, on_rotor and not on_output, on_output)
 
 
-def _roles(name: str) -> list[tuple[str, tuple[int, ...]]]:
-    """What a column may be by its name, with a rank: the likeliest has the lowest."""
+def _role(name: str) -> tuple[str, tuple[int, ...]]:
+    """What a column may be by its name, if anything, and a rank: the likeliest has the lowest."""
     words, unit = _split(name)
     told = [word for word in words if word not in _FILLING and not word.isdigit()]
     if not words and unit in _UNITS['time']:
-        return [('time', (9,))]
-    if told and set(told) <= set(_TIME) and (told != ['x'] or 'value' in words):
+        return 'time', (9,)
+    if told and {*told} <= {*_TIME} and (told != ['x'] or 'value' in words):
         # The stamp of a message is when it was sampled; a log has when it was received.
         first = 0 if told == ['stamp'] and 'header' in words and not unit else len(words)
-        return [('time', (first, _TIME.index(told[0])))]
-    if not told or not set(told) <= set(_KNOWN_WORDS) or '/' in unit:
-        return []
+        return 'time', (first, _TIME.index(told[0]))
     sides = [one for one, those in (('rotor', _ROTOR), ('output', _OUTPUT)) if {*told} & {*those}]
-    rank = (len(words), *(_KNOWN_WORDS.index(word) for word in told))
-    if set(told) & set(_TORQUE):
-        return [] if set(told) & set(_ANGLE) else [('torque', rank)]
-    if 'current' in told or (len(sides) > 1 and 'joint' not in told):
-        return []
-    return [(sides[0] if sides else 'angle', rank)]
+    kinds = [one for one, those in (('torque', _TORQUE), ('angle', _ANGLE)) if {*told} & {*those}]
+    unclear = len(kinds) > 1 or (len(sides) > 1 and 'torque' not in kinds and 'joint' not in told)
+    if not told or not {*told} <= {*_KNOWN_WORDS} or '/' in unit or unclear:
+        return '', ()
+    if 'current' in told and 'torque' not in kinds:
+        return '', ()
+    rank = (len(words), *map(_KNOWN_WORDS.index, told))
+    return 'torque' if 'torque' in kinds else (*sides, 'angle')[0], rank
 
 
 def _unknown(role: str, words: Sequence[str]) -> str:
@@ -281,16 +270,13 @@ def _split(name: str) -> tuple[tuple[str, ...], str]:
 
 def time_among(names: Sequence[str]) -> tuple[str, str]:
     """Return the column of times and its unit, as far as names say them."""
-    times = [(rank, name) for name in names for role, rank in _roles(name) if role == 'time']
-    name = min(times)[1] if times else ''
+    times = [(_role(name)[1], name) for name in names if _role(name)[0] == 'time']
+    name = min(times, default=('', ''))[1]
     return name, _split(name)[1]
 
 
 def nanoseconds_beside(name: str, names: Sequence[str]) -> str | None:
     """Return the column of nanoseconds that belongs to one of whole seconds, as ROS has them."""
     words, unit = _split(name)
-    if TIME_UNITS.get(unit) != TIME_UNITS['s']:
-        return None
-    pairs = ((one, *_split(one)) for one in names)
-    alike = (one for one, same, of in pairs if same == words and of in _NANOSECONDS)
-    return next(alike, None)
+    beside = {_split(one)[0]: one for one in names if _split(one)[1] in _NANOSECONDS}
+    return beside.get(words) if TIME_UNITS.get(unit) == TIME_UNITS['s'] else None

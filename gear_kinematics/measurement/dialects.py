@@ -147,7 +147,9 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
         return dict(zip(wanted, values, strict=True)), every
 
     first = dict(zip(layout.names, layout.row, strict=False))
-    units = layout.units | {name: 'rad' for name, one in elements.items() if one.is_position}
+    units = layout.units | {
+        name: 'rad' for name, one in elements.items() if isinstance(one.key, str)
+    }
     return TableFile(names, units, layout.clocks, first, load)
 
 
