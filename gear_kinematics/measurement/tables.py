@@ -59,7 +59,7 @@ _NO_ANGLE = re.compile(r'(?i)torq|effort|curr|vel|speed|rpm|temp|time|stamp|targ
 _LIKELY = re.compile(r'(?i)pos|ang|enc|theta|winkel|rad\b|deg\b|rev\b')
 """In names of those that are proposed before others."""
 _COUNTS = 'counts', '--rotor-counts', '4096', '--output-counts', '4096'
-"""Of columns with whole numbers, for an example."""
+"""Words for columns with whole numbers, for an example."""
 _PART = 'one row of {} is used: no more are kept in memory'
 _SHOWN = 800
 """Characters of an error, as those of a file can be many."""
