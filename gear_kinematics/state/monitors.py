@@ -128,16 +128,14 @@ class InputMonitor(DriverMonitor):
     def _facts(self, age: float, connections: Connections) -> Iterator[Fact]:
         driver, rotor_input = connections.rotor, self._input
         plausibility, reference = rotor_input.plausibility, self._encoder.reference
-        grown = self._growth(
-            {
-                **rotor_input.rejected,
-                'lost': driver.lost,
-                'of others': rotor_input.of_others,
-                'zero stamps': rotor_input.zero_stamps,
-                'unsent': connections.unsent,
-                'unreferenced': self.unreferenced,
-            }
-        )
+        counts = {
+            'lost': driver.lost,
+            'of others': rotor_input.of_others,
+            'zero stamps': rotor_input.zero_stamps,
+            'unsent': connections.unsent,
+            'unreferenced': self.unreferenced,
+        }
+        grown = self._growth({**rotor_input.rejected, **counts})
         if age > rotor_input.parameters.input_timeout:
             yield Condition.NO_INPUT(age=age)
         if not rotor_input.referenced:
