@@ -59,7 +59,7 @@ from gear_kinematics.parameters import NodeParameters  # noqa: E402
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / 'shared'
 
-hypothesis.settings.register_profile('default', deadline=None, max_examples=200)
+hypothesis.settings.register_profile('default', deadline=None)
 hypothesis.settings.register_profile(
     'ci', parent=hypothesis.settings.get_profile('default'), derandomize=True
 )

@@ -50,7 +50,7 @@ OLD_REPORT = '{\n  "made_by": "gearkin validate"\n}\n'
     ],
 )
 def test_the_verdict_is_the_exit_code(name, code, verdict, error, bags):
-    done = gearkin('validate', name, cwd=bags)
+    done = gearkin_here('validate', name, cwd=bags)
     assert (done.returncode, done.stderr) == (code, error)
     lines = done.stdout.splitlines()
     assert re.match(f'{name}: verdict: {verdict}[:;] ', lines[0])
@@ -105,9 +105,9 @@ def with_shoulder(message) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize('options', [[], ['--jobs', '2']])
-def test_the_worst_verdict_of_many_counts_and_failed_bags_come_first(options, bags):
-    done = gearkin('validate', *options, 'good', 'garbage.mcap', 'wrong', cwd=bags)
+@pytest.mark.parametrize(('run', 'options'), [(gearkin_here, []), (gearkin, ['--jobs', '2'])])
+def test_the_worst_verdict_of_many_counts_and_failed_bags_come_first(run, options, bags):
+    done = run('validate', *options, 'good', 'garbage.mcap', 'wrong', cwd=bags)
     assert done.returncode == 2
     assert done.stderr == 'gearkin: garbage.mcap: not a bag of a known kind\n'
     assert re.findall(r'^(\S+): verdict: (\w+)', done.stdout, re.MULTILINE) == [
@@ -116,7 +116,7 @@ def test_the_worst_verdict_of_many_counts_and_failed_bags_come_first(options, ba
         ('good', 'passed'),
     ]
     assert done.stdout.startswith('summary: 3 bags: 1 passed, 1 failed, 1 unusable\n')
-    assert gearkin('validate', *options, 'wrong', 'good', cwd=bags).returncode == 1
+    assert gearkin_here('validate', 'wrong', 'good', cwd=bags).returncode == 1
 
 
 def test_all_shipped_bags_pass_each_with_its_own_config():
@@ -197,7 +197,7 @@ def schema():
 
 
 def test_json_on_stdout_is_json_alone(bags, schema):
-    done = gearkin('validate', 'good', 'wrong', 'garbage.mcap', '--json', '-', cwd=bags)
+    done = gearkin_here('validate', 'good', 'wrong', 'garbage.mcap', '--json', '-', cwd=bags)
     assert done.returncode == 2
     document = json.loads(done.stdout)
     schema.validate(document)
@@ -277,16 +277,16 @@ def test_a_report_goes_into_a_pipe_and_through_a_link(bags, tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ('arguments', 'code'),
+    ('arguments', 'code', 'unbuffered'),
     [
-        (['validate', 'good'], 0),
-        (['validate', 'wrong'], 1),
-        (['validate', 'good', '--json', '-'], 0),
-        (['validate', 'wrong', '--junit', '-'], 1),
-        (['urdf'], 0),
+        (['validate', 'good'], 0, ''),
+        (['validate', 'wrong'], 1, '1'),
+        (['validate', 'good', '--json', '-'], 0, '1'),
+        (['validate', 'wrong', '--junit', '-'], 1, ''),
+        (['urdf'], 0, ''),
+        (['urdf'], 0, '1'),
     ],
 )
-@pytest.mark.parametrize('unbuffered', ['', '1'])
 def test_a_closed_pipe_changes_no_exit_code(arguments, code, unbuffered, bags):
     environment = os.environ | {'PYTHONUNBUFFERED': unbuffered}
     with running_gearkin(*arguments, cwd=bags, env=environment) as process:

@@ -304,13 +304,6 @@ class Peer(Listener):
         parameters = [Parameter(name, value=value) for name, value in values.items()]
         return self.answer_to(lambda: self._parameters.set_parameters(parameters)).results[-1]
 
-    def set_atomically(self, parameters):
-        """Set all of some parameters or none of them through the service; returns the result."""
-        self.wait_until(self._parameters.services_are_ready, 'the parameter services')
-        return self.answer_to(
-            lambda: self._parameters.set_parameters_atomically(parameters)
-        ).result
-
     def get(self, *names) -> list:
         """Get the values of parameters through the service."""
         return self.parameters_of(self._parameters, *names)
