@@ -6,25 +6,21 @@ from pathlib import Path
 import pytest
 from live import rotor_bytes
 from mcap.writer import Writer
-from shipped_bags import BAGS, JOINT_STATE
+from shipped_bags import BAGS, JOINT_STATE, write_bag
 
 from gear_kinematics.bag import Bag, BagError
 from gear_kinematics.bag.summary import summarise
-from gear_kinematics.bag.writing import BagWriter
 
 
 def write(path, *topics, names=('m1', 'm2'), lost=()) -> Path:
     """Write 100 joint states at 100 Hz on each topic, without those that are lost."""
-    with BagWriter(path) as writer:
-        for topic in topics:
-            writer.add_topic(topic, JOINT_STATE)
-        for k in range(100):
-            if k in lost:
-                continue
-            data = rotor_bytes(10**18 + 10**7 * k, names, [0.1 * k] * len(names))
-            for topic in topics:
-                writer.write(topic, 10**18 + 10**7 * k, data)
-    return path
+    messages = [
+        (topic, stamp, rotor_bytes(stamp, names, [0.1 * k] * len(names)))
+        for k, stamp in enumerate(range(10**18, 10**18 + 10**9, 10**7))
+        for topic in topics
+        if k not in lost
+    ]
+    return write_bag(path, messages, dict.fromkeys(topics, JOINT_STATE))
 
 
 def summary(path, *arguments):
@@ -51,11 +47,10 @@ def test_several_topics_are_told_apart_by_the_joint(tmp_path):
     assert [topic.part for topic in summary(path, '/b').topics] == ['rotor', '']
     with pytest.raises(BagError, match='no topic /c '):
         summary(path, '/c')
-    with BagWriter(tmp_path / 'two') as writer:
-        for topic, joint in (('/a', 'm1'), ('/b', 'wheel')):
-            writer.add_topic(topic, JOINT_STATE)
-            writer.write(topic, 1, rotor_bytes(10**18, [joint], [0.0]))
-    found = summary(tmp_path / 'two', None, ['wheel'])
+    joints = {'/a': 'm1', '/b': 'wheel'}
+    messages = [(topic, 1, rotor_bytes(10**18, [name], [0.0])) for topic, name in joints.items()]
+    two = write_bag(tmp_path / 'two', messages, dict.fromkeys(joints, JOINT_STATE))
+    found = summary(two, None, ['wheel'])
     assert [(topic.part, topic.name) for topic in found.topics] == [('rotor', '/b'), ('', '/a')]
     assert [topic.rate for topic in found.topics] == [None, None]
 
@@ -81,12 +76,9 @@ def test_joint_states_of_another_encoding_are_no_part(tmp_path):
 
 def test_the_mean_rate_is_told_beside_that_of_the_median_period(tmp_path):
     """Ten messages in each 0.1 s, 1 ms apart."""
-    with BagWriter(tmp_path / 'bag') as writer:
-        writer.add_topic('/motor', JOINT_STATE)
-        for k in range(101):
-            stamp = 10**18 + k // 10 * 10**8 + k % 10 * 10**6
-            writer.write('/motor', stamp, rotor_bytes(stamp, ['m1'], [0.0]))
-    (topic,) = summary(tmp_path / 'bag').topics
+    stamps = (10**18 + k // 10 * 10**8 + k % 10 * 10**6 for k in range(101))
+    messages = [('/motor', stamp, rotor_bytes(stamp, ['m1'], [0.0])) for stamp in stamps]
+    (topic,) = summary(write_bag(tmp_path / 'bag', messages, {'/motor': JOINT_STATE})).topics
     assert topic.rate == pytest.approx(1000.0)
     assert topic.mean_rate == pytest.approx(100.0)
 

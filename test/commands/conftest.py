@@ -6,7 +6,7 @@ from types import MappingProxyType
 
 import pytest
 import replaying
-from shipped_bags import BAGS, JOINT_STATE, TYPES
+from shipped_bags import BAGS, JOINT_STATE, TYPES, write_bag
 
 from gear_kinematics.bag import Bag
 from gear_kinematics.bag.writing import BagWriter
@@ -70,9 +70,8 @@ def bags(tmp_path_factory) -> Path:
     rewrite(folder / 'rotor_only', drop=('/output_state', '/body_poses'))
     rewrite(folder / 'namespaced', rename=lambda topic: f'/arm{topic}')
     rewrite(folder / 'late', late={'/body_poses': 40})
-    with BagWriter(folder / 'left_and_right') as writer:
-        for side in ('left', 'right'):
-            writer.add_topic(f'/{side}/rotor_state', JOINT_STATE)
+    sides = (f'/{side}/rotor_state' for side in ('left', 'right'))
+    write_bag(folder / 'left_and_right', [], dict.fromkeys(sides, JOINT_STATE))
     (folder / 'garbage.mcap').write_bytes(b'garbage' * 1000)
     return folder
 

@@ -8,13 +8,12 @@ from pathlib import Path
 import pytest
 from blocked_bags import BAGS, refusal
 from live import rotor_bytes
+from shipped_bags import JOINT_STATE, write_bag
 
 from gear_kinematics.bag import Bag
-from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.commands.cli import main
 
 SERVO = BAGS / 'servo_point_to_point'
-JOINT_STATE = 'sensor_msgs/msg/JointState'
 EXTRAS = {'rclpy': 'ros', 'plotly': 'html', 'matplotlib': 'plot', 'tornado': 'watch'}
 
 
@@ -66,15 +65,13 @@ def test_a_missing_package_is_named_before_any_work(package, command, tmp_path, 
 def motor(tmp_path, monkeypatch):
     """A bag of a driver of two motors, in which nothing has the default name."""
     monkeypatch.chdir(tmp_path)
-    with BagWriter('motor') as writer:
-        writer.add_topic('/motor/states', JOINT_STATE)
-        writer.add_topic('/output_encoder', JOINT_STATE)
-        for k in range(100):
-            stamp = 10**18 + 10**7 * k
-            data = rotor_bytes(stamp, ['left', 'wheel_1'], [0.0, 0.5 * k], [0.0, 50.0], [0.1, 0.2])
-            writer.write('/motor/states', stamp, data)
-            writer.write('/output_encoder', stamp, rotor_bytes(stamp, ['out'], [-0.5 / 19 * k]))
-    return Path('motor')
+    messages = []
+    for k in range(100):
+        stamp = 10**18 + 10**7 * k
+        data = rotor_bytes(stamp, ['left', 'wheel_1'], [0.0, 0.5 * k], [0.0, 50.0], [0.1, 0.2])
+        messages.append(('/motor/states', stamp, data))
+        messages.append(('/output_encoder', stamp, rotor_bytes(stamp, ['out'], [-0.5 / 19 * k])))
+    return write_bag(Path('motor'), messages, {topic: JOINT_STATE for topic, *_ in messages})
 
 
 READING = [
@@ -110,12 +107,14 @@ def test_a_missing_joint_of_the_output_is_answered_with_those_that_there_are(com
 
 
 def test_the_joint_chooses_among_topics(tmp_path, capsys):
-    with BagWriter(tmp_path / 'two') as writer:
-        for topic, joint in (('/left', 'm1'), ('/right', 'm2')):
-            writer.add_topic(topic, JOINT_STATE)
-            for k in range(3):
-                writer.write(topic, k + 1, rotor_bytes(10**18 + k, [joint], [1.0 * k]))
-    words = ['compute', str(tmp_path / 'two'), str(tmp_path / 'out')]
+    messages = [
+        (topic, k + 1, rotor_bytes(10**18 + k, [joint], [1.0 * k]))
+        for topic, joint in (('/left', 'm1'), ('/right', 'm2'))
+        for k in range(3)
+    ]
+    kinds = dict.fromkeys(('/left', '/right'), JOINT_STATE)
+    bag = write_bag(tmp_path / 'two', messages, kinds)
+    words = ['compute', str(bag), str(tmp_path / 'out')]
     choice = 'which topic is rotor_state? /left (joint m1), /right (joint m2); name it with'
     assert choice in refusal(*words)
     assert main([*words, '--joint', 'm2']) == 0

@@ -10,10 +10,9 @@ import pytest
 from blocked_bags import BAGS, DEADLINE, BlockedBag, facts, gearkin_here, refusal, running_gearkin
 from gear_recordings import old_recording
 from live import rotor_bytes
-from shipped_bags import CONFIGS, JOINT_STATE, POSE_ARRAY
+from shipped_bags import CONFIGS, JOINT_STATE, POSE_ARRAY, ROTOR, write_bag
 
 from gear_kinematics.bag import Bag
-from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.commands.cli import main
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.wire.batches import decode_joint_states
@@ -69,11 +68,9 @@ def test_of_a_gear_with_only_a_ratio_the_output_alone_is_computed_and_validated(
 @pytest.mark.slow
 @pytest.mark.parametrize(('bad', 'code'), [(0, 0), (5, 0), (6, 1)])
 def test_of_a_recording_mostly_rejected_compute_tells_and_gives_code_1(bad, code, tmp_path):
-    with BagWriter(source := tmp_path / 'source') as writer:
-        writer.add_topic('/rotor_state', JOINT_STATE)
-        for k in range(10):
-            position = 1e17 if k < bad else 1.0
-            writer.write('/rotor_state', k, rotor_bytes(k + 1, position=[position]))
+    positions = [1e17] * bad + [1.0] * (10 - bad)
+    messages = [(ROTOR, k, rotor_bytes(k + 1, position=[p])) for k, p in enumerate(positions)]
+    source = write_bag(tmp_path / 'source', messages, {ROTOR: JOINT_STATE})
     done = gearkin_here('compute', source, tmp_path / 'out')
     assert done.returncode == code
     assert f'{10 - bad} outputs for 10 rotor states' in done.stdout
@@ -112,20 +109,19 @@ def test_compute_says_what_it_left_out(tmp_path):
     ids=['none', 'recorded', 'several'],
 )
 def test_recorded_outputs_are_replaced_and_the_only_joint_is_taken(others, topics, tmp_path):
-    bag, out = tmp_path / 'monday', tmp_path / 'out'
-    with BagWriter(bag) as writer:
-        for topic in ('/motor/joints', *others):
-            writer.add_topic(topic, POSE_ARRAY if 'poses' in topic else JOINT_STATE)
-        for stamp in range(10**9, 2 * 10**9, 10**7):
-            writer.write('/motor/joints', stamp, rotor_bytes(stamp, ['m1'], [1.0]))
-    words = ('--rotor-topic', '/motor/joints')
+    topic, out = '/motor/joints', tmp_path / 'out'
+    kinds = {name: POSE_ARRAY if 'poses' in name else JOINT_STATE for name in (topic, *others)}
+    stamps = range(10**9, 2 * 10**9, 10**7)
+    messages = [(topic, stamp, rotor_bytes(stamp, ['m1'], [1.0])) for stamp in stamps]
+    bag = write_bag(tmp_path / 'monday', messages, kinds)
+    words = ('--rotor-topic', topic)
     assert 'there are: m1; name it with --joint' in refusal(
         'compute', bag, out, *words, '--joint', 'rotor'
     )
     done = gearkin_here('compute', bag, out, *words)
     assert done.stdout.endswith('\nm1, the only joint on /motor/joints, is taken\n')
     with Bag(out) as computed:
-        assert set(computed.topics) == {'/motor/joints', *others, *topics}
+        assert set(computed.topics) == {topic, *others, *topics}
     assert gearkin_here('validate', out).returncode == 0
 
 

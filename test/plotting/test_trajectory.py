@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from gear_recordings import Samples, write_recording
+from shipped_bags import ROTOR, write_bag
 
 from gear_kinematics.bag import BagError
-from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.kinematics import matrix_method
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.plotting.trajectory import MOST_TURNS, Trajectory, read_trajectory
@@ -49,11 +49,9 @@ def test_recorded_velocities_are_taken():
 def test_a_stamp_counts_once_and_a_jump_back_ends_the_motion(tmp_path):
     stamps = [7_000 * MS, 7_001 * MS, 7_001 * MS, 7_002 * MS, 3_000 * MS, 3_001 * MS]
     template = JointStateTemplate(['rotor'], velocity=False, effort=False)
-    with BagWriter(tmp_path / 'bag') as writer:
-        writer.add_topic('/rotor_state', 'sensor_msgs/msg/JointState')
-        for received, (stamp, position) in enumerate(zip(stamps, [0, 1, 9, 2, 5, 6], strict=True)):
-            writer.write('/rotor_state', received, template.encode(stamp, [float(position)]))
-    read = read_trajectory(tmp_path / 'bag', config())
+    samples = enumerate(zip(stamps, [0.0, 1.0, 9.0, 2.0, 5.0, 6.0], strict=True))
+    messages = [(ROTOR, k, template.encode(stamp, [angle])) for k, (stamp, angle) in samples]
+    read = read_trajectory(write_bag(tmp_path / 'bag', messages), config())
     assert read.time == pytest.approx([0.0, 0.001, 0.002])
     assert positions(read) == pytest.approx([0.0, 1.0, 2.0])
 

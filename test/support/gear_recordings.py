@@ -6,13 +6,14 @@ import math
 import sqlite3
 from collections.abc import Iterable, Sequence
 from contextlib import closing
+from operator import itemgetter
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from shipped_bags import JOINT_STATE, write_bag
 from simulated_gear import GearSet, gears, simulate, strokes
 
-from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.kinematics.rotor_turns import split_turns
 from gear_kinematics.measurement.encoder_step import step_of
 from gear_kinematics.measurement.recording import Encoders, RotorMotion
@@ -103,16 +104,12 @@ def write_recording(path: Path, rotor: Samples, encoder: Samples | None = None) 
     if encoder:
         recorded['/output_encoder'] = ('output_shaft', encoder)
     messages = [
-        (received, topic, data)
+        (topic, received, data)
         for topic, (joint, samples) in recorded.items()
         for received, data in _messages(joint, samples)
     ]
-    with BagWriter(path) as writer:
-        for topic in recorded:
-            writer.add_topic(topic, 'sensor_msgs/msg/JointState')
-        for received, topic, data in sorted(messages):
-            writer.write(topic, received, data)
-    return path
+    messages.sort(key=itemgetter(1, 0))
+    return write_bag(path, messages, dict.fromkeys(recorded, JOINT_STATE))
 
 
 def _messages(joint: str, samples: Samples):
