@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.recording import Array, Encoders, Loading, Recording, RotorMotion
-from gear_kinematics.report.document import number
+from gear_kinematics.report.document import counted, number
 
 _FEWEST = 50  # samples
 _LEAST_TRAVEL = math.radians(10.0)  # of the output: without it, the ratio does not show
@@ -26,7 +26,7 @@ _LEAST_STEP = math.radians(0.25)
 _STAYS = 4  # samples in a row: no stray reading
 _REVERSAL = 4  # samples around it in which the output may lag
 _FROZEN = math.radians(3.0)  # of the output, that one shaft does while the other stands
-_LEAST_SHARE = 0.25  # of samples that are used: else it is the ratio that is not understood
+_LEAST_SHARE = 0.25  # of samples that no jump divides: else the ratio is not understood
 _MOST_FAULTS = 0.02  # of such medians: more are a unit or a range that is not understood
 _RANGE = 0.9  # of the rotor's travel, by which it steps where it wraps
 _RAMP_STEPS = 25.0  # the same of ramps, as 30 real ones with a noisy torque have up to 15
@@ -77,7 +77,8 @@ def gated(recording: Recording) -> Recording:
     own = [abs(rotor[rows[k]] - rotor[rows[k - 1]]) for k in jumps]
     if own and max(own) > _RANGE * np.ptp(rotor):  # an encoder of another range than a turn
         return recording
-    if len(kept) == len(error) or len(kept) < _LEAST_SHARE * len(error):
+    least = _FEWEST if jumps else _LEAST_SHARE * len(error)  # of many slips, any part is longest
+    if len(kept) == len(error) or len(kept) < least:
         return recording
     first, last = kept[0], kept[-1]
     stray = np.setdiff1d(np.arange(first, last + 1), kept)
@@ -88,17 +89,21 @@ def gated(recording: Recording) -> Recording:
     if len(isolated):
         found.append(_left_out(time[isolated], at, unit))
     if len(still := np.flatnonzero(frozen)):
-        span = f'{number(time[still[0]], 6)} to {number(time[still[-1]], 6)}{unit}'
+        times = np.split(time[still], 1 + np.flatnonzero(np.diff(still) > 1))
+        spans = [f'{number(each[0], 6)} to {number(each[-1], 6)}{unit}' for each in times]
+        more = f' and {counted(len(spans) - _NAMED, "more time")}' if len(spans) > _NAMED else ''
         found.append(
-            f'an encoder stood still while the other moved, from {span}: '
-            f'{len(still)} readings left out'
+            f'an encoder stood still while the other moved, from {", ".join(spans[:_NAMED])}'
+            f'{more}: {len(still)} readings left out'
         )
-    for before, after in ((rows[k - 1], rows[k]) for k in jumps):
+    for before, after in ((rows[k - 1], rows[k]) for k in jumps[:_NAMED]):
         size = number(math.degrees(error[after] - error[before]))
         found.append(
             f'the output jumps by {size}° against the rotor {at} {number(time[after], 6)}{unit} '
             '(a slip, or an encoder that jumped)'
         )
+    if further := len(jumps[_NAMED:]):
+        found.append(f'{counted(further, "further jump")} of the output against the rotor')
     if first or last + 1 < len(error):
         span = f'{number(time[first], 6)} to {number(time[last], 6)}{unit}'
         found.append(f'only the longest part without a fault is used, {span}')
@@ -189,19 +194,21 @@ def _followed(
     spread = float(np.ptp(error[kept[0]]))
     for way, others in ((1, parts[longest + 1 :]), (-1, parts[:longest][::-1])):
         last = parts[longest][1] - 1 if way > 0 else parts[longest][0]
-        reached = error[slice(*parts[longest])]
+        reached, beyond = error[slice(*parts[longest])], False
         for begin, end in others:
             near, far = (begin, end - 1) if way > 0 else (end - 1, begin)
             gap = abs(rows[near] - rows[last]) > _STAYS
             # Neighbours of a stray reading of the rotor are interpolated to it a little.
             level = np.median(error[begin:end][::way][:_STAYS])
             before = np.median(reached[::-way][:_STAYS])
-            if abs(math.remainder(level - before, period)) <= limit + spread * gap:
-                kept.append(np.arange(begin, end))
-                last, reached = far, error[begin:end]
-            elif end - begin >= _STAYS:
+            if abs(math.remainder(level - before, period)) > limit + spread * gap:
+                if end - begin < _STAYS:
+                    continue
                 jumps.append(begin if way > 0 else end)
-                break
+                beyond = True
+            if not beyond:
+                kept.append(np.arange(begin, end))
+            last, reached = far, error[begin:end]
     return np.sort(np.concatenate(kept)), sorted(jumps)
 
 

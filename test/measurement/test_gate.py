@@ -75,11 +75,12 @@ def test_many_stray_readings_are_left_out(clean, gate, column, value, every):
 @pytest.mark.parametrize('column', [1, 2], ids=['rotor', 'output'])
 def test_a_frozen_encoder_is_named_and_its_readings_are_left_out(clean, gate, column):
     clean[700:760, column] = clean[700, column]
+    clean[900:920, column] = clean[900, column]
     _, found = gate(clean)
-    assert len(found.encoders.measured) == len(clean) - 60
+    assert len(found.encoders.measured) == len(clean) - 80
     assert np.ptp(found.encoders.error(RATIO)) < np.radians(0.5)
     (remark,) = found.faults
-    assert 'stood still while the other moved, from 28 to 30.36 s' in remark
+    assert 'stood still while the other moved, from 28 to 30.36 s, 36 to 36.76 s: 80' in remark
 
 
 @pytest.mark.parametrize(
@@ -93,6 +94,17 @@ def test_a_jump_divides_and_is_named_with_its_moment(clean, gate, column, size, 
     assert found.encoders.measured == pytest.approx(clean[:900, 2], abs=1e-9)
     named = re.match('the output jumps by (.*)° against the rotor at 36 s', found.faults[0])
     assert float(named[1]) == pytest.approx(degrees, abs=0.1)  # and the gear's own error
+
+
+def test_each_of_many_slips_divides_and_is_told(clean, gate):
+    """Five parts of 12 s: no part is a quarter of the recording."""
+    for row in (300, 600, 900, 1200):
+        clean[row:, 2] += np.radians(5.0)
+    _, found = gate(clean)
+    assert len(found.encoders.measured) == 300
+    named = ' '.join(found.faults)
+    assert re.findall('against the rotor at ([^ ]*) s', named) == ['12', '24', '36']
+    assert '1 further jump of the output' in named
 
 
 def test_lost_motion_within_a_sample_is_no_fault(gate):
