@@ -289,12 +289,7 @@ class GearStatePublisher(PublishingNode):
         self._publish_diagnostics()
 
     def _publish_diagnostics(self) -> None:
-        now = time.monotonic()
-        reports = {
-            labelled(name, subject): report
-            for name, each in self._actuators.items()
-            for subject, report in each.state.report(now, self._connections).items()
-        }
+        reports = self._arm.report(time.monotonic(), self._connections)
         message = serialize_message(diagnostic_array(self, reports))
         self._outputs.send([(topics.DIAGNOSTICS, message)])
 

@@ -10,7 +10,10 @@ from typing import TypeVar
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.parameters.arm import labelled
 from gear_kinematics.state.gear_state import GearState, RotorAnswer
+from gear_kinematics.state.monitors import Connections
+from gear_kinematics.state.statuses import GearReport
 from gear_kinematics.wire.cdr import STAMP_BYTES, JointStateTemplate
 from gear_kinematics.wire.joint_reader import JointMessage, JointsReader, RejectedInputError
 from gear_kinematics.wire.topics import TRANSMISSION_ERROR, topic_of
@@ -66,6 +69,14 @@ class ArmState:
         chosen = set(topics)
         for name, state in self.actuators.items():
             state.choose([topic for topic in state.topics if topic_of(name, topic) in chosen])
+
+    def report(self, now: float, connections: Connections) -> dict[str, GearReport]:
+        """Report facts by actuator and subject; see `GearState.report`."""
+        return {
+            labelled(name, subject): report
+            for name, state in self.actuators.items()
+            for subject, report in state.report(now, connections).items()
+        }
 
     def rotor(self, data: bytes, now: Callable[[], int]) -> _Taken[RotorAnswer]:
         """Process the next message of the rotors; all have the same clock."""

@@ -14,6 +14,8 @@ from sensor_msgs.msg import JointState
 from gear_kinematics.parameters.arm import actuators_of
 from gear_kinematics.state.arm_state import ArmState
 from gear_kinematics.state.gear_state import GearState
+from gear_kinematics.state.monitors import Connections, DriverFacts
+from gear_kinematics.state.statuses import Condition
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
 START, PERIOD = 100 * SECOND, SECOND // 100
@@ -179,6 +181,19 @@ def test_errors_of_the_outputs_come_in_one_message_for_each_stamp(arm):
     assert stamp_of(error) == START + 2 * PERIOD
     assert list(error.position) == pytest.approx([ahead, ahead], rel=1e-12)
     assert not arm.actuators['wrist'].output_encoder.received
+
+
+def test_what_is_known_of_a_driver_is_reported_of_each_actuator_once(arm):
+    connections = Connections(DriverFacts(since=0.0, publishers=1, lost=3))
+    answer(arm, rotor_bytes(START, ['m1', 'm2'], [1.0, 2.0]))
+    for state in arm.actuators.values():
+        state.monitor.last_input = 0.5
+    for facts in ([Condition.LOST(count=3)], []):
+        reports = arm.report(1.0, connections)
+        assert [*reports] == [f'{name}: rotor input' for name in arm.actuators]
+        assert [report.facts for report in reports.values()] == [facts] * 3
+        counts = [(r.values['lost messages'], r.values['of others']) for r in reports.values()]
+        assert counts == [(3, 0), (3, 0), (3, 1)]
 
 
 def test_a_change_of_a_joint_is_followed(arm):
