@@ -143,7 +143,8 @@ def test_output_angle_is_the_same_after_the_node_was_killed(tmp_path, monkeypatc
     # What is killed while it holds a lock in shared memory would block its peer.
     monkeypatch.setenv('FASTDDS_BUILTIN_TRANSPORTS', 'UDPv4')
     config = tmp_path / 'actuator.yaml'
-    config.write_text('/**: {ros__parameters: {home_file: home.yaml, rotor_zero: 0.0}}\n')
+    values = 'home_file: home.yaml, rotor_zero: 0.0, home_angle: -12.5, rotor_direction: -1'
+    config.write_text(f'/**: {{ros__parameters: {{{values}}}}}\n')
     arguments = [*PATIENT, '--params-file', str(config)]
     angles = []
     with live_node(tmp_path, *arguments) as first:
@@ -159,8 +160,9 @@ def test_output_angle_is_the_same_after_the_node_was_killed(tmp_path, monkeypatc
         second.peer.connect()
         angles.append(second.peer.answer(rotor_state(second.peer.stamp(), position=[-20.3]))[0])
         assert 'restored from' in second.text()
-    # By hand: φ5 = -(-20.3 + 20.394)/19.
-    assert [angle.position[0] for angle in angles] == pytest.approx(2 * [-0.094 / 19.0])
+    # By hand: φ5 = -12.5 + (-20.3 + 20.394)/19.
+    expected = 2 * [-12.5 + 0.094 / 19.0]
+    assert [angle.position[0] for angle in angles] == pytest.approx(expected, abs=1e-12)
     (tmp_path / 'home.yaml').write_text('rotor_zero: 1.0')
     with running_node(['--ros-args', *arguments], stderr=-1) as process:
         _, error = process.communicate(timeout=60.0)

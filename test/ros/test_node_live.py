@@ -192,35 +192,7 @@ def test_diagnostics_are_published_once_a_second(shared):
     assert before < stamps[2] < peer.node.get_clock().now().nanoseconds
 
 
-# Parameters and homing.
-
-
-def test_home_makes_the_position_the_home_angle(start):
-    peer = start(*parameter('home_angle', -12.5), *parameter('rotor_direction', -1), *PATIENT,
-                 connect=False).peer  # fmt: skip
-    answer = peer.home()
-    assert not answer.success
-    assert 'rotor_state' in answer.message
-    peer.connect()
-    assert peer.set(rotor_encoder='single_turn').successful
-    level, _, values = peer.status(lambda s: 'not referenced' in s.message, 'an error')
-    assert (level, values['referenced']) == (ERROR, 'false')
-    peer.answer(rotor_state(START, position=[2.25]))
-    answer = peer.home()
-    assert answer.success, answer.message
-    [zero] = peer.get('rotor_zero')
-    # By hand, 80/76: φ2 = -19 φ5 = direction · (2.25 - zero).
-    assert zero == pytest.approx(2.25 + 19.0 * 12.5, abs=1e-12)
-    for number, position in enumerate([2.25, 2.5], start=1):
-        output = peer.answer(rotor_state(START + number * SECOND // 1000, position=[position]))
-        assert all_right(output, position, Settings(-1, zero))
-        angle = -12.5 + (position - 2.25) / 19.0
-        assert output[0].position[0] == pytest.approx(angle, abs=1e-13)
-    assert peer.status(lambda s: 'not referenced' not in s.message)[2]['referenced'] == 'true'
-    # Within a second the rotor could turn more than half a turn.
-    peer.answer(rotor_state(START + SECOND, position=[1.0]))
-    level, _, _ = peer.status(lambda s: 'not referenced' in s.message, 'not referenced')
-    assert level == ERROR
+# A recording.
 
 
 def test_the_recording_that_the_readme_makes_is_proven(start, tmp_path):
