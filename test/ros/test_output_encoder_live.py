@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import pytest
 from calibrations import AMPLITUDE, single_order
-from live import PATIENT, SECOND, START, connected, parameter, rotor_state, stamp_of
+from live import SECOND, START, connected, parameter, rotor_state, stamp_of
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
 
@@ -143,37 +143,3 @@ def test_output_is_corrected_by_a_calibration_that_can_be_changed(tmp_path):
         assert peer.set(calibration=str(file)).successful
         corrected(0.0)
         assert without not in map(stamp_of, states)
-
-
-def test_turns_are_known_after_a_power_cycle_and_a_disagreement_moves_nothing(tmp_path):
-    arguments = {'rotor_encoder': 'single_turn', 'output_encoder_reference': 'absolute'}
-    given = [each for pair in arguments.items() for each in parameter(*pair)]
-    with connected(tmp_path, *PATIENT, *given) as peer:
-        driver, stamps = encoder_driver(peer), itertools.count(START, MS)
-
-        def report(output, words, error=0.0):
-            """Go on at an output angle until diagnostics have the words; also return its own."""
-            answers = []
-
-            def go_on():
-                stamp = next(stamps)
-                driver.publish(rotor_state(stamp, ['shaft'], [output + error]))
-                [state, *_] = peer.answer(rotor_state(stamp, position=[-19.0 * output % math.tau]))
-                answers.append(state.position[0])
-
-            go_on()  # so that a report that is on its way is not taken
-            level, message, values = peer.status(
-                lambda s: s.name.endswith('rotor input') and words in s.message, words, go_on
-            )
-            return level, message, values.get('reference'), answers[-1]
-
-        silent = peer.status(lambda s: 'not referenced' in s.message, 'an error')
-        assert silent[1] == 'not referenced: no 60 samples of output_encoder in a row'
-        exact = 'turns of a single-turn encoder, exact'
-        assert report(2.0, 'ok') == (0, 'ok', exact, pytest.approx(2.0, abs=1e-12))
-        stamps = itertools.count(START + 100 * SECOND, MS)  # the driver was off; the shaft turned
-        assert report(-2.5, 'ok')[2:] == (exact, pytest.approx(-2.5, abs=1e-12))
-        level, message, _, output = report(-2.5, 'disagrees', error=0.5)
-        assert level == 2
-        assert '-114.59° by the encoder, -143.24° by the rotor' in message
-        assert output == pytest.approx(-2.5, abs=1e-12)
