@@ -21,11 +21,11 @@ _ANGLE = (
 _STAMP = ('stamp', 'timestamp', 'timestamps')
 _TORQUE = ('torque', 'torques', 'effort', 'efforts', 'trq', 'drehmoment')
 _KNOWN_WORDS = (*_ROTOR, *_OUTPUT, *_ANGLE, *_TORQUE, 'current')
-_TIME = ('time', 't', *_STAMP, 'today', 'datetime', 'elapsed', 'zeit', 'x')
+_TIME = ('time', 't', *_STAMP, 'today', 'datetime', 'elapsed', 'zeit', 'xtime', 'x')
 _FILLING = {
     'header', 'receive', 'log', 'measured', 'actual', 'act', 'filtered', 'raw', 'field', 'data',
     'value', 'values', 'feedback', 'state', 'states', 'axis', 'present', 'sensor', 'abs', 'side',
-    'in', 'ist',
+    'in', 'ist', 'host', 'pi', 'ros', 'system', 'unix', 'epoch',
 }  # fmt: skip
 """Words that may stand beside the others; all of them exclude commands, speeds and the like."""
 _COUNTS = ('counts', 'count', 'cnt', 'inc', 'increments', 'ticks', 'pulse', 'pulses')

@@ -232,7 +232,10 @@ def _names(
         return [one for name in names for one in (clocks[name], name)], given, clocks
     units: list[str] = []
     at = -1
-    if len(rows) > 1 and len(rows[-2]) > 1:
+    labels = [row for row in rows[:-1] if re.match('(?i).*(unit|einheit)', ''.join(row[:1]))]
+    if labels:  # such as Y_Unit_Label of LabVIEW
+        units = known_units(['', *labels[-1][1:]][len(labels[-1]) > len(rows[-1]) :])
+    elif len(rows) > 1 and len(rows[-2]) > 1:
         units = known_units(rows[-1])
         at = -2 if units else -1
         units = units or known_units(rows[-2])  # they are above the names
@@ -248,7 +251,8 @@ def _names(
         names = [f'{group} {name}'.strip() for group, name in zip(groups, names, strict=True)]
     if len(names) < numbers or (separator == ' ' and len(names) > width):
         raise ValueError(f'rows of {width} cells are below {len(names)} names: {", ".join(names)}')
-    return [*names, *[''] * (width - len(names))], dict(zip(names, units, strict=False)), {}
+    names = [*names[:width], *[''] * (width - len(names))]
+    return names, dict(zip(names, units, strict=False)), {}
 
 
 def _joint_state(row: Sequence[str]) -> tuple[list[str], dict[str, str], dict[str, str]]:

@@ -56,9 +56,9 @@ _TRIED, _FEWEST, _ROWS = 12, 10, 10_000
 """Columns among which two are sought for an example, least and most rows that tell them."""
 _NO_ANGLE = re.compile(r'(?i)torq|effort|curr|vel|speed|rpm|temp|time|stamp|target|goal|cmd|^t$')
 """In names of columns that are not proposed as angles."""
-_LIKELY = re.compile(r'(?i)pos|ang|enc|theta|winkel|rad\b|deg\b|rev\b')
+_LIKELY = re.compile(r'(?i)pos|ang|enc|theta|winkel|(rad|deg|rev|inc|cnt|counts)\b')
 """In names of those that are proposed before others."""
-_COUNTS = 'counts', '--rotor-counts', '4096', '--output-counts', '4096'
+_COUNTS = '--rotor-counts', '4096', '--output-counts', '4096'
 """Words for columns with whole numbers, for an example."""
 _PART = 'one row of {} is used: no more are kept in memory'
 _SHOWN = 800
@@ -333,10 +333,11 @@ def _advice(path: Path, table: TableFile, sources: Sources, ratio: Fraction) -> 
         try:
             _recording(path, table, named, ratio)
         except ValueError as error:
-            if '--angle-unit' not in str(error):
+            if not (option := re.search('--angle-unit|-counts', str(error))):
                 continue
             parts = np.concatenate([raw[rotor], raw[output]]) % 1.0
-            words += ['--angle-unit', *(['deg'] if np.any(parts > 0.0) else _COUNTS)]
+            unit = ['deg'] if np.any(parts > 0.0) else ['counts', *_COUNTS]
+            words += _COUNTS if option[0] == '-counts' else ['--angle-unit', *unit]
         command = shlex.join([*sources.command.split(), str(path), *words])
         return f'{text} with their units, for example: {command}'
     return f'{text} with --angle-column, --torque-column, --rotor-column, --output-column'

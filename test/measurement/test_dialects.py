@@ -1,6 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Tables as benches write them: each is read as without its fault, or refused."""
 
+import argparse
 import math
 import re
 import shlex
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 
 from gear_kinematics.bag import BagError
+from gear_kinematics.commands.encoders import add_recordings, sources
 from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.reading import read, read_encoders
@@ -182,7 +184,7 @@ ENCODERS = {
         [np.round(t * 1e9).astype(int) + 1764230000 * 10**9, r, o],
         '%time,field.rotor_position,field.output_position', ('{}', *DECIMALS[1:])),
     'ISO 8601 with a zone': lambda t, r, o: written(
-        [t, r, o], 'timestamps,rotor,output', (moment(zone='+01:00'), *DECIMALS[1:])),
+        [t, r, o], 'pi_time,rotor,output', (moment(zone='+01:00'), *DECIMALS[1:])),
     'dates with a decimal comma': lambda t, r, o: in_german(written(
         [t, r, o], 'time;rotor;output', (moment(' '), *DECIMALS[1:]), ';')),
     'dates of the month first, and noon': lambda t, r, o: written(
@@ -215,6 +217,11 @@ ENCODERS = {
     'names above names': lambda t, r, o: written(
         [t, r * DEG, r, o * DEG], ',Motor,,Load\nt (s),Angle (deg),Speed (rad/s),Angle (deg)',
         4 * ['{:.5f}']),
+    'LabVIEW': lambda t, r, o: written(
+        [t, r * DEG, o * DEG], '"A 5" shaft\nChannels\t2\nY_Unit_Label\tdeg\tdeg\t\n***End***\n'
+        'X_Value\tMotor angle\tOutput angle\tComment', mark='\t'),
+    'names behind a word, as their units are': lambda t, r, o: written(
+        [t * 1e3, r * DEG, o * DEG], 'Units;ms;deg;deg\ntime;rotor;output', mark=';'),
     'units above names': lambda t, r, o: written(
         [t * 1e3, r * DEG, o * DEG], 'ms,deg,deg\ntime,rotor,output'),
     'meta lines of three cells above names with units': lambda t, r, o: written(
@@ -346,15 +353,29 @@ def test_what_speaks_against_a_unit_is_said(tmp_path, gear, reference, write, ca
         read(saved(tmp_path, write(*reference('encoders'))), gear)
 
 
-def test_the_command_line_of_the_advice_works(tmp_path, gear, reference):
+@pytest.mark.parametrize(
+    ('name', 'unit'),
+    [
+        ('enc {}', []),
+        ('Data{}', ['--angle-unit', 'deg']),
+        ('FB{} [cnt]', ['--rotor-counts', '4096', '--output-counts', '4096']),
+    ],
+)
+def test_the_command_line_of_the_advice_works(tmp_path, gear, reference, name, unit):
     time, rotor, output = reference('encoders')
-    content = written([time, rotor, 30.0 * time, output], 't,enc 1,temp,enc 2', 4 * ['{:.5f}'])
+    names = ','.join(['t', name.format(1), 'temp', name.format(2)])
+    content = written([time, rotor, 30.0 * time, output], names, 4 * ['{:.5f}'])
     path = saved(tmp_path, content)
-    with pytest.raises(RecordingError, match=r'among the columns t \(0.00000\), enc 1 ') as caught:
+    with pytest.raises(RecordingError, match=r'among the columns t \(0.00000\), .*1') as caught:
         read(path, gear)
-    *_, file, rotor_option, rotor, output_option, output = shlex.split(str(caught.value))
-    assert (file, rotor_option, output_option) == (str(path), '--rotor-column', '--output-column')
-    assert measure(read(path, gear, Sources(rotor=rotor, output=output)), gear).transmission
+    _, command = str(caught.value).split('for example: ')
+    parser = argparse.ArgumentParser()
+    parser.set_defaults(parser=parser)
+    add_recordings(parser, 'angle', 'torque', 'rotor', 'output')
+    words = shlex.split(command)
+    assert words[:3] == ['gearkin', 'lost-motion', str(path)]
+    assert words[7:] == unit
+    assert read(path, gear, sources(parser.parse_args(words[2:]))).encoders
 
 
 def test_names_can_be_given_with_units(tmp_path, gear, reference):
