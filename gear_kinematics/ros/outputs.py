@@ -15,6 +15,8 @@ from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
+from gear_kinematics.wire.nearest import among, nearest
+
 _WARNING_PERIOD = 1.0  # s
 
 
@@ -96,6 +98,11 @@ class PublishingNode(Node):  # type: ignore[misc]  # rclpy has no types
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set parameters; the reason of a refusal names the parameter and types."""
+        known = self.get_parameters_by_prefix('')
+        for name in [each.name for each in parameter_list if each.name not in known]:
+            own = [full for full in known if full.endswith(f'.{name}')]  # of actuators
+            hint = among(name, own) if own else nearest(name, known)
+            return SetParametersResult(reason=f'unknown parameter `{name}`{hint}')
         result = super().set_parameters_atomically(parameter_list)
         names = ', '.join(parameter.name for parameter in parameter_list)
         if result.reason.startswith('Wrong parameter type'):  # rclpy 9.1 numbers them

@@ -48,6 +48,10 @@ class FindingCause(Enum):
         'the outputs are not those of {joint}: they are those of {other}; repeat with '
         '--joint {other}'
     )
+    OTHER_ROTOR = (
+        'the outputs are not those of {joint}: they are those of {other}; set '
+        '`{actuator}.rotor_joint: {other}`'
+    )
     # The rotor's count, from where the outputs take it
     ALL_MOVED_BY_ENCODER = 'all output angles are moved by {angle:.12g} rad, by the output encoder'
     ALL_MOVED_BY_HOMING = 'all output angles are moved by {angle:.12g} rad, as after homing'

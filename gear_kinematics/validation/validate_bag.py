@@ -157,14 +157,9 @@ def _judged(
     report = with_proof(validator.report(damage, lost), proof).adding(*_losses(lost, names))
     if found != joint:
         taken = Finding(FindingCause.ONLY_JOINT, values={'joint': found, 'topic': topics.rotor})
-        return replace(report, findings=(taken, *report.findings))
-    if not play and any(topic.wrong for topic in report.topics):
-        for other in joints_on(bag, [topics.rotor])[topics.rotor]:
-            of_other = replace(task, parameters=replace(task.parameters, rotor_joint=other))
-            if other != found and agrees(of_other, topics, islice(bag.batches(topics), 1)):
-                values = {'joint': found, 'other': other}
-                whose = Finding(FindingCause.OTHER_JOINT, values=values, explains=True)
-                return replace(report, findings=(whose, *report.findings))
+        report = replace(report, findings=(taken, *report.findings))
+    elif not play:
+        report = _explained(report, task, bag, topics)
     return report
 
 
@@ -201,8 +196,28 @@ def _judged_arm(task: Task, bag: Bag, progress: ReportProgress | None) -> BagRep
     except BagError as error:
         damage = str(error)
     lost = _recorded_losses(bag)
-    reports = [*map(with_proof, arm.reports(damage, lost), proofs)]
+    reports = [
+        _explained(with_proof(report, proof), each, bag, topics)
+        for report, proof, each in zip(
+            arm.reports(damage, lost), proofs, task.actuators, strict=True
+        )
+    ]
     return arm.report(task, reports).adding(*_losses(lost, recorded))
+
+
+def _explained(report: BagReport, task: Task, bag: Bag, topics: Topics) -> BagReport:
+    """Add whose outputs they are, if wrong ones agree with another joint of the rotor's topic."""
+    joint, found = task.parameters.rotor_joint, list[Finding]()
+    wrong = any(topic.wrong for topic in report.topics)
+    for other in joints_on(bag, [topics.rotor])[topics.rotor] if wrong else ():
+        of_other = replace(task, parameters=replace(task.parameters, rotor_joint=other))
+        if other != joint and agrees(of_other, topics, islice(bag.batches(topics), 1)):
+            actuator = task.parameters.actuator
+            cause = FindingCause.OTHER_ROTOR if actuator else FindingCause.OTHER_JOINT
+            values = {'joint': joint, 'other': other, 'actuator': actuator}
+            found.append(Finding(cause, values=values, explains=True))
+            break
+    return replace(report, findings=(*found, *report.findings))
 
 
 def _losses(lost: Counter[str], topics: Iterable[str]) -> Iterator[Finding]:

@@ -94,6 +94,10 @@ def test_parameters_of_each_actuator_are_live_and_checked_together(sent):
     )
     assert change(**joints, **{'elbow.rotor_direction': -1}) == ''
     assert 'must be one of' in change(**{'elbow.rotor_encoder': 'wrong'})
+    assert change(rotor_zero=1.0) == (
+        'unknown parameter `rotor_zero`; did you mean `elbow.rotor_zero`? '
+        'there are: elbow.rotor_zero, shoulder.rotor_zero'
+    )
     drive(node, MILLISECOND, m1=50.0, m2=1.9)
     last = {name: each.state.input.last for name, each in node._actuators.items()}
     angles = {name: math.tau * turns + angle for name, (_, (turns, angle), *_) in last.items()}

@@ -70,11 +70,16 @@ def output(state: Joints) -> Joints:
     return Joints(names, position, velocity, effort)
 
 
-def recording(steps: int = 60, edit=lambda _, state: [state]) -> list[tuple[str, int, bytes]]:
-    """The messages, with those of the node as `edit` makes them of its number and its content."""
+def recording(
+    steps: int = 60, edit=lambda _, state: [state], read=lambda state: state
+) -> list[tuple[str, int, bytes]]:
+    """The messages, with those of the node as `edit` makes them of its number and its content.
+
+    The encoders of the rotors give what `read` makes of their state.
+    """
     messages = []
     for number, (stamp, state) in enumerate(inputs(steps)):
-        messages.append((ROTOR, stamp + 1000, state.encode(stamp)))
+        messages.append((ROTOR, stamp + 1000, read(state).encode(stamp)))
         for k, joints in enumerate(edit(number, output(state))):
             messages.append((OUTPUT, stamp + 2000 + k, joints.encode(stamp)))
     return messages

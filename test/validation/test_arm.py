@@ -15,7 +15,7 @@ from gear_kinematics.parameters.arm import load_actuators
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation import Task, explain
 from gear_kinematics.validation.arm import ArmValidator
-from gear_kinematics.validation.validate_bag import of_arm
+from gear_kinematics.validation.validate_bag import of_arm, validate
 from gear_kinematics.validation.validator import Validator
 
 PAIR, WRIST, ALL = 40, 41, 42
@@ -44,6 +44,39 @@ def test_messages_of_all_joints_and_of_several_drivers_pass_in_batches_of_any_si
     assert [each.topics[0].fields[2].compared for each in whole.actuators] == [40, 0, 0]
     for size in (1, 7):
         assert judged(tmp_path, recording(), size).passed
+
+
+@pytest.mark.parametrize(('name', 'absolute'), [('elbow', False), ('wrist', True)])
+def test_turns_of_an_encoder_that_wraps_are_counted_for_its_actuator_alone(
+    name, absolute, tmp_path
+):
+    """The outputs show three turns more than the encoder, whose zero is at the angle -3 rad."""
+
+    def wrapped(state: Joints) -> Joints:
+        wraps = {name: lambda angle: math.remainder(angle + 3.0, math.tau)}
+        positions = zip(state.names, state.position, strict=True)
+        return state._replace(position=[wraps.get(n, float)(angle) for n, angle in positions])
+
+    given = {f'{name}.rotor_encoder': 'single_turn', f'{name}.rotor_zero': 3.0 - 3 * math.tau}
+    messages = recording(400, read=wrapped)
+    if absolute:
+        given[f'{name}.output_encoder_reference'] = 'absolute'
+        found = [(received + 1, data) for topic, received, data in messages if topic == OUTPUT]
+        messages += [('/output_encoder', *each) for each in found]
+        messages.sort(key=lambda message: message[1])
+    topics = dict.fromkeys((ROTOR, OUTPUT, '/output_encoder')[: 2 + absolute], JOINT_STATE)
+    bag = write_bag(tmp_path / 'bag', messages, topics)
+    report = validate(bag, config(tmp_path / 'arm.yaml', **given))
+    assert report.passed, explain(report)
+    own = [each == name for each in RATIOS]
+    for text, of_it in (
+        ('the turns of the single-turn encoder are taken from the outputs', own),
+        ('the outputs agree with output_encoder', [each and absolute for each in own]),
+    ):
+        assert [text in explain(each) for each in report.actuators] == of_it
+    del given[f'{name}.rotor_encoder']
+    failed = validate(bag, config(tmp_path / 'arm.yaml', **given))
+    assert [each.verdict == 'fail' for each in failed.actuators] == own
 
 
 def without(joints: Joints, name: str) -> Joints:
@@ -134,6 +167,19 @@ def test_a_fault_in_one_message_is_found_and_fails_the_actuator_or_the_arm(
     assert found.verdict == Verdict.FAIL
     assert text in explain(found)
     assert f'{at_fault}: ' in explain(report)
+
+
+def test_outputs_of_another_rotor_are_explained(tmp_path):
+    swapped = {'shoulder.rotor_joint': 'elbow', 'elbow.rotor_joint': 'shoulder'}
+    bag = write_bag(tmp_path / 'bag', recording(), {ROTOR: JOINT_STATE, OUTPUT: JOINT_STATE})
+    report = validate(bag, config(tmp_path / 'arm.yaml', **swapped))
+    said = {each.actuator: explain(each) for each in report.actuators}
+    for name, other in (('shoulder', 'elbow'), ('elbow', 'shoulder')):
+        assert (
+            f'the outputs are not those of {other}: they are those of {name}; set '
+            f'`{name}.rotor_joint: {name}`'
+        ) in said[name]
+    assert 'they are those of' not in said['wrist']
 
 
 def test_the_command_reports_each_actuator_and_narrows_to_one(tmp_path):
