@@ -13,24 +13,18 @@ from gear_kinematics.bag.finding import find_bags
 
 @pytest.fixture
 def tree(tmp_path, monkeypatch):
-    for name in (
-        'fleet/one/metadata.yaml',
-        'fleet/one/one_0.mcap',
-        'fleet/one/one_1.mcap',
-        'fleet/deep/er/two.db3',
-        'fleet/deep/three.mcap',
-        'fleet/deep/four.mcap.lz4',
-        'fleet/deep/five.bag',
-        'fleet/deep/notes.txt',
-        'killed/six_0.mcap',
-        'killed/six_1.mcap',
-        'killed/six_10.mcap',
-        'logs/seven[1].mcap',
-        'empty/notes.txt',
-    ):
-        path = tmp_path / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.touch()
+    files = {
+        'fleet/one': 'metadata.yaml one_0.mcap one_1.mcap',
+        'fleet/deep': 'three.mcap four.mcap.lz4 five.bag notes.txt',
+        'fleet/deep/er': 'two.db3',
+        'killed': 'six_0.mcap six_1.mcap six_10.mcap',
+        'logs': 'seven[1].mcap',
+        'empty': 'notes.txt',
+    }
+    for folder, names in files.items():
+        (tmp_path / folder).mkdir(parents=True)
+        for name in names.split():
+            (tmp_path / folder / name).touch()
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

@@ -52,9 +52,8 @@ def test_of_a_gear_with_only_a_ratio_the_output_alone_is_computed_and_validated(
     other_gear, bags, tmp_path
 ):
     out = tmp_path / 'out'
-    assert (
-        gearkin_here('compute', bags / 'rotor_only', out, '--config', other_gear).returncode == 0
-    )
+    done = gearkin_here('compute', bags / 'rotor_only', out, '--config', other_gear)
+    assert done.returncode == 0
     with Bag(out) as bag:
         assert set(bag.topics) == {'/rotor_state', '/output_state'}
     done = gearkin_here('validate', '-v', out, '--config', other_gear, *EXACT)

@@ -33,9 +33,8 @@ def test_a_bag_is_a_line_in_a_pipe_if_it_passed_and_described_in_full_if_verbose
         assert main(['validate', str(SINGLE_TURN), '-v', *words]) == (verdict == 'failed')
         out = capsys.readouterr().out
         assert out.startswith(f'{SINGLE_TURN}: verdict: {verdict}')
-        assert (
-            compared in out or verdict == 'failed'
-        )  # a wrap is no motion of a multi-turn encoder
+        # A wrap is no motion of a multi-turn encoder.
+        assert compared in out or verdict == 'failed'
 
 
 def test_quiet_shows_only_what_failed(tmp_path, capsys):

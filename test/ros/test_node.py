@@ -401,16 +401,8 @@ def test_description_and_markers_follow_the_prefix_and_are_sent_when_they_change
     [(topic, data)] = published
     assert topic == 'robot_description'
     robot = ET.fromstring(deserialize_message(data, String).data)  # noqa: S314, our own
-    bodies = [
-        'stator',
-        'rotor',
-        'satellite_a',
-        'satellite_b',
-        'oldham_a',
-        'oldham_b',
-        'output_shaft',
-    ]
-    links = {f'arm_{body}' for body in bodies}
+    bodies = 'stator rotor satellite_a satellite_b oldham_a oldham_b output_shaft'
+    links = {f'arm_{body}' for body in bodies.split()}
     assert {link.get('name') for link in robot.iter('link')} == links
     node._display.markers[''].publish()
     markers = deserialize_message(published[1][1], MarkerArray).markers
@@ -475,11 +467,8 @@ def test_outputs_of_unknown_turns_are_marked_or_withheld(make, monkeypatch, outp
     assert topics_after(2) == given
     assert node._homing.answer(None, SimpleNamespace()).success
     assert topics_after(3) == [True, DIAGNOSTICS, 'output_state']  # diagnostics come at once
-    assert topics_after(SECOND) == [
-        False,
-        DIAGNOSTICS,
-        *given,
-    ]  # in a second it may have turned unseen
+    # In a second it may have turned unseen.
+    assert topics_after(SECOND) == [False, DIAGNOSTICS, *given]
     assert node._actuators[''].state.monitor.unreferenced == 3
 
 

@@ -616,22 +616,8 @@ def test_init_says_why_it_writes_nothing(listening, capsys, arguments, cause):
 
 
 def test_init_writes_what_is_named(listening, capsys):
-    assert (
-        main(
-            [
-                'init',
-                '--topic',
-                '/motor/joint_states',
-                '--joint',
-                'm1',
-                '-o',
-                'a b.yaml',
-                '--ratio',
-                '50.5',
-            ]
-        )
-        == 0
-    )
+    joint = '--topic', '/motor/joint_states', '--joint', 'm1'
+    assert main(['init', *joint, '-o', 'a b.yaml', '--ratio', '50.5']) == 0
     written = NodeParameters.load(listening / 'a b.yaml')
     assert (written.rotor_joint, written.gear_ratio) == ('m1', '101/2')
     command = "gear_state_publisher --ros-args --params-file 'a b.yaml' -r rotor_state:="
