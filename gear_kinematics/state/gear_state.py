@@ -35,16 +35,11 @@ class RotorAnswer(NamedTuple):
     """The results of a valid message of the rotor."""
 
     sample: RotorSample
-    segment: int
-    """As in `RotorSamples`."""
-    referenced: bool
-    """Whether the rotor's turns were known when it came."""
-    withheld: bool
-    """Whether they were not, and the parameters withhold outputs of unknown turns."""
-    correction: Correction | None
-    """None without a calibration."""
-    errors: Sequence[ErrorSample]
-    """The transmission errors that have become known, in order."""
+    segment: int  # as in `RotorSamples`
+    referenced: bool  # whether the rotor's turns were known when it came
+    withheld: bool  # whether they were not, and the parameters withhold outputs of unknown turns
+    correction: Correction | None  # None without a calibration
+    errors: Sequence[ErrorSample]  # the transmission errors that have become known, in order
 
 
 class RotorAnswers(NamedTuple):
@@ -52,8 +47,7 @@ class RotorAnswers(NamedTuple):
 
     samples: RotorSamples
     correction: Correction | None
-    errors: Sequence[ErrorSample]
-    """Those that became known with a message of either encoder."""
+    errors: Sequence[ErrorSample]  # those that became known with a message of either encoder
 
 
 _answer = partial(tuple.__new__, RotorAnswer)
@@ -66,8 +60,7 @@ class GearState:
     taken one by one or many at once, with the same results.
     """
 
-    messages: OutputMessages
-    """Encodes the states, once topics are chosen."""
+    messages: OutputMessages  # encodes the states, once topics are chosen
 
     def __init__(self, parameters: NodeParameters, calibration: Calibration | None = None) -> None:
         """Start without messages; no topics are chosen."""

@@ -34,14 +34,10 @@ _JOINTS = 'mesh', 'cam', 'slot_satellite', 'slot_arm'  # of each branch
 class SampleLoads(NamedTuple):
     """The loads at a sample, or at n of them, as floats or arrays (n,)."""
 
-    torque: Any
-    """Σ T, N·m, of the branches on the output shaft; NaN if unknown."""
-    torques: Sequence[Any]
-    """N·m, of the branches; see `TorqueSharing`."""
-    stand_offs: Sequence[Any]
-    """rad, of the branches."""
-    equations: LoadEquations
-    """With the bodies' positions and inertias, of the forces."""
+    torque: Any  # Σ T, N·m, of the branches on the output shaft; NaN if unknown
+    torques: Sequence[Any]  # N·m, of the branches; see `TorqueSharing`
+    stand_offs: Sequence[Any]  # rad, of the branches
+    equations: LoadEquations  # with the bodies' positions and inertias, of the forces
     positions: Sequence[BranchPosition]
     inertias: Sequence[Inertia]
 

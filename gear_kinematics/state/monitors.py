@@ -27,13 +27,10 @@ _SOON = 0.1
 class DriverFacts:
     """What is known of the drivers on a topic, by all actuators alike."""
 
-    since: float = field(default_factory=time.monotonic)
-    """Time from which on messages are awaited."""
+    since: float = field(default_factory=time.monotonic)  # from when on messages are awaited
     publishers: int = 0
-    lost: int = 0
-    """Messages that are missing between those that came."""
-    losses_known: bool = True
-    """Whether they could be counted since the last report."""
+    lost: int = 0  # messages that are missing between those that came
+    losses_known: bool = True  # whether they could be counted since the last report
 
 
 @dataclass(slots=True)
@@ -42,10 +39,8 @@ class Connections:
 
     rotor: DriverFacts = field(default_factory=DriverFacts)
     encoder: DriverFacts = field(default_factory=DriverFacts)
-    unsent: int = 0
-    """Messages that the middleware failed to send."""
-    graph: Sequence[Fact] = ()
-    """Faults at the last check of the ROS graph."""
+    unsent: int = 0  # messages that the middleware failed to send
+    graph: Sequence[Fact] = ()  # faults at the last check of the ROS graph
 
 
 class DriverMonitor:

@@ -41,10 +41,8 @@ BELIEVED = Belief.BELIEVED  # an attribute of an enum is slow for what each mess
 class Jump(NamedTuple):
     """A step of the readings that the rotor did not make."""
 
-    stamp: int
-    """ns, of the first reading behind it."""
-    size: float
-    """rad, as far as it was not expected; of a single-turn encoder, within its range."""
+    stamp: int  # ns, of the first reading behind it
+    size: float  # rad, as far as it was not expected; of a single-turn encoder, within its range
 
 
 _UNKNOWN = math.nan, 0, 0.0, 0

@@ -28,10 +28,8 @@ def _stale(last: Reading, former: Reading) -> float:
 class RotorLimits(NamedTuple):
     """The limits of a rotor."""
 
-    speed: float
-    """rad/s."""
-    acceleration: float
-    """rad/s²."""
+    speed: float  # rad/s
+    acceleration: float  # rad/s²
 
     def even_step(self, span: Any) -> Any:
         """Return by how much successive steps may differ, rad, if each takes about a time, ns.

@@ -15,25 +15,17 @@ _COLUMNS = np.dtype('i8, f8, f8, f8, f8, i8, i8, i8, ?')
 class RotorSamples(NamedTuple):
     """Valid rotor states as arrays (n,), and the stamps of rejected ones."""
 
-    stamp: Array
-    """ns."""
+    stamp: Array  # ns
     turns: Array
-    angle: Array
-    """rad: the rotor angle φ2 is 2π turns + angle."""
-    velocity: Array
-    """rad/s; NaN if the message has none."""
-    effort: Array
-    """N·m; NaN if the message has none."""
-    row: Array
-    """Index of the message."""
-    received: Array
-    """Time of reception, ns."""
+    angle: Array  # rad: the rotor angle φ2 is 2π turns + angle
+    velocity: Array  # rad/s; NaN if the message has none
+    effort: Array  # N·m; NaN if the message has none
+    row: Array  # index of the message
+    received: Array  # time of reception, ns
     segment: Array
     """Number that rises where the rotor's turn count restarts, is uncertain or is referenced."""
-    referenced: Array
-    """Whether the rotor's turns are known."""
-    rejected: Array
-    """(m,), ns: the stamps of rejected messages that have one."""
+    referenced: Array  # whether the rotor's turns are known
+    rejected: Array  # (m,), ns: the stamps of rejected messages that have one
 
     @classmethod
     def of(cls, rows: Sequence[tuple[Any, ...]], rejected: Array) -> Self:

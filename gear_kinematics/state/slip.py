@@ -14,8 +14,7 @@ _BLOCK = 20
 class Slip(NamedTuple):
     """A lasting movement of the output against the rotor."""
 
-    stamp: int
-    """ns: the first error beyond the tolerance."""
+    stamp: int  # ns: the first error beyond the tolerance
     angle: float
     """rad, at the output: by how much the measured angle has moved, by the latest errors."""
 
@@ -23,10 +22,8 @@ class Slip(NamedTuple):
 class _Block(NamedTuple):
     """Medians of successive errors."""
 
-    error: float
-    """rad."""
-    speed: float
-    """rad/s."""
+    error: float  # rad
+    speed: float  # rad/s
 
     def tolerance(self, other: '_Block', parameters: NodeParameters) -> float:
         """Greatest difference between the errors of two blocks without a slip, rad.

@@ -38,12 +38,9 @@ class Command(NamedTuple):
     comes. Without a position the velocity is held, and only without either the effort acts.
     """
 
-    position: float | None
-    """Commanded position, rad."""
-    velocity: float | None
-    """Commanded velocity, rad/s."""
-    effort: float | None
-    """Commanded torque, N·m."""
+    position: float | None  # commanded position, rad
+    velocity: float | None  # commanded velocity, rad/s
+    effort: float | None  # commanded torque, N·m
 
 
 class Driver:

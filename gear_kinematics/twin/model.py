@@ -9,24 +9,15 @@ from gear_kinematics.twin.gear import TwinGear
 class TwinModel(Protocol):
     """Moves a gear through time; angles count turns, and are those of the kinematics."""
 
-    gear: TwinGear
-    """The gear, which may be replaced at any time by one with the same mechanism."""
-    rotor_angle: float
-    """Rotor angle φ2, rad."""
-    rotor_velocity: float
-    """Velocity of the rotor, rad/s."""
-    output_angle: float
-    """Angle φ5 of the output shaft, rad."""
-    output_velocity: float
-    """Velocity of the output shaft, rad/s."""
-    branch_torques: tuple[float, ...]
-    """Torque T_k that each branch exerts on the output shaft, N·m; 0 out of mesh."""
-    output_locked: bool
-    """Whether the output shaft is locked."""
-    rotor_locked: bool
-    """Whether the rotor is locked."""
-    notice: str
-    """How the motion has differed from that of the gear since this was cleared; or ''."""
+    gear: TwinGear  # the gear, which may be replaced at any time by one with the same mechanism
+    rotor_angle: float  # rotor angle φ2, rad
+    rotor_velocity: float  # velocity of the rotor, rad/s
+    output_angle: float  # angle φ5 of the output shaft, rad
+    output_velocity: float  # velocity of the output shaft, rad/s
+    branch_torques: tuple[float, ...]  # T_k of each on the output shaft, N·m; 0 out of mesh
+    output_locked: bool  # whether the output shaft is locked
+    rotor_locked: bool  # whether the rotor is locked
+    notice: str  # how the motion has differed from that of the gear since this was cleared; or ''
 
     def advance(self, duration: float, rotor_torque: float, load_torque: float) -> None:
         """Advance the time.
