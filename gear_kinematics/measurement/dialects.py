@@ -26,6 +26,8 @@ _SEPARATORS = ';', '\t', ',', '|', ' '
 _COMMENT = ('#', '//', '%', 'sep=', 'SEP=')
 _BOMS = {b'\xef\xbb\xbf': 'utf-8-sig', b'\xff\xfe': 'utf-16', b'\xfe\xff': 'utf-16'}
 _MISSING = {'', 'nan', '-nan', 'inf', '-inf', 'null', 'none', 'n/a', 'na', '-', '[]'}
+_CLOCKS = {'name': 'ms', 'x_value': 's'}
+"""Words before the names of channels with their own times, of TwinCAT Scope and LabVIEW: units."""
 _TOPICS, _VALUE = (
     ('topic', 'message path', 'series', 'signal', 'channel', 'label', 'name'),
     'value',
@@ -201,9 +203,9 @@ def _layout(lines: Sequence[str]) -> _Layout:
         raise ValueError('no samples in it')
     start = filled[first]
     above = [line for line in lines[:start] if line.strip() and line[:4].lower() != 'sep=']
-    row = rows[start]
+    row, *_ = samples = [rows[place] for place in filled[first:]]
     if above:
-        found = _names(above, separator, max(width, len(row)), 1 + max(numeric))
+        found = _names(above, separator, max(map(len, samples)), 1 + max(numeric))
     else:
         found = _joint_state(row)
     return _Layout(separator, point, start, row, *found)
@@ -224,17 +226,20 @@ def _names(
         ValueError: if they do not name each of the numbers of a row, or more.
     """
     rows = [cells_of(line.lstrip('#%/ '), separator) for line in above]
-    keyed = {row[0].lower(): row[1::2] for row in rows if row[2:] and len({*row[::2]}) == 1}
-    if 'name' in keyed:  # TwinCAT Scope, with the times of each channel before it
-        names = keyed['name']
-        clocks = {name: f'time of {name} [ms]' for name in names}
-        given = dict(zip(names, known_units(keyed.get('unit', [])), strict=False))
-        return [one for name in names for one in (clocks[name], name)], given, clocks
     units: list[str] = []
     at = -1
-    labels = [row for row in rows[:-1] if re.match('(?i).*(unit|einheit)', ''.join(row[:1]))]
-    if labels:  # such as Y_Unit_Label of LabVIEW
-        units = known_units(['', *labels[-1][1:]][len(labels[-1]) > len(rows[-1]) :])
+    labelled = (row for row in rows[:-1] if re.search('(?i)unit|einheit', ''.join(row[:1])))
+    label = next(labelled, [])
+    alike = [row[:width] for row in rows if row[2:] and len({*row[:width:2]}) == 1]
+    pairs = {row[0].lower(): row[1::2] for row in alike}
+    for key in _CLOCKS.keys() & pairs.keys():
+        names = pairs[key]
+        clocks = {name: f'time of {name} [{_CLOCKS[key]}]' for name in names}
+        units = known_units(pairs.get('unit') or label[1::2])
+        columns = [one for name in names for one in (clocks[name], name)]
+        return columns, dict(zip(names, units, strict=False)), clocks
+    if label:  # such as Y_Unit_Label of LabVIEW
+        units = known_units(['', *label[1:]][len(label) > len(rows[-1]) :])
     elif len(rows) > 1 and len(rows[-2]) > 1:
         units = known_units(rows[-1])
         at = -2 if units else -1

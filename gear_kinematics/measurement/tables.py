@@ -138,6 +138,9 @@ class _Samples:
         wanted = {column.name for column in found.values()} | {*clocks.values(), rest or ''}
         raw, every = table.load(sorted(wanted - {''}))
         self.remarks = [_PART.format(every)] if every > 1 else []
+        if clock and not (sources.time or table.first.get(usual, usual)):
+            filled = raw[usual] == raw[usual]  # NaN is not equal to itself
+            clock = clock if filled.any() else None
         if clock and rest:
             raw[usual] = raw[usual].astype(np.int64) * SECOND + raw[rest].astype(np.int64)
             clock = clock._replace(unit='ns', scale=1.0 / SECOND)

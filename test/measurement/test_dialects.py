@@ -220,6 +220,12 @@ ENCODERS = {
     'LabVIEW': lambda t, r, o: written(
         [t, r * DEG, o * DEG], '"A 5" shaft\nChannels\t2\nY_Unit_Label\tdeg\tdeg\t\n***End***\n'
         'X_Value\tMotor angle\tOutput angle\tComment', mark='\t'),
+    'LabVIEW, with times of each channel': lambda t, r, o: written(
+        [t, r * DEG, t, o * DEG], 'Channels\t2\t\t\t\nY_Unit_Label\tdeg\t\tdeg\n***End***\n'
+        'X_Value\tMotor angle\tX_Value\tOutput angle\tComment', 4 * ['{:.5f}'], '\t'),
+    'LabVIEW, without times': lambda t, r, o: written(
+        [0 * t, r, o], 'X_Value\tMotor angle [rad]\tOutput angle [rad]\tComment',
+        (lambda _: '', '{:.5f}', '{:.5f}'), '\t'),
     'names behind a word, as their units are': lambda t, r, o: written(
         [t * 1e3, r * DEG, o * DEG], 'Units;ms;deg;deg\ntime;rotor;output', mark=';'),
     'units above names': lambda t, r, o: written(
