@@ -2,6 +2,7 @@
 """Compares the velocities in a driver's messages with the slope of its positions."""
 
 import math
+from bisect import bisect_left
 from enum import StrEnum
 from itertools import pairwise
 
@@ -84,11 +85,13 @@ class VelocityField:
             The velocities, (n,); NaN where they are found to contradict the positions.
         """
         velocity, start = values[:, 1].copy(), 0
-        while (row := int(stamps.searchsorted(self.due))) < len(stamps):
+        times = stamps.tolist()
+        while (row := bisect_left(times, self.due, start)) < len(times):
             if self.contradicts:
                 velocity[start:row] = np.nan
             start = row
-            self.note(int(stamps[row]), float(values[row, 0]), float(values[row, 1]), finest)
+            position, given, _ = values[row].tolist()
+            self.note(times[row], position, given, finest)
         if self.contradicts:
             velocity[start:] = np.nan
         return velocity

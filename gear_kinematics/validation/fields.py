@@ -106,8 +106,8 @@ class SeriesRecorder:
         """Start without samples of these fields."""
         self._fields = fields
         self._start: int | None = None  # stamp of the first message, ns
-        self._kept = np.zeros((0, 2 + len(fields)))
-        """Times since then, s, rotor angles, rad, and errors."""
+        self._kept = np.zeros((2 + len(fields), 0))
+        """Rows with times since then, s, rotor angles, rad, and the errors of each field."""
         self._interval = 1
 
     def update(self, stamp: NDArray[np.int64], rotor_angle: Array, *fields: FieldSamples) -> None:
@@ -116,9 +116,9 @@ class SeriesRecorder:
             return
         self._start = int(stamp[0]) if self._start is None else self._start
         time = (stamp - self._start) / SECOND
-        rows = np.column_stack([time, rotor_angle, *(field.error for field in fields)])
-        self._kept = np.concatenate([self._kept, self._thinned(rows, self._interval)])
-        while len(self._kept) > _MAX_SAMPLES:
+        rows = np.stack([time, rotor_angle, *(field.error for field in fields)])
+        self._kept = np.hstack([self._kept, self._thinned(rows, self._interval)])
+        while self._kept.shape[1] > _MAX_SAMPLES:
             self._kept = self._thinned(self._kept, 2)
             self._interval *= 2
 
@@ -126,7 +126,7 @@ class SeriesRecorder:
         """Return the record, with the time 0 at a stamp, ns; None if nothing was compared."""
         if self._start is None:
             return None
-        time, rotor_angle, *errors = self._kept.T
+        time, rotor_angle, *errors = self._kept
         time = time + (self._start - start) / SECOND
         compared = {
             field.name: error.tolist()
@@ -137,18 +137,18 @@ class SeriesRecorder:
 
     def _thinned(self, rows: Array, interval: int) -> Array:
         """Keep the moment at which most of a tolerance was used, and the worst of each field."""
-        tolerance = [max(field.tolerance, sys.float_info.min) for field in self._fields]
+        tolerance = [[max(field.tolerance, sys.float_info.min)] for field in self._fields]
         # Errors of absent values are less than any other.
-        size = np.where(np.isnan(rows[:, 2:]), -1.0, np.abs(rows[:, 2:]))
-        share = (size / tolerance).max(axis=1, keepdims=True)
-        moment = _greatest(share, interval)[:, 0]
-        error = np.take_along_axis(rows[:, 2:], _greatest(size, interval), axis=0)
-        return np.column_stack([rows[moment, :2], error])
+        size = np.where(np.isnan(rows[2:]), -1.0, np.abs(rows[2:]))
+        share = (size / tolerance).max(axis=0, keepdims=True)
+        moment = _greatest(share, interval)[0]
+        error = np.take_along_axis(rows[2:], _greatest(size, interval), axis=1)
+        return np.concatenate([rows[:2, moment], error])
 
 
 def _greatest(size: Array, interval: int) -> Array:
-    """Find the rows of the greatest sizes, (n, fields), of each interval."""
-    padding = (0, -len(size) % interval), (0, 0)
-    padded = np.pad(size, padding, constant_values=-np.inf)
-    within = padded.reshape(-1, interval, size.shape[1]).argmax(axis=1)
-    return np.asarray(np.arange(0, len(size), interval)[:, np.newaxis] + within)
+    """Find the indices of the greatest sizes, (fields, n), of each interval."""
+    fields, count = size.shape
+    padded = np.pad(size, ((0, 0), (0, -count % interval)), constant_values=-np.inf)
+    within = padded.reshape(fields, -1, interval).argmax(axis=2)
+    return np.asarray(np.arange(0, count, interval) + within)
