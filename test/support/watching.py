@@ -96,7 +96,8 @@ def parameters(*names: str) -> list:
         return asking.parameters_of(AsyncParameterClient(asking.node, NODE), *names)
 
 
-JUDGED = r'verdict: (passed|failed: /\S+: \d+ messages? missing)'
+LOST = r'messages? missing|messages? of /\S+ without any output|ends [\d.]+ s before'
+JUDGED = rf'verdict: (passed|failed: [^;]*({LOST})[^;]*); \d+ inputs, \d+ outputs compared, '
 """What is said of a recording without a wrong number, which may lack what a busy machine lost."""
 
 
