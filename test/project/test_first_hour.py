@@ -113,7 +113,7 @@ def run(folder: Path, command: str) -> str:
     else:
         program = [*GEARKIN] if first == 'gearkin' else [sys.executable]
         done = finished([*program, *words], cwd=folder, timeout=150.0)
-    codes = {0, 1} if words[0] in {'loads', 'validate'} else {0}
+    codes = {0, 1} if words[0] in {'commission', 'loads', 'validate'} else {0}
     assert done.returncode in codes, done.stdout + done.stderr
     return done.stdout + done.stderr
 
@@ -170,6 +170,8 @@ def test_every_command_with_pip_alone_does_what_the_page_says(folder):
                 recorder.wait_for('recording (?=.*/rotor_state).*/output_state')
             elif command in TOLD:
                 said = run(folder, command)
+                while '--live' in words and 'undetermined' in said:  # a busy machine lost too much
+                    said = run(folder, command)
                 assert re.search(TOLD[command], said), said
                 if words[0] == 'replay':
                     recording.close()  # by Ctrl-C
