@@ -38,9 +38,10 @@ def add_actuators(path: Path, blocks: Mapping[str, Sequence[str]], head: Sequenc
 
 def check_new(path: Path, actuator: str) -> None:
     """Raise ConfigError if a file is there already, or cannot take an actuator of this name."""
-    if actuator:
+    there = os.path.lexists(path)  # perhaps a link to nothing
+    if actuator and there == path.exists():
         _extended(path, {actuator: [_ANY_GEAR]}, ())
-    elif os.path.lexists(path):
+    elif there:
         raise ConfigError(f'{path}: exists already; give another name with -o')
 
 

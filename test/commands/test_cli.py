@@ -203,4 +203,7 @@ def test_init_replaces_nothing(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / 'actuator.yaml').write_text('mine')
     assert refusal('init') == 'actuator.yaml: exists already; give another name with -o'
+    Path('link').symlink_to('nothing')
+    told = refusal('init', '-o', 'link', '--actuator', 'elbow')
+    assert told == 'link: exists already; give another name with -o'
     assert (tmp_path / 'actuator.yaml').read_text() == 'mine'
