@@ -106,10 +106,9 @@ def arrows(mechanism: Mechanism, length: float) -> Polygons:
     acts at O3. A negative length reverses both.
     """
     e, half = mechanism.eccentricity, 0.03 * length
-    pitch = e * mechanism.ring_teeth / (mechanism.ring_teeth - mechanism.satellite_teeth)
+    ends = (-length, mechanism.ring_rolling_radius, -half), (length, e, half)
     return tuple(
-        np.array([(0.0, y - width), (tip, y), (0.0, y + width)])
-        for tip, y, width in ((-length, pitch, -half), (length, e, half))
+        np.array([(0.0, y - width), (tip, y), (0.0, y + width)]) for tip, y, width in ends
     )
 
 

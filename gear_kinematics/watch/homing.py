@@ -14,6 +14,7 @@ from gear_kinematics.wire.nearest import among, listed
 
 _PERIOD = 0.1  # s between looks at the graph
 _SEARCH = 4.0  # s, in which nodes are found that announce themselves every 3 s
+_DELAY = 1.0  # s by which the services of a node may be found after it
 _PATIENCE = 5.0  # s to wait for the answer
 
 
@@ -41,7 +42,7 @@ def home(wanted: str, actuator: str) -> Answer:
         service = '/'.join(filter(None, (name, actuator, 'home')))
         known = {each for each, _ in node.get_service_names_and_types()}
         client = node.create_client(Trigger, service)
-        if not client.wait_for_service(_SEARCH):
+        if not client.wait_for_service(_SEARCH if service in known else _DELAY):
             homes = sorted(each for each in known if each.startswith(name) and 'home' in each)
             raise ValueError(f'there is no service {service}{among(service, homes)}')
         asked = client.call_async(Trigger.Request())
