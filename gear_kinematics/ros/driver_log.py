@@ -36,12 +36,10 @@ class DriverLog:
         """Messages with the joint of each actuator, and the updates since there was none."""
         self._log, self._node, self._inputs = node.get_logger(), node, inputs
         self._topic = node.resolve_topic_name(ROTOR_STATE)
-        self._looked = False
-        """Whether there was no publisher at the last update either."""
+        self._looked = False  # whether there was no publisher at the last update either
         self._jumps = self._jumped()
         self._before: dict[str, RotorSample] = {}  # the silence
-        self.awaited = False
-        """Whether it was logged that the driver is missing or silent."""
+        self.awaited = False  # whether it was logged that the driver is missing or silent
 
     def _warn_of_missing(self) -> None:
         """Name once each joint of an arm that messages with others have lacked for too long."""

@@ -42,8 +42,7 @@ class DriverInput:
 
     def _subscribe(self) -> None:
         self._losses = Losses()
-        self._heard = False
-        """Whether a message had come before the last update."""
+        self._heard = False  # whether a message had come before the last update
         self.subscription = self._node.create_subscription(
             JointState,
             self._topic,

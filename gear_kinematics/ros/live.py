@@ -163,8 +163,7 @@ class Replay:
     ) -> None:
         """Open the topics in a namespace; `alive` returns whether the node can still answer."""
         self.received: list[Message] = []
-        self.counts: Counter[str] = Counter()
-        """Numbers of messages received so far, by topic."""
+        self.counts: Counter[str] = Counter()  # numbers of messages received so far, by topic
         self._alive = alive
         self._probed: set[str] = set()
         self._resources = ExitStack()

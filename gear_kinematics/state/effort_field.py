@@ -18,10 +18,8 @@ class EffortField:
     """Finds efforts of 0 that mean nothing: an effort that is 0 throughout a motion is none."""
 
     def __init__(self) -> None:
-        self.real = False
-        """Whether there was any but 0: from then on, a 0 is one."""
-        self._least, self._greatest = math.inf, -math.inf
-        """rad: positions with an effort of 0."""
+        self.real = False  # whether there was any but 0: from then on, a 0 is one
+        self._least, self._greatest = math.inf, -math.inf  # rad: positions with an effort of 0
 
     @property
     def absent(self) -> bool:

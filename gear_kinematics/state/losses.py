@@ -10,8 +10,7 @@ class Losses:
 
     def __init__(self) -> None:
         self.missing = 0
-        self.numbered = True
-        """Whether all messages had numbers, which not every middleware gives."""
+        self.numbered = True  # whether all messages had numbers, which not every middleware gives
         self.next: int | None = None
         """The number that the next message should have; None before the first."""
 

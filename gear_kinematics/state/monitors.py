@@ -47,10 +47,8 @@ class DriverMonitor:
     """Monitors a driver of an actuator."""
 
     def __init__(self) -> None:
-        self.last_input: float | None = None
-        """Time of the last message, valid or not."""
-        self._counted = Counter[str]()
-        """Counts at the last report."""
+        self.last_input: float | None = None  # time of the last message, valid or not
+        self._counted = Counter[str]()  # counts at the last report
 
     def _growth(self, counts: Mapping[str, int]) -> Counter[str]:
         """Return by how much counts have grown since the last report."""
@@ -79,8 +77,7 @@ class InputMonitor(DriverMonitor):
         super().__init__()
         self._input, self._encoder = rotor_input, encoder
         self.published = 0
-        self.unreferenced = 0
-        """Valid inputs while the turns were not known."""
+        self.unreferenced = 0  # valid inputs while the turns were not known
         self.zero_kept: Fact | None = None
         """Where `rotor_zero` is kept until the next start, or why it is not."""
         self._reported, self._rate, self._received = 0.0, 0.0, 0

@@ -60,8 +60,7 @@ class Plausibility:
             period: rad after which the readings repeat; 0: never.
         """
         self.jumps = 0
-        self.jump: Jump | None = None
-        """The latest."""
+        self.jump: Jump | None = None  # the latest
         self.restrict(max_speed, max_acceleration, period)
         self.reset()
 
@@ -77,8 +76,7 @@ class Plausibility:
         self._doubted: list[tuple[int, float]] = []
         self._last: Reading = _UNKNOWN
         self._former: Reading = _UNKNOWN
-        self._stamp = 0
-        """ns, of the last believed reading with the last position."""
+        self._stamp = 0  # ns, of the last believed reading with the last position
         self.finest = _COARSEST
         """rad, the resolution of the encoder: the smallest step of all, or difference between two
         in a row; not less than matters, which is half of `FLOOR`."""

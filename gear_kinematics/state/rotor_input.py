@@ -66,8 +66,7 @@ class RotorInput:
         self._reader = JointReader(parameters.rotor_joint)
         self.zero = split_turns(parameters.rotor_zero)
         """The position in use: `rotor_zero`, or what a reference put in its place."""
-        self.origin: Fact | None = None
-        """Source of the turn count: homing or the output's encoder."""
+        self.origin: Fact | None = None  # source of the turn count: homing or the output's encoder
         self._restarts = 0
         """Counts homing, references by the output, and changes of the encoders' parameters."""
         self._disorder = Disorder()

@@ -166,8 +166,7 @@ class TurnReference:
     def restart(self) -> None:
         """Forget all errors, as the count has changed."""
         self._block = ErrorBlock()
-        self.decision: Decision | None = None
-        """The latest on the present count."""
+        self.decision: Decision | None = None  # the latest on the present count
         self.disagreement: Fact | None = None
         """How the encoder contradicts the present count; it stays until a block that can tell the
         turns apart agrees, as one in fast motion may agree with anything."""

@@ -51,17 +51,14 @@ class VelocityField:
         self.finding = VelocityMeaning.UNDECIDED
         self.factor = math.nan
         """The velocities in the messages as a multiple of the slope of the positions."""
-        self.contradicts = False
-        """Whether the velocities contradict the positions."""
+        self.contradicts = False  # whether the velocities contradict the positions
         self._candidate = VelocityMeaning.UNDECIDED
         self.restart()
 
     def restart(self) -> None:
         """Forget the readings, but not what was found."""
-        self.due = 0
-        """ns, the stamp from which on the next reading is wanted."""
-        self.quiet_until = 0
-        """ns: `due`, or 0 while the velocities are not to be used."""
+        self.due = 0  # ns, the stamp from which on the next reading is wanted
+        self.quiet_until = 0  # ns: `due`, or 0 while the velocities are not to be used
         self._readings: list[tuple[int, float, float]] = []
 
     @property

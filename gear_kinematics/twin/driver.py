@@ -65,8 +65,7 @@ class Driver:
             dropout: share of the messages that are not sent.
         """
         self.model = model
-        self.torque = 0.0
-        """Torque of the motor, or of the lock of the rotor, N·m."""
+        self.torque = 0.0  # torque of the motor, or of the lock of the rotor, N·m
         self._max_torque = max_torque
         self._counts = rotor_counts, output_counts
         self._dropout, self._random = dropout, random.Random(_SEED)  # noqa: S311, no secret
@@ -75,8 +74,7 @@ class Driver:
         self._inertia = rotor + output / model.gear.ratio**2
         # At first the torque accelerates the rotor alone, by at most half of the speed error.
         self._omega = min(TURN * _BANDWIDTH, 0.5 / _PERIOD * rotor / self._inertia)
-        self._origin = self._parameters.rotor_zero
-        """Position at rotor angle 0, rad."""
+        self._origin = self._parameters.rotor_zero  # position at rotor angle 0, rad
         self._load = 0.0
         self._release()
 
