@@ -186,29 +186,21 @@ def test_what_cannot_be_followed_is_one_warning_a_second(bench):
     assert bench.rotor[-1].position[0] == pytest.approx(20.0, abs=1e-3)
 
 
-def test_a_locked_rotor_tells_its_torque_and_a_locked_output_stays(bench):
+def test_either_shaft_is_locked_and_released(bench):
+    """`test/twin` has what a locked shaft does."""
     bench.command(position=[20.0])
-    bench.rest()
-    assert bench.call('lock_rotor', data=True) == 'the rotor is locked'
-    bench.load(-1.9)
-    bench.wait_until(lambda: bench.rotor[-1].effort[0] < -0.09, 'the torque')
-    rotor, _ = bench.rest()
-    assert rotor.position[0] == pytest.approx(20.0, abs=1e-3)
-    assert rotor.effort[0] == pytest.approx(-0.1, abs=0.006)
-    assert bench.call('lock_rotor', data=False) == 'the rotor is free'
-    bench.load(0.0)
-    _, output = bench.rest()
-    assert bench.call('lock_output', data=True) == 'the output is locked'
+    _, before = bench.rest()
+    for shaft in ('rotor', 'output'):
+        assert bench.call(f'lock_{shaft}', data=True) == f'the {shaft} is locked'
     bench.load(100.0)
-    bench.command(effort=[0.2])
-    bench.wait_until(lambda: bench.rotor[-1].effort[0] == 0.2, 'the torque')
-    bench.output.clear()
-    bench.wait_until(lambda: len(bench.output) > 300, 'motion')
-    (held,) = {message.position[0] for message in bench.output}
-    assert held == pytest.approx(output.position[0], abs=1e-3)  # it creeps until it is locked
+    bench.command(position=[50.0])
+    rotor, output = bench.rest()
+    assert rotor.position[0] == pytest.approx(20.0, abs=1e-3)
+    assert output.position[0] == pytest.approx(before.position[0], abs=1e-3)
     bench.load(0.0)
-    bench.command(position=[20.0])
-    assert bench.call('lock_output', data=False) == 'the output is free'
+    for shaft in ('rotor', 'output'):
+        assert bench.call(f'lock_{shaft}', data=False) == f'the {shaft} is free'
+    bench.wait_until(lambda: abs(bench.rotor[-1].position[0] - 50.0) < 1e-3, 'the position')
 
 
 def test_a_power_cycle_loses_the_turns_of_the_rotor_alone(bench):
