@@ -59,19 +59,29 @@ def bench() -> Bench:
     return Bench()
 
 
-def test_rejects_and_losses_are_facts_of_the_next_report_alone(bench):
-    driver = bench.connections.rotor
+def test_counts_are_facts_of_the_next_report_alone_and_faults_of_the_graph_of_all(bench):
+    driver, connections = bench.connections.rotor, bench.connections
+    listener, fault = (
+        condition(topic='out', policy='DURABILITY', node='/other')
+        for condition in (Condition.LISTENER_QOS, Condition.DRIVER_QOS)
+    )
     bench.feed(START + 0.5, good(), BAD, b'', BAD)
-    driver.lost, bench.connections.unsent = 3, 2
+    driver.lost, connections.unsent, bench.monitor.unreferenced = 3, 2, 77
+    connections.graph = [listener, fault]
     assert bench.facts(START + 1.0) == [
+        fault,  # the only error
         Condition.REJECTED(counts={'position not finite': 2, 'not a JointState': 1}),
         Condition.LOST(count=3),
         Condition.UNSENT(count=2),
+        Condition.WERE_UNKNOWN(count=77),
+        listener,
     ]
     bench.feed(START + 1.5, good(2))
     report = bench.report(START + 2.0)
-    names = 'rejected: position not finite', 'lost messages', 'not sent'
-    assert (report.facts, *(report.values[name] for name in names)) == ([], 2, 3, 2)
+    names = 'rejected: position not finite', 'lost messages', 'not sent', 'not referenced'
+    assert [report.values[name] for name in names] == [2, 3, 2, 77]
+    assert report.facts == [fault, listener]
+    connections.graph = []
     bench.feed(START + 2.5, BAD)
     assert bench.facts(START + 3.0) == [NOT_FINITE]
     driver.losses_known = False
@@ -104,26 +114,6 @@ def test_silence_beyond_the_timeout_is_an_error(bench):
     assert bench.facts(START + 70.0) == no_input(60.0)
     bench.feed(START + 70.5, good())
     assert bench.facts(START + 71.0) == []
-
-
-def test_time_without_a_reference_is_told_once_with_a_count(bench):
-    bench.feed(START + 0.5, good())
-    bench.monitor.unreferenced += 77
-    assert bench.facts(START + 1.0) == [Condition.WERE_UNKNOWN(count=77)]
-    assert bench.facts(START + 1.5) == []
-
-
-def test_fault_in_the_graph_is_reported_as_long_as_it_lasts(bench):
-    bench.feed(START + 0.5, good())
-    listener, driver = (
-        condition(topic='out', policy='DURABILITY', node='/other')
-        for condition in (Condition.LISTENER_QOS, Condition.DRIVER_QOS)
-    )
-    bench.connections.graph = [listener, driver]
-    for _ in range(2):
-        assert bench.facts(START + 1.0) == [driver, listener]  # the error first
-    bench.connections.graph = []
-    assert bench.facts(START + 1.0) == []
 
 
 def test_values_count_what_happened(bench):
