@@ -251,10 +251,10 @@ def _tables(
     if isinstance(messages, JointStateBatch):
         yield from messages.tables
         return
-    sizes = np.fromiter(map(len, messages), np.intp, len(messages))
-    for size in np.unique(sizes[sizes > 0]):
-        rows = np.flatnonzero(sizes == size)
-        all_alike = len(rows) == len(messages)
+    sizes = [*map(len, messages)]
+    for size in sorted({*sizes} - {0}):
+        all_alike = sizes.count(size) == len(sizes)
+        rows = np.arange(len(sizes)) if all_alike else np.flatnonzero(np.array(sizes) == size)
         chosen = messages if all_alike else [messages[row] for row in rows.tolist()]
         table = np.frombuffer(b''.join(chosen), np.uint8).reshape(len(rows), size)
         while len(rows):
