@@ -3,12 +3,14 @@
 
 import shlex
 from bisect import bisect_right
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.measurement.columns import TIME_UNITS, Column
 from gear_kinematics.measurement.recording import Array
+from gear_kinematics.report.document import number
 from gear_kinematics.wire.cdr import SECOND
 
 _DATES = 978_307_200.0, 4_102_444_800.0
@@ -19,6 +21,8 @@ _UNREADABLE = 0.01
 """Share of times that cannot be read, at most."""
 _LATE_ROWS = 25
 """Rows in succession that are out of order, at most; after more the clock was set back."""
+_FEWEST_AGAIN, _EVEN = 2, 1.5
+"""Rows whose times come again after a clock was set back; usual steps, the longest of theirs."""
 _DAY = 86_400 * SECOND
 FASTEST, MOST = 1000.0, 0.9
 """rad/s, which hardly any rotor exceeds; share of the samples in motion that are slower."""
@@ -59,11 +63,18 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
 
 
 def stamps(
-    clock: Column | None, times: Array | None, kept: Array, remarks: list[str]
+    clock: Column | None,
+    times: Array | None,
+    kept: Array,
+    remarks: list[str],
+    faults: list[str],
+    *,
+    alone: bool,
 ) -> tuple[Array, Array]:
     """Stamps, ns, of the rows that are kept and in order, and the numbers of these rows.
 
-    They end where the clock was set back. ValueError: the times cannot be read.
+    After a clock was set back, they go on if no other rows are `alone` with times of that clock;
+    otherwise they end there. ValueError: the times cannot be read.
     """
     rows = np.flatnonzero(kept)
     if clock is None or times is None:
@@ -89,12 +100,15 @@ def stamps(
     rows, stamp = rows[readable], stamp[readable]
     if stamp.min() >= 0 and stamp.max() < _DAY:  # times of the day begin again at midnight
         stamp = stamp + _DAY * np.cumsum(np.diff(stamp, prepend=stamp[0]) < -0.5 * _DAY)
+    for before, size in _restore(stamp) if alone else ():
+        when = f'{number((before - stamp[0]) / SECOND, 6)} s'
+        faults.append(f'the clock was set back by {number(size / SECOND)} s after {when}')
     order, end = _order(stamp)
     if late := end - len(order):
         remarks.append(f'the time in {clock.name} is out of order in {late} rows: left out')
     if end < len(stamp):
         what = f'goes back after {end} rows: the others are left out'
-        remarks.append(f'the time in {clock.name} {what}')
+        faults.append(f'the time in {clock.name} {what}')
     if stamp[order[-1]] == stamp[order[0]] and len(order) > 1:
         raise ValueError(f'the times in {clock.name}: they stand still')
     stamp, rows = stamp[order], rows[order]
@@ -110,6 +124,23 @@ def stamps(
         )
         stamp = stamp[0] + spread.astype(np.int64)
     return stamp, rows
+
+
+def _restore(stamp: Array) -> Iterator[tuple[int, int]]:
+    """Let stamps, ns, go on where the clock was set back; yield the last before, and by how much.
+
+    Rows that are written late are few, or the time jumps on behind them.
+    """
+    steps = np.diff(stamp)
+    usual = np.median(steps[steps > 0]) if np.any(steps > 0) else 0
+    for k in (1 + np.flatnonzero(steps < 0)).tolist():
+        before, again = stamp[k - 1], stamp[k:]
+        passed = np.flatnonzero(again > before)
+        rise = np.diff(again[: passed[0] + 1 if len(passed) else len(again)])
+        if len(rise) >= _FEWEST_AGAIN and rise.min() >= 0 and rise.max() <= _EVEN * usual:
+            size = int(before + usual - stamp[k])
+            stamp[k:] += size
+            yield before, size
 
 
 def _order(stamp: Array) -> tuple[Array, int]:

@@ -26,7 +26,8 @@ _LEAST_STEP = math.radians(0.25)
 _STAYS = 4  # samples in a row: no stray reading
 _REVERSAL = 4  # samples around it in which the output may lag
 _FROZEN = math.radians(3.0)  # of the output, that one shaft does while the other stands
-_LEAST_SHARE = 0.25  # of samples that no jump divides: else the ratio is not understood
+_LEAST_SHARE = 0.25  # of samples that are used: else it is the ratio that is not understood
+_CLEAR = 4.0  # such steps: clear slips, however short the parts between them
 _MOST_FAULTS = 0.02  # of such medians: more are a unit or a range that is not understood
 _RANGE = 0.9  # of the rotor's travel, by which it steps where it wraps
 _RAMP_STEPS = 25.0  # the same of ramps, as 30 real ones with a noisy torque have up to 15
@@ -77,7 +78,8 @@ def gated(recording: Recording) -> Recording:
     own = [abs(rotor[rows[k]] - rotor[rows[k - 1]]) for k in jumps]
     if own and max(own) > _RANGE * np.ptp(rotor):  # an encoder of another range than a turn
         return recording
-    least = _FEWEST if jumps else _LEAST_SHARE * len(error)  # of many slips, any part is longest
+    slips = [abs(error[rows[k]] - error[rows[k - 1]]) for k in jumps]
+    least = _FEWEST if min(slips, default=0.0) > _CLEAR * limit else _LEAST_SHARE * len(error)
     if len(kept) == len(error) or len(kept) < least:
         return recording
     first, last = kept[0], kept[-1]

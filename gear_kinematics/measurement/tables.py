@@ -122,7 +122,7 @@ class _Series(NamedTuple):
 
 
 class _Samples:
-    """Columns and samples of a table by role, what was taken, and remarks."""
+    """Columns and samples of a table by role, what was taken, remarks and faults."""
 
     def __init__(self, path: Path, table: TableFile, sources: Sources, ratio: Fraction) -> None:
         """Read the columns; ValueError if there are no such ones, or they have no numbers."""
@@ -138,6 +138,7 @@ class _Samples:
         wanted = {column.name for column in found.values()} | {*clocks.values(), rest or ''}
         raw, every = table.load(sorted(wanted - {''}))
         self.remarks = [_PART.format(every)] if every > 1 else []
+        self.faults = list[str]()
         if clock and not (sources.time or table.first.get(usual, usual)):
             filled = raw[usual] == raw[usual]  # NaN is not equal to itself
             clock = clock if filled.any() else None
@@ -171,7 +172,8 @@ class _Samples:
             kept = usable[roles[0]] if apart else both
             if (left_out := np.count_nonzero(~kept)) and not apart:
                 self.remarks.append(f'{left_out} rows were left out: no numbers, or too large')
-            stamp, chosen = stamps(clock, raw.get(clocks[roles[0]]), kept, self.remarks)
+            times = raw.get(clocks[roles[0]])
+            stamp, chosen = stamps(clock, times, kept, self.remarks, self.faults, alone=not apart)
             values = {role: data[role][chosen] for role in roles}
             values = {role: np.where(np.abs(v) < _LEAST, 0.0, v) for role, v in values.items()}
             for role in roles:
@@ -283,8 +285,8 @@ def _recording(
     read = _Samples(path, table, sources, ratio)
     encoders = None if 'angle' in read.found else read.encoders(period)
     locked = None if encoders else read.locked(period)
-    said, remarks = tuple(read.said), tuple(read.remarks)
-    return Recording(path, path.name, said, read.used, encoders, locked, remarks)
+    said, remarks, faults = tuple(read.said), tuple(read.remarks), tuple(read.faults)
+    return Recording(path, path.name, said, read.used, encoders, locked, remarks, faults=faults)
 
 
 def _error(rotor: Array, output: Array) -> float:

@@ -107,6 +107,22 @@ def test_each_of_many_slips_divides_and_is_told(clean, gate):
     assert '1 further jump of the output' in named
 
 
+@pytest.mark.parametrize('size', [0.1, 0.3, 50.0])
+def test_a_clock_that_is_set_back_goes_on_and_is_told(clean, gate, size):
+    clean[900:, 0] -= size
+    recording, _ = gate(clean)
+    assert recording.encoders.measured == pytest.approx(clean[:, 2], abs=1e-9)
+    assert recording.encoders.seconds == pytest.approx(0.04 * np.arange(len(clean)), abs=1e-6)
+    assert recording.faults == (f'the clock was set back by {size:g} s after 35.96 s',)
+
+
+@pytest.mark.parametrize('rows', [[901, 900], [903, 900, 901, 902], [902, 903, 900, 901]])
+def test_rows_that_are_written_late_are_no_clock_that_is_set_back(clean, gate, rows):
+    clean[900 : 900 + len(rows)] = clean[rows]
+    recording, _ = gate(clean)
+    assert (recording.faults, len(recording.remarks)) == ((), 1)
+
+
 def test_lost_motion_within_a_sample_is_no_fault(gate):
     wave = np.abs((np.arange(1200) + 0.3) % 300 - 150)
     ideal = np.radians(2.0 * wave)

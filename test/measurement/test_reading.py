@@ -143,12 +143,13 @@ def test_times_that_go_back_end_the_recording_there(tmp_path, config):
     ideal = 0.1 * np.sin(np.arange(8000) / 300.0)
     time = np.arange(8000) / 1000.0
     time[5500:] -= 2.0
+    time[6000:] += 3.0  # so that it is not known by how much the clock was set back
     columns = {'time': time, 'rotor': -19.0 * ideal, 'output': ideal}
     recording, both = read_encoders(write_csv(tmp_path / 'r.csv', **columns), config)
     assert len(both.measured) == 5500
     assert np.max(np.abs(both.at_measured(both.ideal(Fraction(-19))))) <= 0.1 + 1e-12
-    (remark,) = recording.remarks
-    assert remark == 'the time in time goes back after 5500 rows: the others are left out'
+    (fault,) = recording.faults
+    assert fault == 'the time in time goes back after 5500 rows: the others are left out'
 
 
 def test_rows_that_are_not_finite_are_left_out_and_reported(tmp_path, config, angle):
