@@ -229,7 +229,7 @@ def _names(
     units: list[str] = []
     at = -1
     labelled = (row for row in rows[:-1] if re.search('(?i)unit|einheit', ''.join(row[:1])))
-    label = next(labelled, [])
+    label = next((row for row in labelled if known_units(row[1:])), [])
     alike = [row[:width] for row in rows if row[2:] and len({*row[:width:2]}) == 1]
     pairs = {row[0].lower(): row[1::2] for row in alike}
     for key in _CLOCKS.keys() & pairs.keys():

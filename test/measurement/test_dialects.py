@@ -154,7 +154,7 @@ ENCODERS = {
         written([t[:600], r[:600], o[:600]], f'// bench\n{NAMES}') + f'# paused\n\n{NAMES}\n'
         + written([t[600:], r[600:], o[600:]], '')),
     'units in a row': lambda t, r, o: written(
-        [t * 1e3, r * DEG, o * DEG], 'Time,MotorPosition,LoadPosition\n[ms],°,(deg)'),
+        [t * 1e3, r * DEG, o * DEG], 'Unit 7,x\nTime,MotorPosition,LoadPosition\n[ms],°,(deg)'),
     'empty and repeated names': lambda t, r, o: written(
         [t, r, t, o, t, t], ',rotor,time,output,note,note', 6 * ['{:.5f}']),
     'trailing separators in rows alone': lambda t, r, o: written(
