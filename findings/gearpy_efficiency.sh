@@ -6,7 +6,7 @@
 # motor, which is right: 5 / (10·0.8). The same load in the direction of the motion, such as a weight that sinks, gives
 # the motor -0.625 N·m as well, where friction leaves 5·0.8 / 10 = 0.4 N·m. So the lossy gear makes a quarter more power
 # than the load gives, and the speed of a sinking weight and the torque of a brake come out too high.
-# For us: simulate braking and back-driving with an efficiency of 1/0.8 in gearpy's sense, or with the twin.
+# For us: gearpy answers for loads against the motion; take no torque of braking or back-driving from it.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
 set -eu
