@@ -196,9 +196,10 @@ class GearNode:
         names = [n for n in listed.result().result.names if n.rpartition('.')[2] in _KNOWN]
 
         def take(answered: Future) -> None:
-            values = answered.result().values
+            values = [parameter_value_to_python(each) for each in answered.result().values]
             if len(values) == len(names):  # else it has started again with other names
-                values = map(parameter_value_to_python, values)
+                # ROS drops the type of an empty list, as `actuators: []` in a file.
+                values = [[] if each is None else each for each in values]
                 self._take_parameters(dict(zip(names, values, strict=True)))
 
         self._client.get_parameters(names, take)

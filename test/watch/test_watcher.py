@@ -19,6 +19,7 @@ import pytest
 from blocked_bags import wait_until
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from live import rotor_bytes
+from rcl_interfaces.msg import ParameterValue
 from rclpy.node import Node
 from rclpy.serialization import serialize_message
 from rich.console import Console
@@ -337,6 +338,18 @@ def test_parameters_of_an_odd_type_are_a_fault():
     node._take_parameters({'module': 'thick', 'output_joint': 'output'})
     assert node.fault == "module must be of type float, not 'thick'"
     assert not node.parameters
+
+
+def test_empty_lists_of_a_parameter_file_have_no_type_in_ros():
+    node = object.__new__(GearNode)
+    node.parameters, node.actuator, node.fault = None, '', 'not asked yet'
+    values = [ParameterValue(), ParameterValue(), ParameterValue(type=4, string_value='50')]
+    answer = SimpleNamespace(result=lambda: SimpleNamespace(values=values))
+    node._client = SimpleNamespace(get_parameters=lambda _, take: take(answer))
+    names = ['actuators', 'output_range', 'gear_ratio']
+    listed = SimpleNamespace(result=SimpleNamespace(names=names))
+    node._ask(SimpleNamespace(result=lambda: listed))
+    assert (node.fault, node.parameters) == ('', NodeParameters.of({'gear_ratio': '50'}, ''))
 
 
 def test_an_actuator_of_an_arm_has_its_own_parameters_and_service():
