@@ -15,6 +15,9 @@ SPAN = 100_000_000
 """ns, between the readings that are compared; four of them decide."""
 _PAUSE = 10 * SPAN  # after velocities that were found right
 _READINGS = 4
+_STRIDES = 1, 4, 16
+"""Readings of a comparison are so many noted ones apart: further ones while the rotor is slow."""
+_FAR = 3.0  # times or less than a third of the slope: no rounding, where the rotor is slow
 _STEADY = 0.1  # of the speed: what it may vary by in a comparison
 _AGREES = 0.25  # of the slope: delays of filters and the rest of the acceleration
 _ALIKE = 0.1  # of a factor that has a name
@@ -53,6 +56,8 @@ class VelocityField:
         """The velocities in the messages as a multiple of the slope of the positions."""
         self.contradicts = False  # whether the velocities contradict the positions
         self._candidate = VelocityMeaning.UNDECIDED
+        self._moved = False
+        """Whether there was a velocity other than 0."""
         self.restart()
 
     def restart(self) -> None:
@@ -101,27 +106,37 @@ class VelocityField:
             readings.clear()
         if not math.isnan(velocity):
             readings.append((stamp, position, velocity))
-        if len(readings) == _READINGS:
-            self._compare(readings, max(_TRAVEL, _STEPS * finest))
-            del readings[:1]
+            self._moved |= velocity != 0.0
+        del readings[: -1 - (_READINGS - 1) * _STRIDES[-1]]
+        travel = max(_TRAVEL, _STEPS * finest)
+        for stride in _STRIDES:
+            span = 1 + (_READINGS - 1) * stride
+            if len(readings) < span or self._compare(readings[-span:], travel, stride):
+                break
         self.quiet_until = 0 if self.contradicts else self.due
 
-    def _compare(self, readings: list[tuple[int, float, float]], travel: float) -> None:
-        """Decide on readings of a steady motion by so much, rad."""
+    def _compare(
+        self, readings: list[tuple[int, float, float]], travel: float, stride: int
+    ) -> bool:
+        """Decide on readings of a steady motion; returns whether it is by so much, rad."""
         (first, start, _), *_, (last, end, _) = readings
-        time = (last - first) * 1e-9
+        time, slow = (last - first) * 1e-9, stride > 1
         velocities = [velocity for _, _, velocity in readings]
-        mean = sum(velocities) / _READINGS
-        if max(abs(end - start), abs(mean) * time) < travel:
-            return
+        mean = sum(velocities) / len(velocities)
+        if max(abs(end - start), 0.0 if slow else abs(mean) * time) < travel:
+            return False
         slope = (end - start) / time
-        for (s, p, _), (t, q, _) in pairwise(readings):
+        for (s, p, _), (t, q, _) in pairwise(readings[::stride]):
             if abs((q - p) / (t - s) * 1e9 - slope) > _STEADY * abs(slope):
-                return
+                return True
         most = _STEADY * max(abs(mean), abs(slope))
         if any(abs(velocity - mean) > most for velocity in velocities):
-            return
-        self._decide(mean / slope if slope else math.inf)
+            return True
+        factor = mean / slope if slope else math.inf
+        rounded = 1.0 / _FAR < factor < _FAR or (self._moved and not factor)
+        if not (slow and rounded):
+            self._decide(factor)
+        return True
 
     def _decide(self, factor: float) -> None:
         """Change the finding if two comparisons in a row find the same."""

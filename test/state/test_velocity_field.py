@@ -14,9 +14,9 @@ from gear_kinematics.state.statuses import Condition
 SETTINGS = NodeParameters.load()
 
 
-def messages(factor, speed=100.0, rate=500, scatter=0.0) -> list[bytes]:
+def messages(factor, speed=100.0, rate=500, scatter=0.0, duration=1.0) -> list[bytes]:
     generator = np.random.default_rng(1)
-    times = np.arange(rate) / rate
+    times = np.arange(round(duration * rate)) / rate
     return [
         rotor_bytes(
             SECOND + round(t * SECOND),
@@ -45,6 +45,24 @@ def test_wrong_velocities_are_named_and_not_passed_on(factor, meaning):
     assert rotor.velocity_field.meaning.values['meaning'] == meaning
     assert rotor.velocity_field.factor == pytest.approx(factor, abs=1e-6)
     assert samples[-1].velocity is None
+
+
+@pytest.mark.parametrize(
+    ('factor', 'speed', 'meaning'),
+    [
+        (0.0, 1.0, '0'),
+        (0.5 / math.pi, 1.0, 'turns/s'),
+        (-1.0, -3.0, 'the velocity with the opposite sign'),
+        (1.0, 1.0, ''),
+        (2.0, 1.0, ''),  # whole rad/s, rounded up, of half as many
+    ],
+)
+def test_wrong_velocities_of_a_slow_rotor_are_named(factor, speed, meaning):
+    rotor = RotorInput(SETTINGS)
+    for data in messages(factor, speed, rate=25, duration=8.0):
+        rotor.accept(data, int)
+    assert rotor.velocity_field.meaning.endswith(f': they seem to be {meaning}' * bool(meaning))
+    assert bool(rotor.velocity_field.meaning) is bool(meaning)
 
 
 def test_velocities_that_are_noise_around_zero_are_not_used():
