@@ -89,7 +89,7 @@ def summarise(
     others, reader = 0, None
     if rotor and (named := next(iter(joints or joints_on(bag, [rotor])[rotor]), '')):
         reader = JointReader(named)
-    times = {topic: list[int]() for topic in bag.topics}
+    times = {topic: list[tuple[int, int]]() for topic in bag.topics}
     ends: list[int] = []
     stamped = {topic for topic, kind in bag.topics.items() if kind in _WITH_STAMPS} - bag.not_cdr
     try:
@@ -99,7 +99,7 @@ def summarise(
                     others += 1
                     continue
                 stamp = header_stamp(data) if topic in stamped else 0
-                times[topic].append(received if stamp in _UNSET else stamp)
+                times[topic].append((received if stamp in _UNSET else stamp, received))
             ends = [*ends[:1], batch[0][1], batch[-1][1]]
     except DamagedBagError as error:
         damage = str(error)
@@ -133,9 +133,16 @@ def _has_joint(reader: JointReader | None, data: bytes) -> bool:
 
 
 def _summary(
-    name: str, kind: str, part: str, joints: list[str], times: list[int], others: int
+    name: str,
+    kind: str,
+    part: str,
+    joints: list[str],
+    times: list[tuple[int, int]],
+    others: int,
 ) -> TopicSummary:
-    periods = np.diff(np.array(times, np.int64)).astype(np.float64) / SECOND
+    stamped, received = np.diff(np.array(times, np.int64).reshape(-1, 2), axis=0).T
+    repeated = 2 * np.count_nonzero(stamped) < len(stamped)  # as without their nanoseconds
+    periods = (received if repeated else stamped).astype(np.float64) / SECOND
     periods = periods[periods > 0.0]  # the clock may be set back
     rate, mean, gaps, longest = None, None, 0, 0.0
     if len(times) >= _FEWEST and len(periods):

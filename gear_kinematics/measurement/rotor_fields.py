@@ -39,6 +39,9 @@ def questions(
     if unfit := int(np.count_nonzero(states.joint_found & ~states.arrays_fit)):
         yield f'{counted(unfit, "message")} rejected: {ARRAY_SIZES}'
     stamp = np.where(states.stamp == 0, np.asarray(received, np.int64), states.stamp)
+    repeated = int(np.count_nonzero(np.diff(stamp) == 0))
+    if 2 * repeated > len(stamp):
+        yield f'{repeated} of {len(stamp)} stamps repeat the one before'
     newest = np.append(np.iinfo(np.int64).min, np.maximum.accumulate(stamp)[:-1])
     usable = states.arrays_fit & np.isfinite(states.values[:, 0])
     rows = np.flatnonzero(usable & (stamp > newest))

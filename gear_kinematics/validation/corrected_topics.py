@@ -27,7 +27,8 @@ class Unbroken:
         """The segments of the next samples, (n,)."""
         first = stamp[:1] if self._last is None else self._last
         period = np.diff(stamp, prepend=first)
-        after_hole = period > HOLE * np.median(period[period > 0]) if period.any() else period > 0
+        forward = period > 0
+        after_hole = period > HOLE * np.median(period[forward]) if forward.any() else forward
         holes = self._holes + np.cumsum(after_hole)
         if len(stamp):
             self._last, self._holes = int(stamp[-1]), int(holes[-1])

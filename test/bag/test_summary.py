@@ -36,6 +36,17 @@ def test_gaps_are_counted(tmp_path):
     assert topic.longest_gap == pytest.approx(0.11)
 
 
+@pytest.mark.parametrize('stamp', [lambda k: k // 100, lambda _: 0], ids=['seconds', 'constant'])
+def test_stamps_that_repeat_tell_no_rate(tmp_path, stamp):
+    with BagWriter(tmp_path / 'bag') as writer:
+        writer.add_topic('/motor', JOINT_STATE)
+        for k in range(300):
+            data = rotor_bytes(10**9 * (10**9 + stamp(k)), ['m1'], [0.1 * k])
+            writer.write('/motor', 10**18 + 10**7 * k, data)
+    (topic,) = summary(tmp_path / 'bag').topics
+    assert (topic.rate, topic.gaps) == (pytest.approx(100.0), 0)
+
+
 def test_several_topics_are_told_apart_by_the_joint(tmp_path):
     path = write(tmp_path / 'bag', '/a', '/b')
     unclear = summary(path)

@@ -58,3 +58,12 @@ def test_wrong_fields_are_named(factor, efforts, asked, wrap, tmp_path, capsys, 
     assert [
         line[5 : 5 + len(want)] for line, want in zip(told.splitlines()[1:], asked, strict=True)
     ] == asked
+
+
+def test_stamps_that_repeat_are_named(tmp_path):
+    """8 different stamps of 800, as without their nanoseconds."""
+    rotor = Samples(stamps(np.floor(TIMES)), ROTOR)
+    path = write_recording(tmp_path / 'bag', rotor, Samples(stamps(TIMES), OUTPUT))
+    with Bag(path) as bag:
+        (asked,) = recorded_questions(bag, '/rotor_state', 'rotor')
+    assert asked == '792 of 800 stamps repeat the one before'

@@ -109,6 +109,10 @@ ROWS = {
         part({'nanoseconds': (99, SECOND + 60 * PERIOD)}), {'unnormalised_stamps': 1}
     ),
     'clock set back': Row(moved(stamp=-2 * SECOND), {'resets': 1}),
+    'clock runs backwards': Row(
+        [{'stamp': START + 2 * (COUNT - k) * SECOND} for k in range(COUNT)],
+        {'resets': COUNT - 1},
+    ),
     'turns unseen': Row(
         moved(stamp=SECOND),
         {'jumps': 1},
