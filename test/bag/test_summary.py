@@ -38,11 +38,12 @@ def test_gaps_are_counted(tmp_path):
 
 @pytest.mark.parametrize('stamp', [lambda k: k // 100, lambda _: 0], ids=['seconds', 'constant'])
 def test_stamps_that_repeat_tell_no_rate(tmp_path, stamp):
-    with BagWriter(tmp_path / 'bag') as writer:
-        writer.add_topic('/motor', JOINT_STATE)
-        for k in range(300):
-            data = rotor_bytes(10**9 * (10**9 + stamp(k)), ['m1'], [0.1 * k])
-            writer.write('/motor', 10**18 + 10**7 * k, data)
+    stamps = [10**9 * (10**9 + stamp(k)) for k in range(300)]
+    messages = [
+        ('/motor', 10**18 + 10**7 * k, rotor_bytes(each, ['m1'], [0.1 * k]))
+        for k, each in enumerate(stamps)
+    ]
+    write_bag(tmp_path / 'bag', messages, {'/motor': JOINT_STATE})
     (topic,) = summary(tmp_path / 'bag').topics
     assert (topic.rate, topic.gaps) == (pytest.approx(100.0), 0)
 
