@@ -106,7 +106,7 @@ def _measured(path: Path, name: str, options: argparse.Namespace) -> LostMotion:
         try:
             recording = read(path, config, sources(options), report_progress)
             found = measure(replace(recording, name=name), config, options.rated_torque)
-            say_columns(recording, options)
+            say_columns(found.recording, options)
         except (ValueError, OSError, ImportError):
             raise
         except Exception as error:  # the other recordings are worth reporting

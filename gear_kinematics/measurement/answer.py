@@ -48,6 +48,11 @@ def _of_ramps(figures: GearFigures) -> str:
             f'The hysteresis is negative, {arc_minutes(width)}′, which no gear has: '
             'the torque comes later than the angle, as behind a filter or from another clock.'
         )
+    if math.inf > width.expanded > abs(width.value):
+        return (
+            f'How far the output rests from its middle cannot be told: {arc_minutes(width)}′. The '
+            'loops differ by more than their width, as where the angle drifts or slips.'
+        )
     rests = f'At zero torque the output rests anywhere within {arc_minutes(width)}′.'
     backlash, cause = figures.backlash, figures.backlash.cause
     if backlash.high is None:
@@ -57,7 +62,7 @@ def _of_ramps(figures: GearFigures) -> str:
     low, high = (number(end * ARC_MINUTES, 2) for end in (backlash.low, backlash.high))
     said = cause.value
     enough = 2.0 * figures.friction.value if figures.friction else math.inf
-    if cause in {Cause.BENT, Cause.SOFT} and enough < _SMALLER * figures.ramps[0].amplitude:
+    if cause in {Cause.BENT, Cause.SOFT} and 0.0 < enough < _SMALLER * figures.ramps[0].amplitude:
         said = f'to separate them, repeat slow ramps to ±{number(enough, 2)} N·m'
     rest = f'the rest friction; {said}.' if said else 'the rest friction.'
     return f'{rests[:-1]}; backlash: {low} to {high}′, {rest}'

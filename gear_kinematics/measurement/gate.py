@@ -11,16 +11,22 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.measurement.recording import Array, Encoders, Loading, Recording, RotorMotion
+from gear_kinematics.measurement.ramp_gate import (
+    NAMED,
+    gated_ramps,
+    jumped,
+    left_out,
+    longest,
+    usual,
+)
+from gear_kinematics.measurement.recording import Array, Encoders, Recording, RotorMotion
 from gear_kinematics.report.document import counted, number
 
 _FEWEST = 50  # samples
 _LEAST_TRAVEL = math.radians(10.0)  # of the output: without it, the ratio does not show
-_WINDOW = 5  # samples in whose median a stray reading, or two, do not show
 _STEPS = 12.0  # times the step that 98 % of such medians have: no gear's error
 _LEAST_STEP = math.radians(0.25)
 _STAYS = 4  # samples in a row: no stray reading
@@ -30,9 +36,6 @@ _LEAST_SHARE = 0.25  # of samples that are used: else it is the ratio that is no
 _CLEAR = 4.0  # such steps: clear slips, however short the parts between them
 _MOST_FAULTS = 0.02  # of such medians: more are a unit or a range that is not understood
 _RANGE = 0.9  # of the rotor's travel, by which it steps where it wraps
-_RAMP_STEPS = 25.0  # the same of ramps, as 30 real ones with a noisy torque have up to 15
-_LEAST_STRAY, _MOST_STRAY = 0.15, 0.1  # of their range, where those have up to 0.09; of samples
-_NAMED = 3  # faults of a kind that are named with their moments
 
 
 def gated(recording: Recording) -> Recording:
@@ -42,7 +45,8 @@ def gated(recording: Recording) -> Recording:
     """
     both = recording.encoders
     if both is None and recording.locked:
-        return _gated_ramps(recording, recording.locked)
+        ramps, faults_of_ramps = gated_ramps(recording.locked)
+        return replace(recording, locked=ramps, faults=(*recording.faults, *faults_of_ramps))
     if both is None or len(both.measured) < _FEWEST:
         return recording
     turned = both.rotor.turned
@@ -64,7 +68,7 @@ def gated(recording: Recording) -> Recording:
         steps = np.diff(error[rows], prepend=error[rows[0]])
         error[rows] -= period * np.cumsum(np.round(steps / period))
     ideal = slope * np.diff(rotor[rows])
-    calm, moved = np.diff(_usual(error[rows])), slope * np.diff(_usual(rotor[rows]))
+    calm, moved = np.diff(usual(error[rows])), slope * np.diff(usual(rotor[rows]))
     fastest = float(np.quantile(np.abs(moved), 0.98))
     limit = max(_STEPS * float(np.quantile(np.abs(calm), 0.98)), _LEAST_STEP)
     faults, impossible = (
@@ -89,51 +93,21 @@ def gated(recording: Recording) -> Recording:
     found = []
     isolated = stray[~frozen[stray]]
     if len(isolated):
-        found.append(_left_out(time[isolated], at, unit))
+        found.append(left_out(time[isolated], at, unit))
     if len(still := np.flatnonzero(frozen)):
         times = np.split(time[still], 1 + np.flatnonzero(np.diff(still) > 1))
         spans = [f'{number(each[0], 6)} to {number(each[-1], 6)}{unit}' for each in times]
-        more = f' and {counted(len(spans) - _NAMED, "more time")}' if len(spans) > _NAMED else ''
+        more = f' and {counted(len(spans) - NAMED, "more time")}' if len(spans) > NAMED else ''
         found.append(
-            f'an encoder stood still while the other moved, from {", ".join(spans[:_NAMED])}'
+            f'an encoder stood still while the other moved, from {", ".join(spans[:NAMED])}'
             f'{more}: {len(still)} readings left out'
         )
-    for before, after in ((rows[k - 1], rows[k]) for k in jumps[:_NAMED]):
-        size = number(math.degrees(error[after] - error[before]))
-        found.append(
-            f'the output jumps by {size}° against the rotor {at} {number(time[after], 6)}{unit} '
-            '(a slip, or an encoder that jumped)'
-        )
-    if further := len(jumps[_NAMED:]):
-        found.append(f'{counted(further, "further jump")} of the output against the rotor')
+    sizes = [(float(error[rows[k]] - error[rows[k - 1]]), float(time[rows[k]])) for k in jumps]
+    found += jumped(sizes, at, unit)
     if first or last + 1 < len(error):
-        span = f'{number(time[first], 6)} to {number(time[last], 6)}{unit}'
-        found.append(f'only the longest part without a fault is used, {span}')
+        found.append(longest(time[first], time[last], unit))
     encoders = _without(both, slope * turned, kept, stray)
     return replace(recording, encoders=encoders, faults=(*recording.faults, *found))
-
-
-def _gated_ramps(recording: Recording, ramps: Loading) -> Recording:
-    """Leave out readings of torque or angle that leave both neighbours and come back."""
-    stray = np.zeros(len(ramps.torque), bool)
-    for values in (ramps.torque, ramps.angle):
-        if len(values) >= _FEWEST:
-            calm = _usual(values)
-            usual = _RAMP_STEPS * np.quantile(np.abs(np.diff(calm)), 0.98)
-            stray |= np.abs(values - calm) > max(usual, _LEAST_STRAY * np.ptp(calm))
-    if not stray.any() or np.mean(stray) > _MOST_STRAY:
-        return recording
-    locked = replace(ramps, torque=ramps.torque[~stray], angle=ramps.angle[~stray])
-    fault = _left_out(1.0 + np.flatnonzero(stray), 'at sample', '')
-    return replace(recording, locked=locked, faults=(*recording.faults, fault))
-
-
-def _left_out(moments: Array, at: str, unit: str) -> str:
-    """Say which readings were left out."""
-    named = ', '.join(number(moment, 6) for moment in moments[:_NAMED])
-    more = f' and {len(moments) - _NAMED} more' if len(moments) > _NAMED else ''
-    what = 'reading that contradicts' if len(moments) == 1 else 'readings that contradict'
-    return f'{len(moments)} {what} both neighbours left out, {at} {named}{unit}{more}'
 
 
 def output_by_rotor(rotor: Array, measured: Array) -> float | None:
@@ -152,13 +126,6 @@ def _frozen(still: Array, other: Array) -> NDArray[np.bool_]:
         if end - begin >= _STAYS and np.ptp(other[begin:end]) > _FROZEN:
             found[begin:end] = True
     return found
-
-
-def _usual(values: Array) -> Array:
-    """Values (n,) without stray ones."""
-    windows = sliding_window_view(np.pad(values, _WINDOW // 2, 'edge'), _WINDOW)
-    usual: Array = np.median(windows, axis=1)
-    return usual
 
 
 def _lost_motion(steps: Array, ideal: Array, fastest: float) -> NDArray[np.bool_]:

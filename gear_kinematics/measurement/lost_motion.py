@@ -7,6 +7,7 @@ from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.figures import GearFigures, gear_figures
 from gear_kinematics.measurement.loops import RampError, find_ramps
 from gear_kinematics.measurement.measured import HYSTERESIS, LOST_MOTION, Measured
+from gear_kinematics.measurement.ramp_gate import gated_ramps
 from gear_kinematics.measurement.ratio import check_ratio
 from gear_kinematics.measurement.recording import Recording
 from gear_kinematics.measurement.transmission import TransmissionFigures, transmission_figures
@@ -67,7 +68,7 @@ def measure(
     Raises:
         RampError, RecordingError: if nothing can be measured.
     """
-    encoders, remarks = recording.encoders, recording.sentences
+    encoders, remarks = recording.encoders, list[str]()
     ratio = parameters.gear.gear_ratio
     found, wrong = None, ''
     if encoders:
@@ -75,12 +76,15 @@ def measure(
         found = transmission_figures(encoders, ratio, parameters.transmission_error_travel)
     report = LostMotion(recording.name, recording, ratio, transmission=found, wrong_ratio=wrong)
     if loading := recording.loading(ratio):
+        loading, found_now = gated_ramps(loading)
+        faults = (*recording.faults, *found_now)
         try:
             ramps = find_ramps(loading.torque, loading.angle)
             figures = gear_figures(ramps, loading.angle_step.size, rated_torque)
+            recording = replace(recording, faults=faults)
             report = replace(report, figures=figures, measured=loading.measured)
         except RampError as error:
             if not found:
-                raise
+                raise RampError('; '.join((str(error), *faults))) from error
             remarks.append(f'{error}.')
-    return replace(report, remarks=tuple(remarks))
+    return replace(report, recording=recording, remarks=(*recording.sentences, *remarks))

@@ -148,8 +148,9 @@ class MiddleLine:
 
 
 def middle_lines(ramps: Ramps) -> list[MiddleLine]:
-    """The middle lines of the complete loops of ramps."""
-    return [MiddleLine.of(loop) for loop in ramps.loops if loop.complete]
+    """The middle lines of the complete loops of ramps, without those in which nothing moves."""
+    lines = (MiddleLine.of(loop) for loop in ramps.loops if loop.complete)
+    return [line for line in lines if np.ptp(line.angle) > 0.0]
 
 
 def mean_line(lines: Sequence[MiddleLine], ramps: Ramps) -> MiddleLine:

@@ -18,12 +18,11 @@ from gear_kinematics.measurement.recording import (
     Encoders,
     Recording,
     RecordingError,
-    RestoredClock,
     RotorMotion,
-    in_order,
     locked_shaft,
     match,
 )
+from gear_kinematics.measurement.stamps import RestoredClock, in_order
 from gear_kinematics.measurement.tables import read_table
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.gear_state import GearState
@@ -169,7 +168,7 @@ class States:
             ratio, known = parameters.gear.gear_ratio, np.isfinite(effort)
             step = step_of(sources.rotor_counts, motion.turned)
             torque, turned = float(ratio) * effort[known], motion.turned[known]
-            locked = locked_shaft(torque, turned, step, ratio, measured=False)
+            locked = locked_shaft(torque, turned, step, ratio, stamp[known], measured=False)
         if has_effort:
             described.append(f'torque: effort of {rotor} times the ratio, N·m')
         return Recording(

@@ -2,7 +2,7 @@
 """A recording of a gear, whatever its file format: angles under torque, and both encoders."""
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
@@ -12,18 +12,12 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.bag import TopicMessages
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.encoder_step import Step
-from gear_kinematics.wire.cdr import SECOND, header_stamp, with_stamp
-from gear_kinematics.wire.joint_reader import CLOCK_RESET
+from gear_kinematics.wire.cdr import SECOND
 
 Array = NDArray[Any]
 
-_CLOCK_STEP = 20_000_000
-"""ns by which a clock is set back, at least; computers slew it by less."""
-_STEADY = 25
-"""Messages before and after, of which the age is the same."""
 _SPEED_WINDOW = 0.02
 """s, over which the speed is averaged."""
 
@@ -70,16 +64,36 @@ class Loading:
     """rad at the output, between readings of the angle."""
     measured: bool
     """Whether an encoder measured the output; a shaft that was not is taken to be locked."""
+    seconds: Array | None = None
+    """s, from the first sample; None if time was not recorded."""
+
+    @property
+    def moments(self) -> Array:
+        """Times of the samples, s, or their numbers from 1 on, (n,)."""
+        return np.arange(1.0, len(self.torque) + 1.0) if self.seconds is None else self.seconds
+
+    def chosen(self, rows: Array | slice) -> 'Loading':
+        """Leave out all but some rows."""
+        seconds = None if self.seconds is None else self.seconds[rows]
+        return replace(self, torque=self.torque[rows], angle=self.angle[rows], seconds=seconds)
 
 
 def locked_shaft(
-    torque: Array, angle: Array, step: Step, ratio: Fraction, *, measured: bool
+    torque: Array,
+    angle: Array,
+    step: Step,
+    ratio: Fraction,
+    stamp: Array | None,
+    *,
+    measured: bool,
 ) -> Loading:
     """Angles of one shaft with an encoder of a step, under a torque at the output, N·m.
 
     The other one is taken to be locked; the ratio is 1 where the angles are those at the output.
+    The stamps are in ns; None if time was not recorded.
     """
-    return Loading(torque, angle / float(ratio), step.scaled(float(1 / ratio)), measured)
+    seconds = None if stamp is None else (stamp - stamp[0]) / SECOND
+    return Loading(torque, angle / float(ratio), step.scaled(float(1 / ratio)), measured, seconds)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -252,7 +266,8 @@ class Recording:
         if not known.any():
             return None
         step, twist = both.error_step(ratio), -both.error(ratio)[known]
-        return Loading(torque[known], twist, step, measured=True)
+        seconds = both.seconds[known] if both.timed else None
+        return Loading(torque[known], twist, step, measured=True, seconds=seconds)
 
     @cached_property
     def sha256(self) -> str:
@@ -263,77 +278,3 @@ class Recording:
             with file.open('rb') as content:
                 hashlib.file_digest(content, lambda: total)
         return total.hexdigest()
-
-
-# Stamps
-
-
-class ClockStep(NamedTuple):
-    """A clock that was set back while it was recorded."""
-
-    received: int
-    """When the first message with a stamp of the new time was received, ns."""
-    size: int
-    """ns."""
-    stamp: int
-    """The last one of the old time, ns."""
-
-    def __str__(self) -> str:
-        """Say what happened, and when."""
-        return f'set back by {self.size / SECOND:.3f} s at {self.stamp}'
-
-
-class RestoredClock:
-    """Gives the messages of a topic the stamps of a clock that is never set back.
-
-    A step shows by a stamp that goes back, and by messages that are all older from then on when
-    they are received. One that is late is followed by others that are not, and after a stall of a
-    driver or a recorder the stamps go on.
-    """
-
-    def __init__(self, of_rotor: Sequence[ClockStep] = ()) -> None:
-        """Begin a topic; of two with the same clock, the second one follows the first."""
-        self.steps: list[ClockStep] = []
-        self._of_rotor = of_rotor
-
-    def restored(self, messages: TopicMessages) -> tuple[Sequence[bytes], Array]:
-        """Return the next n messages, and the number of steps before each, (n,)."""
-        received = np.asarray(messages.received, np.int64)
-        stamp = np.fromiter(map(header_stamp, messages.data), np.int64, len(messages.data))
-        dated = np.flatnonzero(stamp > 0)
-        self._find(stamp[dated], received[dated])
-        later = np.zeros(len(stamp), np.int64)
-        data = messages.data
-        if self.steps:
-            data = [*data]
-            later += sum(received >= step.received for step in self.steps)
-            sizes = np.cumsum([0, *(step.size for step in self.steps)])
-            for k in dated[later[dated] > 0].tolist():
-                data[k] = with_stamp(data[k], int(stamp[k] + sizes[later[k]]))
-        return data, later
-
-    def _find(self, stamp: Array, received: Array) -> None:
-        age = received - stamp
-        for k in np.flatnonzero(np.diff(age) > _CLOCK_STEP).tolist():
-            before, after = age[max(k + 1 - _STEADY, 0) : k + 1], age[k + 1 : k + 1 + _STEADY]
-            size = int(np.median(after) - np.median(before))
-            periods = np.diff(stamp[max(k + 1 - _STEADY, 0) : k + 2])
-            if periods[-1] > np.median(periods) - size / 2:
-                continue
-            if size > _CLOCK_STEP and max(np.ptp(before), np.ptp(after)) < size / 4:
-                at = int(received[k + 1])
-                near = (own.size for own in self._of_rotor if abs(own.received - at) < SECOND)
-                self.steps.append(ClockStep(at, next(near, size), int(stamp[k])))
-
-
-def in_order(stamps: Array) -> tuple[Array, int]:
-    """Choose stamps, ns, as the node does: those in disorder by up to a second are left out.
-
-    Returns:
-        The indices that are kept, and how many are left out in disorder. A clock that was set back
-        further ends them.
-    """
-    late = np.maximum.accumulate(stamps) - stamps
-    late = late[~np.logical_or.accumulate(late > CLOCK_RESET)]
-    kept = np.flatnonzero(late == 0)
-    return kept, len(late) - len(kept)

@@ -243,6 +243,7 @@ class _Samples:
             self.unwrapped('angle', period * angle.on_rotor),
             self.steps()['angle'],
             self._ratio if angle.on_rotor else Fraction(1),
+            self.series['angle'].stamp if self.timed else None,
             measured=angle.on_output,
         )
         if (twist := np.ptp(locked.angle)) > _MOST_TWIST:

@@ -1,17 +1,20 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Readings that cannot be true are left out before anything is fitted to both encoders."""
+"""Readings that cannot be true are left out before anything is fitted."""
 
+import math
 import re
 from fractions import Fraction
 
 import numpy as np
 import pytest
-from gear_recordings import write_csv
+from gear_recordings import Gear, creep, ramps, write_csv
 
 from gear_kinematics.measurement.calibration import fit
 from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.gate import gated
+from gear_kinematics.measurement.loops import RampError
 from gear_kinematics.measurement.lost_motion import measure
+from gear_kinematics.measurement.ramp_gate import gated_ramps
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import RecordingError
 from gear_kinematics.measurement.tables import read_table
@@ -166,7 +169,63 @@ def test_stray_readings_of_ramps_are_left_out(shared_path, config, tmp_path, col
     write_csv(tmp_path / 'r.csv', **dict(zip(('time', 'angle', 'torque'), table.T, strict=True)))
     recording = read(tmp_path / 'r.csv', config)
     (fault,) = recording.faults
-    assert fault == '1 reading that contradicts both neighbours left out, at sample 301'
+    assert fault == '1 reading that contradicts both neighbours left out, at 15 s'
     hysteresis = measure(recording, config).figures.hysteresis
     assert hysteresis.value == pytest.approx(np.radians(13.8 / 60), rel=0.02)
     assert not read(path, config).faults
+
+
+TORQUE = ramps(*[(10.0, 75)] * 3)
+TWIST = creep(Gear(play=0.002, stiffness=300.0, friction=1.0), TORQUE)
+HYSTERESIS = 0.002 + 2.0 / 300.0
+
+
+@pytest.mark.parametrize(
+    ('angle', 'row', 'degrees', 'rows'),
+    [
+        ('of a locked shaft', 500, 3.0, 901),
+        ('of a locked shaft', 350, -3.0, 901),
+        ('of a locked shaft', 700, 15.0, 901),
+        ('of a locked shaft', 80, 2.0, 301),
+        ('of both encoders', 450, 1.0, 901),
+    ],
+)
+def test_a_slip_under_torque_is_named_and_not_measured_across(
+    config, tmp_path, angle, row, degrees, rows
+):
+    twist = TWIST[:rows].copy()
+    twist[row:] += math.radians(degrees)
+    columns = {'time_s': 0.01 * np.arange(rows), 'torque_nm': TORQUE[:rows]}
+    if angle == 'of both encoders':
+        columns |= {'rotor_rad': -19.0 * twist, 'output_rad': np.zeros(rows)}
+    else:
+        columns['angle_rad'] = twist
+    recording = read(write_csv(tmp_path / 'r.csv', **columns), config)
+    try:
+        report = measure(recording, config)
+    except RampError as error:
+        assert rows < 500  # without a whole loop on either side
+        said = str(error)
+    else:
+        said = report.recording.faults[0]
+        assert report.figures.hysteresis.value == pytest.approx(HYSTERESIS, rel=0.02)
+    named = re.search('the output jumps by (.*)° against the rotor at (.*) s ', said)
+    assert float(named[1]) == pytest.approx(degrees, abs=0.3)  # and the motion meanwhile
+    assert float(named[2]) == pytest.approx(0.01 * row, abs=0.011)
+
+
+@pytest.mark.parametrize('every', [1, 3, 20])
+def test_no_slip_is_seen_in_real_ramps(shared_path, config, every):
+    paths = sorted(shared_path('data/torque_ramps_more').glob('*.csv'))
+    for path in [*paths[5:9], *paths[13:15]]:  # with the fastest motion through their play
+        ramps = read(path, config).locked
+        assert not gated_ramps(ramps.chosen(slice(1, None, every)))[1]
+
+
+def test_a_saturated_torque_sensor_is_named(config, tmp_path):
+    torque = np.clip(TORQUE, -99.0, 7.0)
+    path = write_csv(tmp_path / 'r.csv', torque_nm=torque, angle_rad=TWIST)
+    recording = read(path, config)
+    (fault,) = recording.faults
+    assert fault.startswith('the torque sensor is saturated, first at sample 54: 135 readings')
+    assert np.max(recording.locked.torque) < 7.0

@@ -16,7 +16,8 @@ from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.reading import read, read_encoders
-from gear_kinematics.measurement.recording import RecordingError, RestoredClock
+from gear_kinematics.measurement.recording import RecordingError
+from gear_kinematics.measurement.stamps import RestoredClock
 
 TURN = 2.0 * math.pi
 MS = 10**6

@@ -1,0 +1,88 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The stamps of recorded topics: those of a clock that was set back, and those out of order."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from gear_kinematics.bag import TopicMessages
+from gear_kinematics.measurement.recording import Array
+from gear_kinematics.wire.cdr import SECOND, header_stamp, with_stamp
+from gear_kinematics.wire.joint_reader import CLOCK_RESET
+
+_CLOCK_STEP = 20_000_000
+"""ns by which a clock is set back, at least; computers slew it by less."""
+_STEADY = 25
+"""Messages before and after, of which the age is the same."""
+
+
+class ClockStep(NamedTuple):
+    """A clock that was set back while it was recorded."""
+
+    received: int
+    """When the first message with a stamp of the new time was received, ns."""
+    size: int
+    """ns."""
+    stamp: int
+    """The last one of the old time, ns."""
+
+    def __str__(self) -> str:
+        """Say what happened, and when."""
+        return f'set back by {self.size / SECOND:.3f} s at {self.stamp}'
+
+
+class RestoredClock:
+    """Gives the messages of a topic the stamps of a clock that is never set back.
+
+    A step shows by a stamp that goes back, and by messages that are all older from then on when
+    they are received. One that is late is followed by others that are not, and after a stall of a
+    driver or a recorder the stamps go on.
+    """
+
+    def __init__(self, of_rotor: Sequence[ClockStep] = ()) -> None:
+        """Begin a topic; of two with the same clock, the second one follows the first."""
+        self.steps: list[ClockStep] = []
+        self._of_rotor = of_rotor
+
+    def restored(self, messages: TopicMessages) -> tuple[Sequence[bytes], Array]:
+        """Return the next n messages, and the number of steps before each, (n,)."""
+        received = np.asarray(messages.received, np.int64)
+        stamp = np.fromiter(map(header_stamp, messages.data), np.int64, len(messages.data))
+        dated = np.flatnonzero(stamp > 0)
+        self._find(stamp[dated], received[dated])
+        later = np.zeros(len(stamp), np.int64)
+        data = messages.data
+        if self.steps:
+            data = [*data]
+            later += sum(received >= step.received for step in self.steps)
+            sizes = np.cumsum([0, *(step.size for step in self.steps)])
+            for k in dated[later[dated] > 0].tolist():
+                data[k] = with_stamp(data[k], int(stamp[k] + sizes[later[k]]))
+        return data, later
+
+    def _find(self, stamp: Array, received: Array) -> None:
+        age = received - stamp
+        for k in np.flatnonzero(np.diff(age) > _CLOCK_STEP).tolist():
+            before, after = age[max(k + 1 - _STEADY, 0) : k + 1], age[k + 1 : k + 1 + _STEADY]
+            size = int(np.median(after) - np.median(before))
+            periods = np.diff(stamp[max(k + 1 - _STEADY, 0) : k + 2])
+            if periods[-1] > np.median(periods) - size / 2:
+                continue
+            if size > _CLOCK_STEP and max(np.ptp(before), np.ptp(after)) < size / 4:
+                at = int(received[k + 1])
+                near = (own.size for own in self._of_rotor if abs(own.received - at) < SECOND)
+                self.steps.append(ClockStep(at, next(near, size), int(stamp[k])))
+
+
+def in_order(stamps: Array) -> tuple[Array, int]:
+    """Choose stamps, ns, as the node does: those in disorder by up to a second are left out.
+
+    Returns:
+        The indices that are kept, and how many are left out in disorder. A clock that was set back
+        further ends them.
+    """
+    late = np.maximum.accumulate(stamps) - stamps
+    late = late[~np.logical_or.accumulate(late > CLOCK_RESET)]
+    kept = np.flatnonzero(late == 0)
+    return kept, len(late) - len(kept)
