@@ -5,7 +5,7 @@ import argparse
 from dataclasses import replace
 from pathlib import Path
 
-from gear_kinematics.bag.roles import find_rotor_topic, joints_on
+from gear_kinematics.bag.roles import joints_on
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.encoders import (
     add_known_ratio,
@@ -22,7 +22,7 @@ from gear_kinematics.measurement.commissioning import analysis
 from gear_kinematics.measurement.commissioning.document import document, write_file
 from gear_kinematics.measurement.formats import is_table, open_bag
 from gear_kinematics.measurement.reading import read_encoders
-from gear_kinematics.measurement.rotor_fields import recorded_questions
+from gear_kinematics.measurement.rotor_fields import questions
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.arm_file import check_new
 from gear_kinematics.report.document import Verdict
@@ -100,13 +100,12 @@ def _read(options: argparse.Namespace, request: analysis.Request) -> analysis.Co
     result = analysis.commission(recordings, request)
     for recording, _ in recordings:
         say_columns(recording, options)
-    asked = list[str]()
-    for path in options.recordings:
-        if not is_table(path):
-            with open_bag(path) as bag:
-                topic = find_rotor_topic(bag, request.rotor.topic, request.rotor.joint)
-                asked += recorded_questions(bag, topic, request.rotor.joint, result.between)
-    return replace(result, questions=tuple(dict.fromkeys(asked)))
+    asked = dict[str, None]()
+    for recording, _ in recordings:
+        if heard := recording.rotor_messages:
+            found = questions(heard.data, heard.received, request.rotor.joint, result.between)
+            asked |= dict.fromkeys(found)
+    return replace(result, questions=tuple(asked))
 
 
 def _recorded(path: Path) -> list[analysis.Channel]:

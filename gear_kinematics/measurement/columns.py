@@ -79,7 +79,8 @@ class Sources:
     output_counts: int | None = None
     """Counts per turn of the encoder of the output."""
     as_recorded: bool = False
-    """Whether wraps and counts stay what they are, where counts per turn are not given."""
+    """Whether wraps and counts stay what they are, where counts per turn are not given, and the
+    messages of the rotor are kept."""
     rotor_topic: str | None = None
     encoder_topic: str | None = None
     command: str = 'gearkin lost-motion'

@@ -2,6 +2,7 @@
 """The one reader of recordings: a bag or a table becomes a `Recording`."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +23,7 @@ from gear_kinematics.measurement.recording import (
     locked_shaft,
     match,
 )
+from gear_kinematics.measurement.rotor_fields import MOST
 from gear_kinematics.measurement.stamps import RestoredClock, in_order
 from gear_kinematics.measurement.tables import read_table
 from gear_kinematics.parameters import NodeParameters
@@ -88,7 +90,7 @@ def read_encoders(
 def _read_bag(
     path: Path, parameters: NodeParameters, sources: Sources, progress: ReportProgress | None
 ) -> Recording:
-    damage = None
+    damage, heard = None, TopicMessages()
     with open_bag(path) as bag:
         rotor = find_rotor_topic(bag, sources.rotor_topic, parameters.rotor_joint)
         encoder = find_encoder_topic(bag, rotor, sources.encoder_topic)
@@ -98,9 +100,13 @@ def _read_bag(
             for batch in bag.batches(topics, progress):
                 found = by_topic(batch, topics)
                 states.add(found[rotor], found[encoder] if encoder else None)
+                if sources.as_recorded and len(heard.data) < MOST:
+                    heard.data += found[rotor].data
+                    heard.received += found[rotor].received
         except DamagedBagError as error:
             damage = str(error)
-    return states.recording(path, sources, damage)
+    recording = states.recording(path, sources, damage)
+    return replace(recording, rotor_messages=heard) if heard.data else recording
 
 
 class States:

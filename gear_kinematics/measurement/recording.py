@@ -12,6 +12,7 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_kinematics.bag import TopicMessages
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.wire.cdr import SECOND
@@ -249,6 +250,8 @@ class Recording:
     """At which reading ended."""
     faults: tuple[str, ...] = ()
     """Clauses about what cannot be true, such as a slip, each with its moment."""
+    rotor_messages: TopicMessages | None = None
+    """The first messages of the rotor, of a bag that is read as recorded."""
 
     @property
     def sentences(self) -> list[str]:

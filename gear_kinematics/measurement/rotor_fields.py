@@ -17,7 +17,7 @@ from gear_kinematics.wire.batches import decode_joint_states
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import ARRAY_SIZES
 
-_MOST = 500_000
+MOST = 500_000
 """Messages that are looked at; they take about 200 bytes each."""
 _FEWEST = 10
 _MOVED = 1.0  # rad, by which a rotor has moved for certain
@@ -77,7 +77,7 @@ def recorded_questions(
         for batch in bag.batches([topic]):
             received += [message[1] for message in batch]
             data += [message[2] for message in batch]
-            if len(data) > _MOST:
+            if len(data) > MOST:
                 break
     except DamagedBagError:
         pass  # which the reader of the recording says

@@ -53,7 +53,10 @@ def test_wrong_fields_are_named(factor, efforts, asked, wrap, tmp_path, capsys, 
     if 'output' not in ''.join(asked):
         assert all(f'/rotor_state: {each}' in told for each in asked)
     monkeypatch.chdir(tmp_path)
+    read, batches = [], Bag.batches
+    monkeypatch.setattr(Bag, 'batches', lambda *a: read.append(a) or batches(*a))
     assert main(['commission', str(path)]) == 0
+    assert len(read) == 1  # once for the encoders and for these fields
     told = capsys.readouterr().out
     assert [
         line[5 : 5 + len(want)] for line, want in zip(told.splitlines()[1:], asked, strict=True)
