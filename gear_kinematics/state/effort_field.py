@@ -26,6 +26,11 @@ class EffortField:
         """Whether the effort was 0 throughout a motion."""
         return not self.real and self._greatest - self._least > _MOTION
 
+    @property
+    def zeros(self) -> bool:
+        """Whether there was an effort of 0 before any other."""
+        return self._least <= self._greatest
+
     def believed(self, position: float, effort: float) -> float | None:
         """Take the next position, rad, and effort; returns None for an effort without meaning."""
         if effort:

@@ -120,6 +120,16 @@ class OutputState(JointStateTopic):
         window['stamp'][waiting[found]] = stamps[rows[answers]]
         self._adopted = int(samples['number'][found].max(initial=self._adopted))
 
+    def _adopt_efforts(self, rows: Array, at: Array, window: Array) -> None:
+        still_open = window['effort_open'][at]
+        rows, at = rows[still_open], at[still_open]
+        recorded, there = self._states.values[rows, 2], self._states.present[rows, 2]
+        none = ~there | (self.shared & np.isnan(recorded))
+        window['effort'][at[recorded == 0.0]] = 0.0
+        window['effort'][at[none]] = np.nan
+        if 'acceleration' in (window.dtype.names or ()):  # without an effort there are no loads
+            window['acceleration'][at[none]] = np.nan
+
     def _compare(self, rows: Array, samples: Array) -> Sequence[FieldSamples]:
         position, *others = super()._compare(rows, samples)
         if self._changes.learn(samples, position):

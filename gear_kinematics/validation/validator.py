@@ -213,14 +213,18 @@ class Validator:
     def _add_samples(self, batch: Batch) -> Array:
         """Add the rotor's samples to the window, and return their unbroken segments, (n,)."""
         messages = batch[self._topics.rotor]
+        field = self._state.input.effort_field
+        was_real = field.real
         self.samples = samples = self._state.samples(messages.data, messages.received)
         self._inputs.update(samples.received, samples.stamp, samples.rejected)
         self._health.update(samples.stamp, TURN * samples.turns + samples.angle)
-        columns = {name: getattr(samples, name) for name, _ in SAMPLES[2:]}
+        columns = {name: getattr(samples, name) for name, _ in SAMPLES[3:]}
         columns['number'] = first_number(samples.segment) + self._samples
         columns['number'] += np.arange(len(samples.stamp))
         unseen = bool(self._parameters.rotor_period) or self._parameters.absolute
         columns['turns_known'] = np.full(len(samples.stamp), not unseen)
+        real = np.logical_or.accumulate(np.nan_to_num(samples.effort) != 0.0) | was_real
+        columns['effort_open'] = ~real & field.zeros
         self._samples += len(samples.stamp)
         segments = self._unbroken.segments(samples.stamp, samples.segment)
         if self._loads:

@@ -213,6 +213,23 @@ def test_a_value_that_is_not_finite_or_absent_is_found(
     assert shown.time[shown.start] == pytest.approx(moment)
 
 
+@pytest.mark.parametrize(
+    ('torque', 'outputs', 'passes'),
+    [
+        (0.0, without_effort, True),  # the node saw a motion without effort before
+        (0.0, fill('effort', -0.0), True),  # or a torque
+        (0.0, fill('effort', 1.0), False),
+        (1.0, without_effort, False),
+    ],
+)
+def test_what_an_effort_of_0_means_can_be_known_from_before_the_recording(
+    recorded, config, torque, outputs, passes
+):
+    changed = change_all(recorded, ROTOR, fill('effort', torque))
+    report = validate(change_all(changed, OUTPUT, outputs), config)
+    assert (report.verdict == Verdict.PASS) == passes
+
+
 @pytest.mark.parametrize('value', [1.4e154, -1e200, 1.7976931348623157e308, 5e-324])
 @pytest.mark.parametrize('topic', [ROTOR, OUTPUT])
 @pytest.mark.parametrize('field', FIELDS)
