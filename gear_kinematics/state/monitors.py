@@ -124,6 +124,8 @@ class InputMonitor(DriverMonitor):
             'lost': driver.lost,
             'of others': rotor_input.of_others,
             'zero stamps': rotor_input.zero_stamps,
+            'repeated stamps': rotor_input.duplicates,
+            'received': rotor_input.received - rotor_input.of_others,
             'unsent': connections.unsent,
             'unreferenced': self.unreferenced,
         }
@@ -142,6 +144,11 @@ class InputMonitor(DriverMonitor):
                 yield doubt
         if rotor_input.parameters.rotor_period and grown['zero stamps']:
             yield Condition.ZERO_STAMPS(count=grown['zero stamps'])
+        if (
+            rotor_input.parameters.rotor_period
+            and 2 * grown['repeated stamps'] > grown['received']
+        ):
+            yield Condition.REPEATED_STAMPS(count=grown['repeated stamps'])
         if grown['unsent']:
             yield Condition.UNSENT(count=grown['unsent'])
         if grown['unreferenced'] and rotor_input.referenced:

@@ -66,6 +66,11 @@ class Condition(Enum):
         'zero stamps {count}',
         'Let the driver stamp its messages: without stamps, turns may be miscounted.',
     )
+    REPEATED_STAMPS = (
+        WARN,
+        'repeated stamps {count}',
+        'Let the driver stamp each message: gaps do not show, and turns may be miscounted.',
+    )
     SEVERAL_DRIVERS = WARN, '{count} drivers', 'Stop all drivers but one.'
     # The rotor's turns, and the encoder at the output that can tell them
     NOT_REFERENCED = ERROR, 'not referenced', _HOME

@@ -105,6 +105,13 @@ ROWS = {
         FindingCause.ZERO_STAMPS,
         replace(MULTI, rotor_encoder_range=1000.0),
     ),
+    'constant stamp, and a reading that repeats': Row(
+        [{'stamp': START} for _ in range(COUNT)],
+        {'duplicates': COUNT - 1},
+        (Condition.REPEATED_STAMPS(count=COUNT - 1),),
+        FindingCause.REPEATED_STAMPS,
+        replace(MULTI, rotor_encoder_range=1000.0),
+    ),
     'unnormalised stamp': Row(
         part({'nanoseconds': (99, SECOND + 60 * PERIOD)}), {'unnormalised_stamps': 1}
     ),
