@@ -131,7 +131,7 @@ def decode_joint_states(messages: Sequence[bytes], joint: str) -> JointStates:
         if index is None:
             without = without or describe_missing(joint, messages[rows[0]])
             continue
-        joint_found[at], fit[at] = True, arrays_fit(layout)
+        joint_found[at], fit[at] = True, arrays_fit(layout, joint.encode())
         for field, (offset, size) in enumerate(layout.arrays):
             if index < size:
                 present[at, field] = True

@@ -73,10 +73,13 @@ def joint_index(layout: MessageLayout, joint: bytes) -> int | None:
     return 0 if len(names) == 1 else None
 
 
-def arrays_fit(layout: MessageLayout) -> bool:
-    """Whether each array of a JointState is empty or has a value for each of its joints."""
-    joints = len(joint_names(layout))
-    return all(count in {0, joints} for _, count in layout.arrays)
+def arrays_fit(layout: MessageLayout, joint: bytes) -> bool:
+    """Whether it is known which values of a JointState are a joint's.
+
+    Each array is empty or has a value for each of the joints, and the joint is there once.
+    """
+    names = joint_names(layout)
+    return names.count(joint) <= 1 and all(n in {0, len(names)} for _, n in layout.arrays)
 
 
 def header_stamp(data: bytes) -> int:

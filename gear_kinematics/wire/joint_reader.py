@@ -213,7 +213,7 @@ class _Joint:
     def __init__(self, layout: MessageLayout, joint: bytes) -> None:
         self._joint = joint
         index = joint_index(layout, joint)
-        fit = arrays_fit(layout)
+        fit = arrays_fit(layout, joint)
         self.offsets = [
             offset + 8 * index if fit and index is not None and count else None
             for offset, count in layout.arrays

@@ -85,6 +85,7 @@ ROWS = {
         part({'names': ['wheel']}, count=3), {'of_others': 3}, found=FindingCause.OF_OTHERS
     ),
     'array sizes': rejected('array sizes', {'names': ['rotor', 'wheel']}),
+    'named twice': rejected('array sizes', {'names': ['rotor', 'rotor'], 'position': [0.1, 5.0]}),
     'no position': rejected('position missing', {'position': []}),
     'NaN': rejected('position not finite', {'position': [math.nan]}),
     'far away': rejected('position too large', {'position': [1e17]}),

@@ -64,7 +64,7 @@ def expected(data, joint):
     if not found:
         return 'joint missing'
     arrays = message.position, message.velocity, message.effort
-    if any(len(array) not in {0, len(joints)} for array in arrays):
+    if len(found) > 1 or any(len(array) not in {0, len(joints)} for array in arrays):
         return 'array sizes'
     if not len(message.position):
         return 'position missing'
