@@ -22,6 +22,7 @@ from simulated_gear import GearSet, gears, simulate, strokes, wandering
 from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.measurement.calibration import fit, judge
+from gear_kinematics.measurement.calibration.document import document
 from gear_kinematics.measurement.calibration.model import widening
 from gear_kinematics.measurement.recording import RecordingError
 
@@ -63,6 +64,11 @@ def test_orders_are_found_with_their_amplitudes():
         assert found[name].uncertainty < 0.25 * amplitude
     assert result.helps
     assert improvement(result) > 1.0 / 0.15
+    validation = replace(result.calibration.validation, coverage=0.7)
+    calibration = replace(result.calibration, validation=validation)
+    narrow = document(replace(result, helps=False, calibration=calibration), 'gear.yaml')
+    finding = narrow.sections[0].findings[0].text
+    assert '70.0 % of it within the 95 % interval, which is too narrow. Nothing is' in finding
 
 
 def test_play_is_found_with_its_width():

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from gear_kinematics.measurement.calibration.check import Judgement
-from gear_kinematics.measurement.calibration.fit import Fit
+from gear_kinematics.measurement.calibration.fit import LEAST_COVERAGE, Fit
 from gear_kinematics.measurement.envelope import envelope
 from gear_kinematics.measurement.recording import Array
 from gear_kinematics.measurement.wording import (
@@ -42,15 +42,18 @@ def document(fit: Fit, target: str) -> Document:
     made, errors = fit.calibration, fit.calibration.validation
     verdict = Verdict.PASS if fit.helps else Verdict.FAIL
     before, after = map(_arc_minutes, (errors.rms_before, errors.rms_after))
+    within = f'{100.0 * errors.coverage:.1f} % of it within the {PERCENT} interval'
     finding = (
-        f'The error falls from {before} to {after} arcmin rms on held-out data, '
-        f'{100.0 * errors.coverage:.1f} % of it within the {PERCENT} interval of '
+        f'The error falls from {before} to {after} arcmin rms on held-out data, {within} of '
         f'± {_arc_minutes(made.half_width)} arcmin. The node takes the file as its parameter '
         'calibration.'
         if fit.helps
+        else f'The error falls from {before} to {after} arcmin rms on held-out data, but only '
+        f'{within}, which is too narrow. Nothing is written; record more turns of the output, '
+        'in both directions.'
+        if errors.coverage < LEAST_COVERAGE and errors.rms_after < errors.rms_before
         else f'No correction helps: with the best one the error is {after} arcmin rms instead of '
-        f'{before} on held-out data, {100.0 * errors.coverage:.1f} % of it '
-        f'within the {PERCENT} interval. Nothing is written.'
+        f'{before} on held-out data, {within}. Nothing is written.'
     )
     terms = Table.of_items(
         {

@@ -40,7 +40,7 @@ from gear_kinematics.share import version
 from gear_kinematics.statistics.uncertainty import Estimate, jackknife
 
 _FEWEST = 100  # samples of a recording
-_LEAST_COVERAGE = 0.9  # of samples left out, by the interval that should have 95 % of them
+LEAST_COVERAGE = 0.9  # of samples left out, by the interval that should have 95 % of them
 _MARGIN = 0.1  # share of the span of speed and torque beyond which they are not calibrated
 
 
@@ -188,7 +188,7 @@ def _result(
         ),
     )
     found = calibration.validation
-    falls = found.rms_after < found.rms_before and found.coverage >= _LEAST_COVERAGE
+    falls = found.rms_after < found.rms_before and found.coverage >= LEAST_COVERAGE
     return Fit(
         calibration,
         falls and model.helps(),
