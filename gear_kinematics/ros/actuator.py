@@ -73,12 +73,14 @@ class Actuator:
             zero = rotor.zero_for(self.rotor_angle)
             before = rotor.turns.relative_to(rotor.zero, parameters.rotor_direction)
         except RuntimeError as error:  # after the joint was changed, too
-            raise RefusedError(f'there was no valid {topics.ROTOR_STATE} yet') from error
+            none = f'there was no valid {topics.ROTOR_STATE} yet; check the driver'
+            raise RefusedError(none) from error
         if (age := time.monotonic() - self._seen) > parameters.input_timeout:
-            raise RefusedError(f'the last valid {topics.ROTOR_STATE} came {age:.1f} s ago')
+            last = f'the last valid {topics.ROTOR_STATE} came {age:.1f} s ago'
+            raise RefusedError(f'{last}; check that the driver is running')
         if (speed := abs(ratio.output_rate(self._speed))) > limit:
-            too_fast = f'the shaft turns at {speed:.3g} rad/s'
-            raise RefusedError(f'{too_fast}; home_max_speed is {limit:g} rad/s')
+            too_fast = f'the shaft turns at {speed:.3g} rad/s, faster than home_max_speed'
+            raise RefusedError(f'{too_fast}, {limit:g} rad/s; stop it and home it again')
         whole, rest = ratio.output_angle(*before, math)
         was, now = math.degrees(TURN * whole + rest), math.degrees(parameters.home_angle)
         return zero, f'the shaft was at {was:z.1f}° and is now {now:z.1f}°'

@@ -77,7 +77,8 @@ def test_shaft_that_turns_is_not_homed(homing, positions, period, velocity, refu
     assert answer.success != bool(refused), answer.message
     if refused:
         assert answer.message == (
-            f'the shaft turns at {refused} rad/s; home_max_speed is 0.05 rad/s'
+            f'the shaft turns at {refused} rad/s, faster than home_max_speed, 0.05 rad/s; '
+            'stop it and home it again'
         )
         assert node.get_parameter('rotor_zero').value == 0.0
 
@@ -101,7 +102,7 @@ def test_position_that_is_old_is_not_homed(homing):
     drive(node, [1.0])
     node._actuators['']._seen -= 1234.5
     node._on_rotor_state(b'no message')
-    assert home(node).message == 'the last valid rotor_state came 1234.5 s ago'
+    assert home(node).message.startswith('the last valid rotor_state came 1234.5 s ago')
 
 
 def test_zero_that_cannot_be_written_holds_and_the_answer_says_why(homing, tmp_path, monkeypatch):
