@@ -36,6 +36,9 @@ _ANGULAR = ('angle', 'rotor', 'output')
 _OF_ANGLE = {
     **UNITS,
     **dict.fromkeys(('°', 'degree', 'degrees'), UNITS['deg']),
+    'mdeg': UNITS['deg'] / 1000.0,
+    **dict.fromkeys(('arcmin', '′'), UNITS['deg'] / 60.0),
+    **dict.fromkeys(('arcsec', '″'), UNITS['deg'] / 3600.0),
     **dict.fromkeys(('radian', 'radians'), 1.0),
     **dict.fromkeys(('turn', 'turns', 'revs', 'revolution', 'revolutions'), TURN),
     **dict.fromkeys(_COUNTS),
@@ -176,7 +179,8 @@ def _column(role: str, name: str, given: Sources, common: str, below: Mapping[st
     unit = elsewhere[1:] if elsewhere[:1] == '=' else unit or elsewhere or _unknown(role, words)
     if unit and unit not in _UNITS[role] and not (given.unit and role in _ANGULAR):
         listed = ', '.join(sorted(_UNITS[role]))
-        raise ValueError(f'{name}: the unit {unit} is not known; known: {listed}')
+        option = '; or give it with --angle-unit' if role in _ANGULAR else ''
+        raise ValueError(f'{name}: the unit {unit} is not known; known: {listed}{option}')
     if role in _ANGULAR:
         unit = given.unit or unit or common
         if not unit and not _role(name)[0]:

@@ -8,7 +8,7 @@ with a noun, and `{moment}` is its time. What is in brackets is written only if 
 from enum import Enum
 
 _FIRST = '[, the first at {moment}]'
-_REMEDY = 'validate with the parameters of the recorded node'
+_REMEDY = 'give the parameter file of the recorded node with --config'
 
 
 class FindingCause(Enum):
