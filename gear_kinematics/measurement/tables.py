@@ -1,6 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Tables as recordings: which rows are used, in what units, and at what times."""
 
+import math
 import re
 import shlex
 from collections.abc import Iterator
@@ -246,9 +247,11 @@ class _Samples:
             self.series['angle'].stamp if self.timed else None,
             measured=angle.on_output,
         )
-        if (twist := np.ptp(locked.angle)) > _MOST_TWIST:
+        # Few readings can be stray.
+        if np.ptp(np.quantile(locked.angle, (0.01, 0.99))) > _MOST_TWIST:
+            twist = math.degrees(np.ptp(locked.angle))
             raise ValueError(
-                f'the output turns by {np.degrees(twist):.3g}° under torque: it is not '
+                f'the output turns by {twist:.3g}° under torque: it is not '
                 'locked, or the unit is another, which --angle-unit gives'
             )
         return locked

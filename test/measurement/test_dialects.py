@@ -328,7 +328,7 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
          'turns by 45.8° under torque'),
         (lambda t, _, o: written([t, 1e-3 * o, np.round(1e3 * o)], 'time,angle,torque'),
          'torque has whole numbers: give its unit as in --torque-column .torque .Nmm'),
-        ('time,angle_grad,torque\n0,1,2\n', '°; or give it with --angle-unit'),
+        ('time,angle_grad,torque\n0,1,2\n', 'known; known: .*; or give it with --angle-unit'),
         ('time,angle,torque\ns,gon,Nm\n0,1,2\n', 'the unit gon is not known'),
         ('rotor,output\n1.5,20\n359.5,30.5\n', 'rotor has turns of 360'),
         ('Data1,torque\n0,2\n', 'Data1 does not say that it is an angle: .* --angle-unit'),

@@ -159,7 +159,7 @@ def test_exchanged_columns_are_named(shared_path):
 
 @pytest.mark.parametrize(
     ('column', 'value'),
-    [(1, 0.3), (1, 0.02), (2, 1e4), (2, 80.0)],
+    [(1, 1.0), (1, 0.02), (2, 1e4), (2, 80.0)],
     ids=['far angle', 'angle', 'far torque', 'torque'],
 )
 def test_stray_readings_of_ramps_are_left_out(shared_path, config, tmp_path, column, value):
