@@ -15,7 +15,7 @@ from gear_kinematics.wire.nearest import among, listed
 from gear_kinematics.wire.topics import ROTOR_STATE
 
 _ELSEWHERE = 0.1  # rad, of a rotor that was turned by hand, or counted from another zero
-_HOME = 'check whether the drive restarted; then call ~/home'
+_HOME = 'check whether the drive restarted; then home it (gearkin home or ~/home)'
 
 
 class DriverLog:

@@ -15,7 +15,8 @@ OK, WARN, ERROR = 0, 1, 2
 """Levels of diagnostic_msgs/DiagnosticStatus."""
 
 _DRIVER = 'Check that the driver is running, and that its topic is remapped.'
-_HOME = 'Move the output to its home angle, then call ~/home.'
+_HOME_IT = 'then home it (gearkin home or ~/home)'
+_HOME = f'Move the output to its home angle, {_HOME_IT}.'
 _CLOCKS = 'Check that both drivers run and send often, and that their clocks agree.'
 _RANGE = 'Check output_range, gear_ratio and the zeros of both encoders.'
 _VELOCITY = 'Let the driver send rad/s of the rotor, or no velocities.'
@@ -91,7 +92,7 @@ class Condition(Enum):
     DISAGREES = (
         ERROR,
         'output_encoder disagrees: ' + _BOTH,
-        'Check whether an encoder has slipped; then call ~/home, or restart the node.',
+        f'Check whether an encoder has slipped; {_HOME_IT}, or restart the node.',
     )
     NOT_CHECKED = OK, 'reference not checked', ''
     WERE_UNKNOWN = WARN, 'turns unknown for {count} inputs', 'Do not use the outputs of that time.'
@@ -116,7 +117,7 @@ class Condition(Enum):
     SLIPPED = (
         WARN,
         'the output has slipped by {angle_deg:.2f}° against the rotor, at {time:.3f} s',
-        'Check the couplings and the zeros of both encoders; then call ~/home.',
+        f'Check the couplings and the zeros of both encoders; {_HOME_IT}.',
     )
     FITS_NO_LONGER = WARN, 'calibration no longer fits', 'Calibrate the gear again.'
     DIRECTION_NOT_CHECKED = OK, 'direction not checked', ''

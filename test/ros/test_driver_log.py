@@ -19,7 +19,7 @@ MISSING = (
 )
 STOPPED = '/rotor_state has stopped: no input for 1.5 s'
 NOW = '/rotor_state is heard now'
-CHECK = 'check whether the drive restarted; then call ~/home'
+CHECK = 'check whether the drive restarted; then home it (gearkin home or ~/home)'
 AWAY = f'/rotor_state is heard again, but the rotor is {{}}° from where it was: {CHECK}'
 GEARS = {'/output_state', '/transmission_error', '/left/angle', '/left/transmission_error'}
 
