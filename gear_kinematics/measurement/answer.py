@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import NamedTuple
 
+import numpy as np
+
 from gear_kinematics.measurement.figures import LOST_MOTION_SHARE, GearFigures
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.measured import LOST_MOTION, Measured, shown
@@ -15,6 +17,8 @@ from gear_kinematics.report.document import number
 
 _SMALLER = 0.7
 """Share of their amplitude to which smaller ramps are worth recording."""
+_TOLD = 0.25
+"""Share of the whole motion by which a ± leaves nothing to be told."""
 _HELD = 'the lost motion cannot be judged: it is read at a torque below the friction'
 
 
@@ -22,6 +26,8 @@ def answer(report: LostMotion) -> str:
     """Say for a person who must decide what the recording shows."""
     if report.wrong_ratio:
         return report.wrong_ratio
+    if report.computed:
+        return f'{report.computed[0].upper()}{report.computed[1:]}.'
     if report.figures:
         return _of_ramps(report.figures)
     found = report.transmission
@@ -48,7 +54,8 @@ def _of_ramps(figures: GearFigures) -> str:
             f'The hysteresis is negative, {arc_minutes(width)}′, which no gear has: '
             'the torque comes later than the angle, as behind a filter or from another clock.'
         )
-    if math.inf > width.expanded > abs(width.value):
+    least = max(abs(width.value), _TOLD * float(np.ptp(figures.middle_line.angle)))
+    if math.inf > width.expanded > least:
         return (
             f'How far the output rests from its middle cannot be told: {arc_minutes(width)}′. The '
             'loops differ by more than their width, as where the angle drifts or slips.'
@@ -94,10 +101,12 @@ class Limits:
     def judge(self, report: LostMotion) -> list[LimitCheck]:
         """Judge a recording by each limit, at the end of the interval that speaks against it."""
         limits = {name.replace('_', ' '): limit for name, limit in asdict(self).items()}
-        held = report.figures is not None and report.figures.held_by_friction
+        unfit = dict.fromkeys(limits, report.computed) if report.computed else {}
+        if report.figures is not None and report.figures.held_by_friction:
+            unfit.setdefault(LOST_MOTION, _HELD)
         return [
-            LimitCheck(LOST_MOTION, holds=False, text=_HELD)
-            if held and figure.name == LOST_MOTION
+            LimitCheck(figure.name, holds=False, text=unfit[figure.name])
+            if figure.name in unfit
             else _judged(figure, limit)
             for figure in report.main_figures
             if (limit := limits.get(figure.name)) is not None

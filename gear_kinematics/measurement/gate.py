@@ -23,6 +23,7 @@ from gear_kinematics.measurement.ramp_gate import (
     usual,
 )
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RotorMotion
+from gear_kinematics.measurement.wording import ARC_MINUTES
 from gear_kinematics.report.document import counted, number
 
 _FEWEST = 50  # samples
@@ -36,6 +37,8 @@ _LEAST_SHARE = 0.25  # of samples that are used: else it is the ratio that is no
 _CLEAR = 4.0  # such steps: clear slips, however short the parts between them
 _MOST_FAULTS = 0.02  # of such medians: more are a unit or a range that is not understood
 _RANGE = 0.9  # of the rotor's travel, by which it steps where it wraps
+NO_ENCODER = 2e-6
+"""rad, peak to peak, 0.4 arc seconds: no gear with an encoder at its output deviates by less."""
 
 
 def gated(recording: Recording) -> Recording:
@@ -67,6 +70,9 @@ def gated(recording: Recording) -> Recording:
     for period in periods:
         steps = np.diff(error[rows], prepend=error[rows[0]])
         error[rows] -= period * np.cumsum(np.round(steps / period))
+    line = np.polynomial.Polynomial.fit(rotor[rows], error[rows], 1)
+    if (rest := float(np.ptp(error[rows] - line(rotor[rows])))) < NO_ENCODER:
+        return replace(recording, faults=(*recording.faults, computed(rest)))
     ideal = slope * np.diff(rotor[rows])
     calm, moved = np.diff(usual(error[rows])), slope * np.diff(usual(rotor[rows]))
     fastest = float(np.quantile(np.abs(moved), 0.98))
@@ -108,6 +114,13 @@ def gated(recording: Recording) -> Recording:
         found.append(longest(time[first], time[last], unit))
     encoders = _without(both, slope * turned, kept, stray)
     return replace(recording, encoders=encoders, faults=(*recording.faults, *found))
+
+
+def computed(deviation: float) -> str:
+    """Say that an output deviates from the rotor by too little, rad, to be measured."""
+    within = number(deviation * ARC_MINUTES, 2)
+    followed = f'the output follows the rotor within {within}′'
+    return f'{followed}, as if it were computed from it, and shows nothing of the gear'
 
 
 def output_by_rotor(rotor: Array, measured: Array) -> float | None:

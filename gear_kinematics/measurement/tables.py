@@ -1,7 +1,6 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Tables as recordings: which rows are used, in what units, and at what times."""
 
-import math
 import re
 import shlex
 from collections.abc import Iterator
@@ -51,8 +50,7 @@ _MOST_TWIST = 0.35
 """rad of the output under torque: a shaft that turns further is not locked."""
 _BLOCKS, _LIKE = 10, (0.08, 1.0)
 """Parts of a recording; rad by which the output leaves the rotor in most of them, in degrees."""
-_WHOLE = 50
-"""Levels that show whole numbers to be no coincidence."""
+_WHOLE = 50  # levels that show whole numbers to be no coincidence
 _TRIED, _FEWEST, _ROWS = 12, 10, 10_000
 """Columns among which two are sought for an example, least and most rows that tell them."""
 _NO_ANGLE = re.compile(r'(?i)torq|effort|curr|vel|speed|rpm|temp|time|stamp|target|goal|cmd|^t$')
@@ -62,8 +60,7 @@ _LIKELY = re.compile(r'(?i)pos|ang|enc|theta|winkel|(rad|deg|rev|inc|cnt|counts)
 _COUNTS = '--rotor-counts', '4096', '--output-counts', '4096'
 """Words for columns with whole numbers, for an example."""
 _PART = 'one row of {} is used: no more are kept in memory'
-_SHOWN = 800
-"""Characters of an error, as those of a file can be many."""
+_SHOWN = 800  # characters of an error, as those of a file can be many
 
 
 def read_table(path: Path, sources: Sources, ratio: Fraction, period: float = 0.0) -> Recording:
@@ -249,9 +246,9 @@ class _Samples:
         )
         # Few readings can be stray.
         if np.ptp(np.quantile(locked.angle, (0.01, 0.99))) > _MOST_TWIST:
-            twist = math.degrees(np.ptp(locked.angle))
+            twist = np.ptp(locked.angle)
             raise ValueError(
-                f'the output turns by {twist:.3g}° under torque: it is not '
+                f'the output turns by {np.degrees(twist):.3g}° under torque: it is not '
                 'locked, or the unit is another, which --angle-unit gives'
             )
         return locked

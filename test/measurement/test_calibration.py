@@ -153,7 +153,7 @@ def test_recordings_that_tell_nothing_are_refused():
         fit([recorded(simulated, 0)], RATIO)
     angle = np.arange(-400.0, 400.0) / 512.0  # without rounding errors
     exact = encoders(4.0 * angle, angle)
-    with pytest.raises(RecordingError, match='angles are exactly those of the ratio'):
+    with pytest.raises(RecordingError, match='within 0′, as if it were computed'):
         fit([(recorded(simulated, 0)[0], exact)], Fraction(4))
     simulated = simulate(
         USUAL, gears(USUAL, np.random.default_rng(0)), np.zeros(500), np.random.default_rng(0)

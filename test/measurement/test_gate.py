@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from gear_recordings import Gear, creep, ramps, write_csv
 
+from gear_kinematics.measurement.answer import Limits, answer
 from gear_kinematics.measurement.calibration import fit
 from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.gate import gated
@@ -18,6 +19,7 @@ from gear_kinematics.measurement.ramp_gate import gated_ramps
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import RecordingError
 from gear_kinematics.measurement.tables import read_table
+from gear_kinematics.parameters import NodeParameters
 
 RATIO = Fraction(-19)
 
@@ -46,6 +48,22 @@ def gate(tmp_path):
 def test_nothing_is_left_out_of_a_clean_recording(clean, gate):
     before, after = gate(clean)
     assert after is before
+
+
+@pytest.mark.parametrize(
+    ('decimals', 'error', 'named'), [(15, 0.0, True), (6, 0.0, True), (6, 1e-5, False)]
+)
+def test_output_that_is_computed_from_the_rotor_is_named(clean, gate, decimals, error, named):
+    """The best gears and encoders deviate by some seconds of arc, 1e-5 rad."""
+    clean[:, 2] = np.round(clean[:, 1] / -19.0 + error * np.sin(clean[:, 1]), decimals)
+    _, found = gate(clean)
+    assert [fault.partition(' within ')[0] for fault in found.faults] == (
+        ['the output follows the rotor'] * named
+    )
+    report = measure(found, NodeParameters.load())
+    (check,) = Limits(lost_motion=1.0).judge(report)
+    assert answer(report).startswith('The output follows the rotor within') is named
+    assert check.holds is not named
 
 
 @pytest.mark.parametrize(

@@ -152,7 +152,7 @@ def test_times_that_go_back_end_the_recording_there(tmp_path, config):
     recording, both = read_encoders(write_csv(tmp_path / 'r.csv', **columns), config)
     assert len(both.measured) == 5500
     assert np.max(np.abs(both.at_measured(both.ideal(Fraction(-19))))) <= 0.1 + 1e-12
-    (fault,) = recording.faults
+    fault, _ = recording.faults  # and that the output is computed from the rotor
     assert fault == 'the time in time goes back after 5500 rows: the others are left out'
 
 
@@ -278,9 +278,9 @@ def test_a_clock_that_is_set_back_is_restored_and_named(tmp_path, config, step):
     rotor = Samples(late, -19.0 * ideal, received=stamps)
     write_recording(tmp_path / 'back', rotor, Samples(late, ideal, received=stamps))
     recording, both = read_encoders(tmp_path / 'back', config)
-    assert recording.faults == (
-        f'the clock was set back by {step} s at {stamps[2999]}: nothing is interpolated',
-    )
+    fault, _ = recording.faults  # and that the output is computed from the rotor
+    back = f'the clock was set back by {step} s at {stamps[2999]}'
+    assert fault == f'{back}: nothing is interpolated'
     assert recording.remarks == (
         '/rotor_state: 1 states out of order',
         '/output_encoder: 1 states out of order',
@@ -301,7 +301,7 @@ def test_a_stall_is_no_step_of_the_clock(tmp_path, config, stall):
     rotor = Samples(stamps, -19.0 * ideal, received=received)
     write_recording(tmp_path / 'bag', rotor, Samples(stamps, ideal, received=received))
     recording, both = read_encoders(tmp_path / 'bag', config)
-    assert recording.faults == ()
+    assert not any('clock' in fault for fault in recording.faults)
     assert np.ptp(both.error(Fraction(-19))) < 1e-6
 
 

@@ -23,7 +23,7 @@ from endpoints import (
     rotor_message,
     running,
 )
-from live import SECOND
+from live import PATIENT, SECOND
 from network import Cable, NoNetworkError, two_hosts
 from replaying import assert_right, valid_samples
 
@@ -134,7 +134,7 @@ def node(name, folder):
     arguments = ['--ros-args', '-r', f'__ns:=/{name}',
                  '-p', f'rotor_encoder:={LINES[name].encoder}',
                  '-p', f'max_rotor_speed:={MAX_ROTOR_SPEED}',
-                 '-p', 'home_max_speed:=10.0', '-p', 'input_timeout:=10.0']  # fmt: skip
+                 '-p', 'home_max_speed:=10.0', *PATIENT]  # fmt: skip
     with (
         log.open('w', encoding='utf-8') as stream,
         running_node(arguments, stdout=stream, stderr=stream) as process,

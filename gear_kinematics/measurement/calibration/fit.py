@@ -34,6 +34,7 @@ from gear_kinematics.measurement.calibration.model import (
     without_delays,
 )
 from gear_kinematics.measurement.calibration.terms import Recorded, Samples, thinned
+from gear_kinematics.measurement.gate import NO_ENCODER, computed
 from gear_kinematics.measurement.ratio import wrong_ratio
 from gear_kinematics.measurement.recording import Array, RecordingError
 from gear_kinematics.share import version
@@ -111,8 +112,8 @@ def fit(
         if wrong := wrong_ratio(encoders, ratio):
             raise RecordingError(f'{recording.name}: {wrong}')
     samples = [Samples(*recording, ratio) for recording in recordings]
-    if not any(np.ptp(s.error) > 0.0 for s in samples):
-        raise RecordingError('the output angles are exactly those of the ratio: nothing to do')
+    if (deviation := max(float(np.ptp(s.error)) for s in samples)) < NO_ENCODER:
+        raise RecordingError(computed(deviation))
     refused: dict[str, str] = {}
     orders = candidates.known_orders(samples, ratio, mechanism, refused)
 
