@@ -55,6 +55,8 @@ class VelocityField:
         self.factor = math.nan
         """The velocities in the messages as a multiple of the slope of the positions."""
         self.contradicts = False  # whether the velocities contradict the positions
+        self.decided: int | None = None
+        """ns, the stamp of the reading that decided first."""
         self._candidate = VelocityMeaning.UNDECIDED
         self._moved = False
         """Whether there was a velocity other than 0."""
@@ -150,6 +152,8 @@ class VelocityField:
                 if abs(factor - known) <= _ALIKE * abs(known):
                     found = name
         if found is self._candidate:
+            if self.decided is None:
+                self.decided = self._readings[-1][0]
             self.finding, self.factor = found, factor
             self.contradicts = found is not VelocityMeaning.RIGHT
             if not self.contradicts:

@@ -40,14 +40,15 @@ _AHEAD = 1000
 SAMPLES = [
     ('number', np.int64),
     ('turns_known', np.bool_),
+    ('velocity_open', np.bool_),
     ('effort_open', np.bool_),
     ('referenced', np.bool_),
     *((name, np.int64) for name in ('stamp', 'received', 'segment')),
     *((name, np.float64) for name in ('turns', 'angle', 'velocity', 'effort')),
 ]
 """Columns of the samples with which outputs are compared: the number in the order of reception;
-whether the turns are known, from an output if they can change unseen; whether an effort of 0 can
-be a torque or none, by what the node received before the recording; and those of
+whether the turns are known, from an output if they can change unseen; whether the velocity, or an
+effort of 0, can count or not, by what the node received before the recording; and those of
 `RotorSamples`."""
 
 
@@ -256,7 +257,7 @@ class OutputTopic:
         lacking = inputs.lack(times[given_up], stamps[given_up])
         self._unrecorded += int(np.count_nonzero(lacking))
         self.matcher.extra.add(stamps[given_up[~lacking]])
-        self._adopt_efforts(usable[found], index[found], window)
+        self._adopt_fields(usable[found], index[found], window)
         samples = window.take(index[found])  # faster than by an index
         self._changes.move(samples)
         fields = self._compare(usable[found], samples)
@@ -272,8 +273,8 @@ class OutputTopic:
     def _adopt_stamps(self, stamps: Array, usable: Array, window: Array) -> None:
         """Give samples without a stamp the stamp of their output, if it can be found."""
 
-    def _adopt_efforts(self, rows: Array, at: Array, window: Array) -> None:
-        """Decide by messages, (n,), whether open efforts of 0 of their samples are none."""
+    def _adopt_fields(self, rows: Array, at: Array, window: Array) -> None:
+        """Decide by messages, (n,), whether open fields of their samples count."""
 
     def answered(self, samples: Array) -> Array:
         """Whether each of the oldest samples of the window has its message, or needs none."""

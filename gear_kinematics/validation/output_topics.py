@@ -11,7 +11,7 @@ from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.diagnosis import AngleFit, FactorFit, diagnose
-from gear_kinematics.validation.fields import FieldSamples
+from gear_kinematics.validation.fields import FieldSamples, Occurrences
 from gear_kinematics.validation.matching import Expectation, OutputTopic, in_order, rotor_angle
 from gear_kinematics.validation.report import Finding
 from gear_kinematics.wire.batches import (
@@ -96,6 +96,7 @@ class OutputState(JointStateTopic):
         self.fit = AngleFit()
         self._factors = {'velocity': FactorFit(), 'effort': FactorFit()}
         self._adopted = -1  # number of the latest sample that was given a stamp
+        self._without_velocity = Occurrences()
 
     def _expected(self, samples: Array) -> Sequence[Bounds]:
         ratio = self._gear.gear_ratio
@@ -120,15 +121,27 @@ class OutputState(JointStateTopic):
         window['stamp'][waiting[found]] = stamps[rows[answers]]
         self._adopted = int(samples['number'][found].max(initial=self._adopted))
 
-    def _adopt_efforts(self, rows: Array, at: Array, window: Array) -> None:
+    def _adopt_fields(self, rows: Array, at: Array, window: Array) -> None:
+        values, present = self._states.values[rows], self._states.present[rows]
+        none = ~present | (self.shared & np.isnan(values))
+        without = window['velocity_open'][at] & none[:, 1] & ~np.isnan(window['velocity'][at])
+        self._without_velocity.add(window['stamp'][at[without]])
+        window['velocity'][at[without]] = np.nan
         still_open = window['effort_open'][at]
-        rows, at = rows[still_open], at[still_open]
-        recorded, there = self._states.values[rows, 2], self._states.present[rows, 2]
-        none = ~there | (self.shared & np.isnan(recorded))
-        window['effort'][at[recorded == 0.0]] = 0.0
-        window['effort'][at[none]] = np.nan
-        if 'acceleration' in (window.dtype.names or ()):  # without an effort there are no loads
-            window['acceleration'][at[none]] = np.nan
+        window['effort'][at[still_open & (values[:, 2] == 0.0)]] = 0.0
+        lacking = still_open & none[:, 2]
+        window['effort'][at[lacking]] = np.nan
+        if 'acceleration' in (window.dtype.names or ()):  # without either there are no loads
+            window['acceleration'][at[lacking | without]] = np.nan
+
+    def judge_velocities(self, *, contradict: bool) -> None:
+        """Count outputs without a velocity of the time before its meaning was found.
+
+        They are right if the velocities contradict the positions, which the node knew before.
+        """
+        if not contradict:
+            self.errors[1].absent.add_all(self._without_velocity)
+            self._wrong += self._without_velocity.count
 
     def _compare(self, rows: Array, samples: Array) -> Sequence[FieldSamples]:
         position, *others = super()._compare(rows, samples)

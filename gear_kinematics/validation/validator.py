@@ -1,6 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Compares the outputs of a node with recomputed ones, in one pass over a recording."""
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -138,6 +139,8 @@ class Validator:
         for _ in range(2):  # late messages wait for one more batch
             self.feed([()])
         self._drop(len(self._window))
+        contradict = self._state.input.velocity_field.contradicts
+        self.output.judge_velocities(contradict=contradict)
         for group, _ in self._groups:
             group.close(lost)
         if self._changes.homed:  # the correction does not take it into account
@@ -218,11 +221,13 @@ class Validator:
         self.samples = samples = self._state.samples(messages.data, messages.received)
         self._inputs.update(samples.received, samples.stamp, samples.rejected)
         self._health.update(samples.stamp, TURN * samples.turns + samples.angle)
-        columns = {name: getattr(samples, name) for name, _ in SAMPLES[3:]}
+        columns = {name: getattr(samples, name) for name, _ in SAMPLES[4:]}
         columns['number'] = first_number(samples.segment) + self._samples
         columns['number'] += np.arange(len(samples.stamp))
         unseen = bool(self._parameters.rotor_period) or self._parameters.absolute
         columns['turns_known'] = np.full(len(samples.stamp), not unseen)
+        decided = self._state.input.velocity_field.decided
+        columns['velocity_open'] = samples.stamp <= (math.inf if decided is None else decided)
         real = np.logical_or.accumulate(np.nan_to_num(samples.effort) != 0.0) | was_real
         columns['effort_open'] = ~real & field.zeros
         self._samples += len(samples.stamp)

@@ -230,6 +230,30 @@ def test_what_an_effort_of_0_means_can_be_known_from_before_the_recording(
     assert (report.verdict == Verdict.PASS) == passes
 
 
+def without_velocity(message) -> None:
+    message.velocity = np.zeros(0)
+
+
+def in_rpm(message) -> None:
+    message.velocity = message.velocity * 30.0 / math.pi
+
+
+@pytest.mark.parametrize(
+    ('rotor', 'outputs', 'passes'),
+    [
+        (in_rpm, without_velocity, True),  # the node saw a steady motion before
+        (in_rpm, in_rpm, False),
+        (lambda _: None, without_velocity, False),
+    ],
+)
+def test_that_velocities_contradict_can_be_known_from_before_the_recording(
+    config, rotor, outputs, passes
+):
+    recorded = read_bag(BAGS / 'constant_speed_3000rpm')
+    changed = change_all(change_all(recorded, ROTOR, rotor), OUTPUT, outputs)
+    assert (validate(changed, config).verdict == Verdict.PASS) is passes
+
+
 @pytest.mark.parametrize('value', [1.4e154, -1e200, 1.7976931348623157e308, 5e-324])
 @pytest.mark.parametrize('topic', [ROTOR, OUTPUT])
 @pytest.mark.parametrize('field', FIELDS)

@@ -161,8 +161,16 @@ def test_home_is_asked_called_and_undone_with_the_keyboard(connected):
         connected.keyboard.press('Enter')
     expect(question).to_be_hidden()
     assert answer.inner_text() == ''
-    for key in ('Enter', 'Tab', 'Enter'):
-        connected.keyboard.press(key)
+
+    def asked_and_set() -> str:
+        for key in ('Enter', 'Tab', 'Enter'):
+            connected.keyboard.press(key)
+        expect(answer).not_to_have_text('')
+        return answer.inner_text()
+
+    if asked_and_set().startswith('Nothing was done'):  # its parameters have just arrived
+        home.focus()
+        asked_and_set()
     expect(answer).to_have_text(
         re.compile(
             r'the shaft was at -?\d+\.\d° and is now 0\.0° \(rotor_zero -?\d+\.\d{3} rad, '
