@@ -42,6 +42,7 @@ _KINDS: Mapping[bytes, Callable[[Path, ReadLimits], Storage]] = {
     b'SQLite format 3\0': Sqlite,
     b'#ROSBAG V2.0': _ros1,
 }
+_TABLES = '; tables are read by calibrate, commission, loads and lost-motion'
 
 
 @dataclass(slots=True)
@@ -228,7 +229,9 @@ def _opened(file: Path, limits: ReadLimits, read: int = 0) -> Iterator[Storage]:
             start = _start(source, 16)
             kind = next((kind for magic, kind in _KINDS.items() if start.startswith(magic)), None)
             if not kind:
-                raise ValueError('not a bag of a known kind' if start else 'the file is empty')
+                tables = _TABLES if file.suffix.lower() in {'.csv', '.parquet', '.xlsx'} else ''
+                known = f'not a bag of a known kind{tables}'
+                raise ValueError(known if start else 'the file is empty')
             storage = stack.enter_context(closing(kind(content, limits)))
             yield storage
             if broken:

@@ -2,6 +2,7 @@
 """gearkin info as a user runs it."""
 
 import shutil
+from pathlib import Path
 
 import pytest
 from blocked_bags import BAGS, gearkin, refusal
@@ -50,6 +51,10 @@ def test_every_bag_is_a_line_even_if_others_are_unreadable(tmp_path, monkeypatch
     assert nowhere == 'gearkin: nowhere: no bag there'
     assert garbage == 'gearkin: garbage.mcap: not a bag of a known kind'
     assert f'gearkin: {refusal("info", "-q", ".")}' == garbage
+    Path('garbage.mcap').rename('ramps.csv')
+    assert refusal('info', 'ramps.csv').endswith(
+        'tables are read by calibrate, commission, loads and lost-motion'
+    )
 
 
 def test_every_topic_is_listed_on_demand(capsys):

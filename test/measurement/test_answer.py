@@ -115,6 +115,14 @@ def test_remarks_tell_what_a_single_loop_cannot(report_of):
     assert 'to separate them, repeat the ramps five times or more' in answer(report)
 
 
+@pytest.mark.parametrize(('zero', 'said'), [(2.0, 'The torque goes from -8 to 12 N·m'), (1.0, '')])
+def test_zero_of_a_torque_sensor_is_questioned_where_its_peaks_differ(report_of, zero, said):
+    torque = ramps(*[(10.0, 200)] * 3)
+    report = report_of(angle=creep(GEAR, torque), torque=torque + zero)
+    found = [text for text in remarks(report) if 'its sensor reads 0' in text]
+    assert [text.partition(':')[0] for text in found] == [said] * bool(said)
+
+
 def test_ramps_in_which_friction_holds_the_gear_tell_nothing(report_of):
     torque = ramps(*[(4.0, 200)] * 5, *[(40.0, 2000)] * 3)
     held = Gear(play=0.0, stiffness=300.0, friction=4.5)
