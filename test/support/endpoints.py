@@ -6,7 +6,7 @@ import multiprocessing
 import struct
 import time
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import contextmanager
 from multiprocessing.managers import BaseManager
 from threading import Event, Thread
 from typing import Any, NamedTuple
@@ -198,8 +198,12 @@ for _kind in (Driver, Listener):
 @contextmanager
 def running(kind: type[Endpoint], argument) -> Iterator[Any]:
     """Run an endpoint in a process of its own, where this thread is."""
-    with (
-        Process(ctx=multiprocessing.get_context('spawn')) as process,
-        closing(getattr(process, kind.__name__)(argument)) as endpoint,
-    ):
-        yield endpoint
+    with Process(ctx=multiprocessing.get_context('spawn')) as process:
+        endpoint = getattr(process, kind.__name__)(argument)
+        try:
+            yield endpoint
+        finally:
+            # It has not ended once, beside two busy processes; the end of the process ends it.
+            close = Thread(target=endpoint.close, daemon=True)
+            close.start()
+            close.join(DEADLINE)
