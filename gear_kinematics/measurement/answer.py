@@ -29,8 +29,8 @@ def answer(report: LostMotion) -> str:
     """Say for a person who must decide what the recording shows."""
     if report.wrong_ratio:
         return report.wrong_ratio
-    if report.computed:
-        return f'{report.computed[0].upper()}{report.computed[1:]}.'
+    if computed := report.recording.computed:
+        return f'{computed[0].upper()}{computed[1:]}.'
     if report.figures:
         return _of_ramps(report.figures)
     found = report.transmission
@@ -104,7 +104,8 @@ class Limits:
     def judge(self, report: LostMotion) -> list[LimitCheck]:
         """Judge a recording by each limit, at the end of the interval that speaks against it."""
         limits = {name.replace('_', ' '): limit for name, limit in asdict(self).items()}
-        unfit = dict.fromkeys(limits, report.computed) if report.computed else {}
+        computed = report.recording.computed
+        unfit = dict.fromkeys(limits, computed) if computed else {}
         if report.figures is not None and report.figures.held_by_friction:
             unfit.setdefault(LOST_MOTION, _HELD)
         return [

@@ -72,7 +72,8 @@ def gated(recording: Recording) -> Recording:
         error[rows] -= period * np.cumsum(np.round(steps / period))
     line = np.polynomial.Polynomial.fit(rotor[rows], error[rows], 1)
     if (rest := float(np.ptp(error[rows] - line(rotor[rows])))) < NO_ENCODER:
-        return replace(recording, faults=(*recording.faults, computed(rest)))
+        fault = computed(rest)
+        return replace(recording, computed=fault, faults=(*recording.faults, fault))
     ideal = slope * np.diff(rotor[rows])
     calm, moved = np.diff(usual(error[rows])), slope * np.diff(usual(rotor[rows]))
     fastest = float(np.quantile(np.abs(moved), 0.98))

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.figures import GearFigures, gear_figures
-from gear_kinematics.measurement.gate import NO_ENCODER, computed
 from gear_kinematics.measurement.loops import RampError, find_ramps
 from gear_kinematics.measurement.measured import HYSTERESIS, LOST_MOTION, Measured
 from gear_kinematics.measurement.ramp_gate import gated_ramps
@@ -33,13 +32,6 @@ class LostMotion:
     """Sentences about what was found."""
     wrong_ratio: str = ''
     """Sentence on what is wrong with the ratio; empty if nothing shows."""
-
-    @property
-    def computed(self) -> str:
-        """What shows that the output was computed from the rotor; empty if it was measured."""
-        motion = self.transmission
-        accuracy = motion and (motion.forward or motion.backward)
-        return computed(accuracy.value) if accuracy and accuracy.value < NO_ENCODER else ''
 
     @property
     def main_figures(self) -> tuple[Measured, ...]:

@@ -250,6 +250,8 @@ class Recording:
     """At which reading ended."""
     faults: tuple[str, ...] = ()
     """Clauses about what cannot be true, such as a slip, each with its moment."""
+    computed: str = ''
+    """One of them, if the output follows the rotor more closely than a gear's; else empty."""
     rotor_messages: TopicMessages | None = None
     """The first messages of the rotor, of a bag that is read as recorded."""
 

@@ -66,6 +66,19 @@ def test_output_that_is_computed_from_the_rotor_is_named(clean, gate, decimals, 
     assert check.holds is not named
 
 
+def test_a_gear_whose_only_error_is_its_play_is_not_taken_for_computed(gate):
+    time = np.arange(3000) * 0.01
+    ideal = 4.0 * np.sin(0.4 * time)
+    output, play = np.zeros(3000), math.radians(0.1)
+    for k, angle in enumerate(ideal):
+        output[k] = min(max(output[k - 1], angle - play / 2), angle + play / 2)
+    _, found = gate(np.column_stack([time, -19.0 * ideal, output]))
+    report = measure(found, NodeParameters.load())
+    assert 'computed' not in answer(report)
+    (check,) = Limits(lost_motion=play / 2).judge(report)
+    assert 'is beyond' in check.text
+
+
 @pytest.mark.parametrize(
     'wrong',
     [{(700, 2): 3.0}, {(700, 1): 0.0}, {(100, 2): 3.0, (300, 1): 0.0, (301, 1): 9e3, (900, 2): 9}],
