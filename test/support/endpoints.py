@@ -27,6 +27,7 @@ from gear_kinematics.ros.workarounds.shutdown import shut_down
 
 PERIOD = SECOND // 100  # ns
 STEP = 0.3  # rad within the period
+BEGIN = 0.1  # rad: not the zero of a node that nobody has homed, so that homing changes it
 OUTPUTS = {'output_state': JointState, 'body_poses': PoseArray}
 
 
@@ -49,7 +50,7 @@ class Report(NamedTuple):
 
 def reading(number: int, encoder: str) -> float:
     """Return the position in the driver's message of this number. The rotor turns steadily."""
-    angle = STEP * number
+    angle = BEGIN + STEP * number
     return math.remainder(angle, math.tau) if encoder == 'single_turn' else angle
 
 
@@ -162,14 +163,18 @@ class Listener(Endpoint):
     def home(self) -> float:
         """Home the node and give its new zero, rad."""
         before = self._zero()
+        until = time.monotonic() + DEADLINE
         while (zero := self._zero()) == before:  # also if the request or its answer is lost
+            assert time.monotonic() < until, f'the zero is still {before}'
             answer = self._answer(self._homing, Trigger.Request())
             assert not answer or answer.success, answer.message
         return zero
 
     def _zero(self) -> float:
         request, answer = GetParameters.Request(names=['rotor_zero']), None
+        until = time.monotonic() + DEADLINE
         while not answer:
+            assert time.monotonic() < until, 'the node does not tell its zero'
             answer = self._answer(self._asking, request)
         return answer.values[0].double_value
 
