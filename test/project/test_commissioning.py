@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from blocked_bags import wait_until
 from live import Peer, stamp_of
 from played_joint import moments
 from simulated_encoders import Drive
@@ -91,8 +92,8 @@ def driven(joint: Joint, folder: Path, lost: float = 0.0):
 
 def gearkin(folder: Path, *arguments: str) -> str:
     """Run a command until it has heard enough, and press Enter; returns what it shows."""
-    code = 1
-    while code:  # a busy machine has lost too much to tell the ratio
+
+    def shown() -> str:
         with Person(folder, *arguments) as person:
             person.wait_for('the output turned')
             # 6 s of messages, unless it ends by itself before, when everything is known.
@@ -100,7 +101,9 @@ def gearkin(folder: Path, *arguments: str) -> str:
             person.type('\n')
             code = person.end()
             assert not code or 'undetermined' in person.shown()
-    return ' '.join(person.shown().split())
+        return '' if code else ' '.join(person.shown().split())
+
+    return wait_until(shown, 'the ratio, of which a busy machine can lose too much')
 
 
 def test_an_unknown_joint_is_commissioned(joint, tmp_path):
@@ -135,14 +138,16 @@ def test_an_unknown_joint_is_commissioned(joint, tmp_path):
                 )
                 return values['not referenced']
 
-            # On a busy machine messages are lost, and the turns can become unknown at any time.
-            before = after = ''
-            while not before or before != after:
+            def referenced_outputs() -> list:
                 before = unreferenced()
-                if unreferenced() == before:  # so that no earlier output is still on its way
-                    received.clear()
-                    peer.wait_until(lambda: len(received) >= 500, 'outputs')
-                    compared = [*received]
-                    after = unreferenced()
+                if unreferenced() != before:  # an earlier output may still be on its way
+                    return []
+                received.clear()
+                peer.wait_until(lambda: len(received) >= 500, 'outputs')
+                compared = [*received]
+                return compared if unreferenced() == before else []
+
+            # On a busy machine messages are lost, and the turns can become unknown at any time.
+            compared = peer.wait_until(referenced_outputs, 'outputs with a reference')
     errors = [math.remainder(m.position[0] - truth[stamp_of(m)], math.tau) for m in compared]
     assert max(map(abs, errors)) <= joint.tolerance

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from blocked_bags import finished, gearkin_here, wait_until
+from blocked_bags import DEADLINE, finished, gearkin_here, wait_until
 from live import Participant
 from rclpy.qos import QoSProfile
 from terminals import Person
@@ -85,7 +85,7 @@ def nodes(tmp_path_factory):
         yield log
     finally:
         os.killpg(process.pid, signal.SIGINT)
-        process.wait(30.0)
+        process.wait(DEADLINE)
 
         def ended() -> bool:
             with contextlib.suppress(ProcessLookupError):
@@ -170,7 +170,7 @@ def test_every_command_with_pip_alone_does_what_the_page_says(folder):
                 recorder.wait_for('recording (?=.*/rotor_state).*/output_state')
             elif command in TOLD:
                 said = run(folder, command)
-                while '--live' in words and not (folder / words[-1]).exists():
+                if '--live' in words and not (folder / words[-1]).exists():
                     said = run(folder, command)  # a busy machine lost too much
                 assert re.search(TOLD[command], said), said
                 if words[0] == 'replay':
@@ -201,12 +201,8 @@ def home(folder: Path) -> None:
     assert '`h` and `y` in `gearkin watch --text`' in PAGE
     with Person(folder, 'watch', '--text') as watching:
         watching.wait_for('connected')
-        while True:
-            watching.type('h')
-            watching.wait_for(r'Set it to 0\.0°')
-            watching.type('y')
-            if 'is now' in watching.wait_for(r'is now 0\.0°|the shaft turns'):
-                break
+        watching.wait_for(r'Set it to 0\.0°', keys='h')
+        watching.wait_for(r'is now 0\.0°', keys='hy')
         watching.type('q')
         assert watching.end() == 0
 

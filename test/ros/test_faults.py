@@ -1,13 +1,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Faults beside a running node, of drivers, listeners and clocks: no output is lost or wrong."""
 
-import math
 import multiprocessing
-import operator
 import os
 import re
 import signal
-import time
 from contextlib import ExitStack, closing, contextmanager, suppress
 from itertools import count
 from pathlib import Path
@@ -16,6 +13,7 @@ import pytest
 from driver import MILLISECOND, drive, rotor_position
 from expected_outputs import is_right
 from live import (
+    DEADLINE,
     PATIENT,
     SECOND,
     START,
@@ -39,7 +37,6 @@ from gear_kinematics.ros.live import running_node
 pytestmark = pytest.mark.live
 
 WARN, ERROR = 1, 2
-PATIENCE = 20.0  # s: far beyond anything but a loss
 names = (f'/faults_{os.getpid()}_{number}' for number in count())
 
 # Processes that start quickly, without the threads of this one.
@@ -65,42 +62,6 @@ def assert_answered(received, sent, *, joined_late=False) -> None:
 
 def message_at(stamp):
     return rotor_state(stamp, position=[rotor_position(stamp)])
-
-
-class Drive:
-    """Sends rotor states from a peer, within its waits."""
-
-    def __init__(self, peer, *, rate=1000.0, ahead=500, publish=None) -> None:
-        """Start at a rate in Hz; at most `ahead` messages have no output yet."""
-        self.sent: list[int] = []
-        self._peer = peer
-        self._publish = publish or peer.send
-        self._ahead = ahead
-        self._answered = min(map(len, self._outputs()))
-        self.timer = peer.node.create_timer(1.0 / rate, self._send)
-
-    def finish(self) -> list[int]:
-        """Stop, wait for the last outputs, and return the stamps of all messages sent."""
-        self.timer.cancel()
-        until = time.monotonic() + PATIENCE
-        self._peer.wait_until(
-            lambda: self._is_answered() or time.monotonic() > until, 'the last outputs'
-        )
-        return self.sent
-
-    def _send(self) -> None:
-        answered = min(map(len, self._outputs())) - self._answered
-        if len(self.sent) - answered < self._ahead:
-            self.sent.append(self._peer.stamp())
-            self._publish(message_at(self.sent[-1]))
-
-    def _is_answered(self) -> bool:
-        return all(
-            outputs and stamp_of(outputs[-1]) == self.sent[-1] for outputs in self._outputs()
-        )
-
-    def _outputs(self):
-        return [self._peer.received[name] for name in STATES]
 
 
 def rejected_in(status) -> str | None:
@@ -208,28 +169,31 @@ def test_node_killed_and_restarted_while_the_driver_runs(tmp_path):
             peer.connect()
             # With a full history, what is missing is made up for at once and not every 3 s.
             driver = another_driver(peer, depth=100)
-            drive = Drive(peer, rate=100.0, ahead=math.inf, publish=driver.publish)
+            sent = []
+
+            def send():
+                sent.append(peer.stamp())
+                driver.publish(message_at(sent[-1]))
+
+            timer = peer.node.create_timer(0.01, send)
             peer.wait_until(lambda: heard(peer) > 100, 'outputs')
             reference()
-            matches = peer.matches()
             with swept(process.pid):
                 process.kill()
                 process.wait()
+        last = sent[-1]
         # Another participant takes the ports of the killed node: who gets them is found late.
         with closing(Listener(next(names))), running_node(command, env=environment) as process:
-            peer.wait_until(
-                lambda: all(map(operator.gt, peer.matches(), matches)), 'the node to be found'
-            )
-            last = drive.sent[-1]
             peer.wait_until(lambda: newest(peer) > last, 'outputs')
             level, message, values = peer.status()
-            sent = drive.finish()
+            timer.cancel()
+            peer.wait_until(lambda: newest(peer) == sent[-1], 'the last outputs')
             received = {
                 name: [message for message in peer.received[name] if stamp_of(message) > last]
                 for name in STATES
             }
             assert_answered(received, sent, joined_late=True)
-            drive.timer.reset()
+            timer.reset()
             reference()
     assert process.returncode == 0
     assert (level, values['referenced']) == (ERROR, 'false')
@@ -247,8 +211,10 @@ def test_clock_that_steps(tmp_path):
             def publish(now=now):
                 clock.publish(now)
 
-            while stamp_of(peer.report(meanwhile=publish)[0]) != stamp:
-                pass
+            peer.wait_until(
+                lambda now=stamp, tick=publish: stamp_of(peer.report(meanwhile=tick)[0]) == now,
+                'the time',
+            )
             peer.send(*[rotor_state(0, position=[rotor_position(stamp)])] * 20)
             if seconds == 3999.5:  # too little for a new beginning
                 peer.status(lambda status: rejected_in(status) == '20', '20 messages out of order')
@@ -283,16 +249,15 @@ def test_what_was_received_before_the_signal_is_answered(tmp_path):
         peer.wait_until(lambda: newest(peer) == sent[-1], 'answers')
         for _ in range(2):
             send_burst()
-            assert driver.wait_for_all_acked(Duration(seconds=10))
+            assert driver.wait_for_all_acked(Duration(seconds=DEADLINE))
         received = len(sent)
         live.process.send_signal(signal.SIGTERM)
         while live.process.poll() is None and len(sent) < 1500:
             sent.append(peer.stamp())
             peer.send(message_at(sent[-1]))
-        assert live.process.wait(PATIENCE) == 0
+        assert live.process.wait(DEADLINE) == 0
         peer.alive = lambda: True
-        until = time.monotonic() + PATIENCE
-        peer.wait_until(lambda: heard(peer) >= received or time.monotonic() > until, 'the last')
+        peer.wait_until(lambda: heard(peer) >= received, 'the last')
         # Whatever else the node has sent is here already.
         before, total = -1, 0
         while total > before:

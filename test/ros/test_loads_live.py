@@ -24,8 +24,12 @@ def test_every_effort_is_answered_with_loads_and_the_margin_is_reported(tmp_path
         peer.wait_until(joints.get_publisher_count, 'joint_loads')
         torques, wrenches = peer.received['branch_loads'], peer.received['joint_loads']
         probes = itertools.count(MS, MS)
-        while not (torques and wrenches):  # the node discovers the listeners in its own time
+
+        def loads():
             peer.answer(rotor_state(next(probes), position=[0.0], effort=[0.0]))
+            return torques and wrenches
+
+        peer.wait_until(loads, 'loads')  # the node discovers the listeners in its own time
         stamps = [peer.stamp() for _ in range(50)]
         # i τ2 = 4 N·m is beyond the 1.875 N·m at which branch B leaves mesh.
         peer.send(*(rotor_state(s, position=[0.1], effort=[-4 / 19]) for s in stamps[:-1]))

@@ -12,6 +12,7 @@ from types import SimpleNamespace
 
 import pytest
 import yaml
+from blocked_bags import wait_until
 from calibrations import AMPLITUDE, single_order
 from diagnostic_msgs.msg import DiagnosticArray
 from expected_outputs import Settings, all_right
@@ -325,8 +326,7 @@ def test_inputs_that_overflow_the_queue_of_a_blocked_node_are_lost(make, context
         node._rotor_driver.count_losses()
         return node._actuators[''].state.input.received, node._connections.rotor.lost
 
-    while not driver.get_subscription_count():
-        executor.spin_once(timeout_sec=0.1)
+    wait_until(driver.get_subscription_count, 'the subscription')
     send(3)
     assert receive(3) == (3, 0)
     send(DEPTH + 500)  # while nothing is received

@@ -185,7 +185,8 @@ def test_diagnostics_are_published_once_a_second(shared):
 
     def steady():
         stamps.append(stamp_of(peer.report()[0]))
-        return stamps[-1] - stamps[0] == pytest.approx(2 * SECOND, rel=0.25)
+        third = len(stamps) == 3  # the second can have been lost
+        return third and stamps[-1] - stamps[0] == pytest.approx(2 * SECOND, rel=0.25)
 
     peer.wait_until(steady, 'three reports in two seconds')
     assert stamps[0] < stamps[1] < stamps[2]
@@ -326,7 +327,7 @@ def test_unusable_arguments_end_the_start_with_2_and_one_line(tmp_path, argument
         (tmp_path / name).write_text(text)
     done = subprocess.run(
         [sys.executable, '-m', 'gear_kinematics.ros', '--ros-args', *arguments],
-        check=False, capture_output=True, text=True, timeout=30.0, cwd=tmp_path,
+        check=False, capture_output=True, text=True, timeout=DEADLINE, cwd=tmp_path,
         env={**os.environ, 'ROS_LOG_DIR': str(tmp_path)},
     )  # fmt: skip
     assert (done.returncode, done.stdout) == (2, ''), done.stderr
@@ -341,7 +342,7 @@ def test_node_imports_nothing_heavy():
     modules = 'gear_kinematics.ros.node, gear_kinematics.ros.process'
     code = f'import sys, {modules}; print(*sorted(sys.modules))'
     done = subprocess.run(
-        [sys.executable, '-c', code], check=True, capture_output=True, text=True, timeout=30.0
+        [sys.executable, '-c', code], check=True, capture_output=True, text=True, timeout=DEADLINE
     )
     imported = {name.partition('.')[0] for name in done.stdout.split()}
     assert {'gear_kinematics', 'rclpy'} <= imported

@@ -50,11 +50,14 @@ def test_error_is_published_with_the_encoders_stamp_and_judged(tmp_path):
             driver.publish(rotor_state(stamp, ['shaft'], [output_angle]))
             peer.send(rotor_state(stamp, position=[rotor_angle]))
 
-        # The node discovers the listener in its own time.
         probes = itertools.count(MS, MS)
-        while not received:
+
+        def compared():
             send(next(probes), 0.0, 0.0)
             peer.outputs(1)
+            return received
+
+        peer.wait_until(compared, 'an error')  # the node discovers the listener in its own time
         errors = {}
         for k in range(COUNT):  # swing once, with play
             phase = k * math.tau / COUNT

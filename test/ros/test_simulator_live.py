@@ -13,7 +13,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from live import Participant, rotor_state, stamp_of
+from live import DEADLINE, Participant, rotor_state, stamp_of
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
@@ -114,7 +114,7 @@ def bench(tmp_path_factory):
         bench.connect()
         yield bench
         process.send_signal(signal.SIGINT)
-        assert process.wait(20.0) == 0
+        assert process.wait(DEADLINE) == 0
         assert 'Traceback' not in bench.text()
     finally:
         process.kill()

@@ -214,11 +214,6 @@ class Peer(Listener):
         for name in STATES:
             self.received[name].clear()
 
-    def matches(self) -> list[int]:
-        """Count the ends that the driver and the listeners to STATES are matched with."""
-        listeners = (subscription.get_publisher_count() for subscription in self._subscriptions)
-        return [self._driver.get_subscription_count(), *listeners]
-
     def _heard(self, stamp: int) -> bool:
         return all(
             any(stamp_of(message) == stamp for message in self.received[name]) for name in STATES

@@ -36,6 +36,7 @@ def main() -> None:
     encoder = node.create_publisher(JointState, 'output_encoder', qos)
     start, first = time.monotonic(), time.time_ns()
     number = sent = -1
+    print('drives', flush=True)
     while True:
         # On a busy machine it leaves messages out: late ones would look like a clock set back.
         number = max(number + 1, int(RATE * (time.monotonic() - start)))

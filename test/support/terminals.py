@@ -9,6 +9,7 @@ import subprocess
 import sys
 import termios
 import threading
+import time
 from contextlib import suppress
 from pathlib import Path
 from typing import Self
@@ -31,7 +32,7 @@ class Terminal:
         """Open it."""
         self._own, self.other = pty.openpty()
         self._shown = b''
-        self._thread = threading.Thread(target=self._read)
+        self._thread = threading.Thread(target=self._read, daemon=True)
         self._thread.start()
         return self
 
@@ -51,7 +52,8 @@ class Terminal:
         """Wait until nobody writes any more, and give what was shown."""
         with suppress(OSError):
             os.close(self.other)
-        self._thread.join()
+        self._thread.join(DEADLINE)
+        assert not self._thread.is_alive(), f'somebody still writes: {self.shown()}'
         with suppress(OSError):
             os.close(self._own)
         return self._shown.decode()
@@ -79,13 +81,24 @@ class Person(Terminal):
         if kind:
             self._process.kill()
             print(self.shown())  # which pytest tells of a test that fails
-        self._process.wait()
+        try:
+            self._process.wait(DEADLINE)
+        finally:
+            self._process.kill()
         super().__exit__()
 
-    def wait_for(self, pattern: str) -> str:
-        """Wait until something new is shown, and give what matches."""
+    def wait_for(self, pattern: str, keys: str = '') -> str:
+        """Wait until something new is shown, and give what matches.
+
+        Keys are pressed until then, every few seconds: what they ask for can be refused.
+        """
+        due = time.monotonic()
 
         def found() -> re.Match | None:
+            nonlocal due
+            if keys and time.monotonic() >= due:
+                self.type(keys)
+                due += 3.0
             plain = re.sub(r'\x1b\[[\d;?]*[A-Za-z]', '', self.shown())
             return re.compile(pattern).search(plain, self._seen)
 

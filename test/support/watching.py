@@ -12,7 +12,7 @@ from concurrent.futures import Future
 from pathlib import Path
 from typing import NamedTuple
 
-from live import Participant
+from live import PATIENT, Participant
 from rclpy.parameter_client import AsyncParameterClient
 
 from gear_kinematics.kinematics import Branch, Mechanism
@@ -62,7 +62,10 @@ def gearkin(folder: Path, *arguments: str):
     finally:
         if process.poll() is None:
             process.send_signal(signal.SIGINT)
-        process.wait()
+        try:
+            process.wait(DEADLINE)
+        finally:
+            process.kill()
 
 
 @contextlib.contextmanager
@@ -70,7 +73,7 @@ def node(folder: Path, name: str = NODE):
     """Run the node for the driver, under a full name."""
     arguments = ['--ros-args', '-r', f'__ns:={name.rpartition("/")[0]}', '-p', 'rotor_joint:=m1']
     arguments += ['-r', f'rotor_state:={MOTOR}', '-r', f'output_encoder:={ENCODER}']
-    arguments += ['-p', 'transmission_error_window:=2.0', '-p', 'home_max_speed:=10.0']
+    arguments += ['-p', 'transmission_error_window:=2.0', '-p', 'home_max_speed:=10.0', *PATIENT]
     with (
         (folder / 'node.log').open('a', encoding='utf-8') as stream,
         running_node(arguments, stdout=stream, stderr=stream) as process,
@@ -82,12 +85,13 @@ def node(folder: Path, name: str = NODE):
 def driving():
     """Run the driver."""
     program = ROOT / 'test/support/steady_driver.py'
-    process = subprocess.Popen([sys.executable, program, NAMESPACE])
-    try:
-        yield
-    finally:
-        process.kill()
-        process.wait()
+    command = [sys.executable, program, NAMESPACE]
+    with subprocess.Popen(command, stdout=subprocess.PIPE) as process:
+        try:
+            assert process.stdout.readline() == b'drives\n'
+            yield
+        finally:
+            process.kill()
 
 
 def parameters(*names: str) -> list:

@@ -11,6 +11,7 @@ from chromium import chromium
 from live import Listener
 from steady_driver import RATIO
 from watching import (
+    DEADLINE,
     MOTOR,
     NAMESPACE,
     NODE,
@@ -43,7 +44,7 @@ def folder(tmp_path_factory):
 def browser():
     sync_api = pytest.importorskip('playwright.sync_api', reason='no playwright is installed')
     pytest.importorskip('tornado', reason='no tornado is installed')
-    sync_api.expect.set_options(timeout=30_000.0)  # a machine can be busy
+    sync_api.expect.set_options(timeout=60_000.0)  # a machine can be busy
     with chromium() as browser:
         yield browser
 
@@ -54,6 +55,7 @@ def page(browser, folder):
     with gearkin(folder, 'watch', '--node', NODE) as program:
         address = program.wait_for(r'Open (http://127\.0\.0\.1:\d+/[\w-]+/)')[1]
         page = browser.new_page(viewport={'width': 1280, 'height': 900}, color_scheme='light')
+        page.set_default_timeout(60_000.0)
         page.seen = []
         page.on('console', lambda message: page.seen.append(message.text))
         page.on('pageerror', lambda error: page.seen.append(str(error)))
@@ -275,7 +277,7 @@ def test_names_are_text_on_the_page(connected, browser):
     finally:
         page.close()
         ended.set()
-        thread.join()
+        thread.join(DEADLINE)
 
 
 def test_page_connects_again_after_the_node_was_restarted(connected, folder):

@@ -82,13 +82,10 @@ def test_key_shows_the_next_node_and_a_mistyped_one_is_corrected(tmp_path):
         node(tmp_path, NODE),
         Person(tmp_path, 'watch', '--text', '--node', f'{OTHER}s') as terminal,
     ):
-        terminal.wait_for('connecting')
         terminal.wait_for(r'did\s+you\s+mean')
         terminal.wait_for('n next node')
-        terminal.type('n')
-        terminal.wait_for(f'{NODE} +connected')
-        terminal.type('n')
-        terminal.wait_for(f'{OTHER} +connected')
+        for name in (NODE, OTHER):
+            terminal.wait_for(f'{name} +connected', keys='n')
         terminal.type('q')
         assert terminal.end() == 0
 
