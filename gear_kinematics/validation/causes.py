@@ -20,7 +20,7 @@ class FindingCause(Enum):
     EXTRA = '{messages} too many' + _FIRST
     OUT_OF_ORDER = '{messages} out of order' + _FIRST
     MALFORMED = 'malformed: {messages}, the first received at {received}'
-    NO_JOINT = 'no joint {name!r}: {messages}' + _FIRST
+    NO_JOINT = 'no joint {expected!r} (output_joint?), but {name}: {messages}' + _FIRST
     ANOTHER_FRAME = 'frame {name!r}, not {expected!r}: {messages}' + _FIRST
     BEYOND_TOLERANCE = (
         'error {error} {unit}{where} exceeds the tolerance{quantity}, {tolerance} {unit}'

@@ -219,6 +219,8 @@ class OutputTopic:
         self.missing = Missing()
         self._gear, self._tolerances, self._solver, self._changes = expectation
         self._wrong = 0
+        self._wrong_without_velocity = 0  # besides, if velocities were expected
+        self._without_velocity: Array | bool = False  # messages of the latest batch, (n,)
         self._unrecorded = 0  # messages whose input was not recorded
         self._malformed = Occurrences()  # by times of reception, as they have no stamp
         self._faults: defaultdict[tuple[FindingCause, str], Occurrences] = defaultdict(Occurrences)
@@ -268,6 +270,7 @@ class OutputTopic:
             wrong |= np.abs(field.error) > errors.tolerance
             wrong[field.one_sided] = True
         self._wrong += int(np.count_nonzero(wrong))
+        self._wrong_without_velocity += int(np.count_nonzero(self._without_velocity & ~wrong))
         self.series.update(samples['stamp'], angle, *fields)
 
     def _adopt_stamps(self, stamps: Array, usable: Array, window: Array) -> None:

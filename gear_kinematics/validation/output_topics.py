@@ -21,6 +21,8 @@ from gear_kinematics.wire.batches import (
     decode_pose_arrays,
 )
 from gear_kinematics.wire.cdr import joint_state_layout, pose_array_layout
+from gear_kinematics.wire.joint_reader import joints_of
+from gear_kinematics.wire.nearest import listed
 
 Array = NDArray[Any]
 Bounds = tuple[Array, Array]
@@ -41,15 +43,18 @@ class JointStateTopic(OutputTopic):
     def __init__(self, name: str, joint: str, expectation: Expectation) -> None:
         super().__init__(name, joint, expectation, self.units)
         self.joints = (joint.encode(),)
+        self._there = ''  # the joints of the first message without it
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
-        self._states = decode_joint_states(messages, self.label)
+        self._messages, self._states = messages, decode_joint_states(messages, self.label)
         return self._states.stamp, self._states.malformed
 
     def _compare(self, rows: Array, samples: Array) -> Sequence[FieldSamples]:
         states = self._states
-        without = samples['stamp'][~states.joint_found[rows]]
-        self._faults[FindingCause.NO_JOINT, self.label].add(without)
+        without = ~states.joint_found[rows]
+        if without.any():
+            self._there = self._there or listed(joints_of(self._messages[rows[without][0]]))
+            self._faults[FindingCause.NO_JOINT, self._there].add(samples['stamp'][without])
         recorded = states.values[rows, : len(self.units)]
         least, most = np.stack(self._expected(samples), axis=-1)
         # Any value between them is as expected.
@@ -96,7 +101,7 @@ class OutputState(JointStateTopic):
         self.fit = AngleFit()
         self._factors = {'velocity': FactorFit(), 'effort': FactorFit()}
         self._adopted = -1  # number of the latest sample that was given a stamp
-        self._without_velocity = Occurrences()
+        self._absent_velocities = Occurrences()
 
     def _expected(self, samples: Array) -> Sequence[Bounds]:
         ratio = self._gear.gear_ratio
@@ -125,7 +130,8 @@ class OutputState(JointStateTopic):
         values, present = self._states.values[rows], self._states.present[rows]
         none = ~present | (self.shared & np.isnan(values))
         without = window['velocity_open'][at] & none[:, 1] & ~np.isnan(window['velocity'][at])
-        self._without_velocity.add(window['stamp'][at[without]])
+        self._without_velocity = without
+        self._absent_velocities.add(window['stamp'][at[without]])
         window['velocity'][at[without]] = np.nan
         still_open = window['effort_open'][at]
         window['effort'][at[still_open & (values[:, 2] == 0.0)]] = 0.0
@@ -140,8 +146,8 @@ class OutputState(JointStateTopic):
         They are right if the velocities contradict the positions, which the node knew before.
         """
         if not contradict:
-            self.errors[1].absent.add_all(self._without_velocity)
-            self._wrong += self._without_velocity.count
+            self.errors[1].absent.add_all(self._absent_velocities)
+            self._wrong += self._wrong_without_velocity
 
     def _compare(self, rows: Array, samples: Array) -> Sequence[FieldSamples]:
         position, *others = super()._compare(rows, samples)

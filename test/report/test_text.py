@@ -57,7 +57,10 @@ def test_every_fault_is_a_sentence_that_names_and_locates_it():
     cause, note = samples.FAILING.findings
     assert [finding.text for finding in findings(samples.FAILING)] == [
         sentence(cause),
-        f"/output_state: no joint 'shaft': 3 messages, the first at stamp {samples.START}",
+        (
+            "/output_state: no joint 'shaft' (output_joint?), but wheel: 3 messages, the first at "
+            f'stamp {samples.START}'
+        ),
         (
             '/output_state position: error 0.002 rad at rotor angle 785.398163 rad exceeds the '
             'tolerance of the angle, 1e-9 rad, at stamp 1700000002623456789'

@@ -123,7 +123,12 @@ FAILING = replace(
             first_missing=START + 1_000_000_000,
             first_extra=START + 1_000_000_001,
             faults=(
-                Finding(FindingCause.NO_JOINT, stamp=START, count=3, values={'name': 'shaft'}),
+                Finding(
+                    FindingCause.NO_JOINT,
+                    stamp=START,
+                    count=3,
+                    values={'expected': 'shaft', 'name': 'wheel'},
+                ),
             ),
             fields=(
                 replace(POSITION, max_error=2e-3, rms_error=7.1e-4),

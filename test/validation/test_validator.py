@@ -359,7 +359,10 @@ def test_stamps_that_lost_their_nanoseconds_are_named_as_the_cause(recorded, con
         (
             OUTPUT,
             lambda message: setattr(message, 'name', ['shaft']),
-            "no joint 'output_shaft': 1 message, the first at {time:+.3f} s",
+            (
+                "no joint 'output_shaft' (output_joint?), but shaft: 1 message, the first at "
+                '{time:+.3f} s'
+            ),
         ),
         (
             POSES,
@@ -446,7 +449,8 @@ def test_a_prefix_is_that_of_the_parameters_or_the_one_that_all_outputs_have(rec
     assert texts(report) == ["frame_prefix 'left_' is taken from the outputs"]
     (output, poses) = validate(with_frames, config).topics
     assert (len(output.faults), poses.passed) == (1, True)
-    assert "no joint 'left_output_shaft'" in sentence(output.faults[0])
+    assert "no joint 'left_output_shaft' (output_joint?), but " in sentence(output.faults[0])
+    assert output.wrong == output.compared > 0
     for messages, prefix in ((with_both, 'right_'), (recorded, 'left_')):
         report = validate(messages, replace(config, frame_prefix=prefix))
         assert report.verdict == Verdict.FAIL
