@@ -3,11 +3,13 @@
 
 import sys
 from collections.abc import Sequence
+from itertools import groupby
+from operator import attrgetter
 from typing import Literal
 
 from gear_kinematics.measurement.commissioning.analysis import Channel
 from gear_kinematics.report.document import printable
-from gear_kinematics.wire.nearest import listed
+from gear_kinematics.wire.nearest import listed, nearest
 from gear_kinematics.wire.topics import OUTPUT_ENCODER, ROTOR_STATE, TOPICS, base_name
 
 
@@ -41,13 +43,18 @@ def choose_joint(
     found = _candidates(joints, given, {'rotor': ROTOR_STATE, 'output': OUTPUT_ENCODER}[role])
     if len(found) == 1:
         return found[0]
-    names = [f'{printable(joint)} on {topic}' for topic, joint in found or joints]
     if not (found and can_ask()):
+        names = [joint.joint for joint in joints]
+        question = f'which joint is the {role}?'
+        if given.joint and given.joint not in names:
+            question = f'no joint {given.joint!r}{nearest(given.joint, names) or "."}'
+        there = groupby(found or joints, key=attrgetter('topic'))
+        remedy = '; '.join(f'{listed([j.joint for j in on])} on {topic}' for topic, on in there)
         option = {'rotor': '--joint', 'output': '--encoder-joint'}[role]
-        remedy = f'Repeat with {option}, and its topic if needed: {listed(names)}'
-        raise ValueError(f'which joint is the {role}? {remedy if names else "There is none."}')
-    for number, name in enumerate(names, 1):
-        print(f'{number:3}  {name}')
+        remedy = f'Repeat with {option}, and its topic if needed: {printable(remedy)}'
+        raise ValueError(f'{question} {remedy if names else "There is none."}')
+    for number, (topic, joint) in enumerate(found, 1):
+        print(f'{number:3}  {printable(joint)} on {topic}')
     answer = ask(f'Number of the joint of the {role}: ')
     if not (answer.isdecimal() and 1 <= int(answer) <= len(found)):
         raise ValueError(f'{answer!r} is not a number from 1 to {len(found)}')

@@ -7,6 +7,7 @@ from pathlib import Path
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Console, warn_of_shared_memory
 from gear_kinematics.parameters import NODE
+from gear_kinematics.report.document import counted
 from gear_kinematics.wire.nearest import listed
 
 
@@ -49,10 +50,11 @@ def run(options: argparse.Namespace) -> ExitCode:
                 if missing
                 else 'nothing was recorded: no gear_state_publisher runs with this ROS_DOMAIN_ID'
             )
-    print(f'{options.out}: {sum(polled.count for polled in heard.values())} messages')
+    print(f'{options.out}: {counted(sum(p.count for p in heard.values()), "message")}')
     for topic, polled in sorted(heard.items()):
+        rate = f', {polled.mean_rate:.0f} Hz' * (polled.count > 1)
         lost = f', {polled.lost} lost on the way' * bool(polled.lost)
-        print(f'    {topic}: {polled.count} messages, {polled.mean_rate:.0f} Hz{lost}')
+        print(f'    {topic}: {counted(polled.count, "message")}{rate}{lost}')
     if any(polled.lost for polled in heard.values()):
         print('the computer is too busy to record every message')
     if missing:

@@ -35,7 +35,7 @@ from gear_kinematics.report.document import (
 
 _TORQUES = 300
 """Points of half a loop in a plot."""
-_WITHIN = 'Record each state several times, and compare with --group: recordings scatter more'
+_WITHIN = 'Record each state several times, and compare with --group: recordings differ by more'
 
 
 def compared(
@@ -55,7 +55,7 @@ def compared(
     sentence = _changed(changes, named)
     sentence += '' if several else _play(reports, named[1])
     sentence += '' if repeated else '; judged by the scatter within single recordings'
-    remarks = [f'{sentence}.', *([] if repeated else [f'{_WITHIN}.'])]
+    remarks = [] if repeated else [f'{_WITHIN}.']
     if unlike:
         others = f'the smallest ramps of {", ".join(unlike)} are smaller than those of the others'
         remarks.append(f'Hysteresis and friction: not compared where {others}.')
@@ -107,7 +107,7 @@ def _play(reports: Sequence[LostMotion], group: Group) -> str:
     if low > 0.0:
         return f'; there is play of at least {number(low)}′'
     bound = f' (at most {number(high)}′)' if high < math.inf else ''
-    return f'; whether play is left cannot be told{bound}'
+    return f'; whether play is left is undetermined{bound}'
 
 
 def _table(changes: Sequence[Change], *, several: bool) -> Table:

@@ -127,17 +127,15 @@ class GearStatePublisher(PublishingNode):
 
     def _log_start(self) -> None:
         """Log which gears there are, and where their rotors are looked up, in one line."""
-        texts, joints = [], []
+        texts = []
         for name, each in self._current().items():
             gear, known = each.gear, 'bodies unknown'
             if isinstance(gear, Mechanism):
                 known = f'ring {gear.ring_teeth}, satellite {gear.satellite_teeth} teeth'
-            texts.append(labelled(name, f'gear ratio {gear.gear_ratio} ({known})'))
-            joints.append(f'joint {each.rotor_joint!r}' if each.rotor_joint else 'the only joint')
-        self.get_logger().info(
-            f'{", ".join(texts)}, listening for {", ".join(joints)} '
-            f'on {self._rotor_driver.subscription.topic_name}'
-        )
+            joint = f'joint {each.rotor_joint!r}' if each.rotor_joint else 'the only joint'
+            texts.append(labelled(name, f'{joint}, gear ratio {gear.gear_ratio} ({known})'))
+        topic = self._rotor_driver.subscription.topic_name
+        self.get_logger().info(f'listening on {topic} for {"; ".join(texts)}')
 
     def _note_subscribers(self, _event: object = None) -> None:
         """Let only the outputs with subscribers be computed."""

@@ -112,7 +112,7 @@ class GearSimulator(PublishingNode):
         now = time.monotonic_ns()
         late = now - self._due
         if late > _MOST_LATE:
-            self._warn(f'{late / SECOND:.2f} s behind real time, which are left out: '
+            self._warn(f'{late / SECOND:.2f} s behind real time, and skipped: '
                        'the processor is busy, or the rate is too high')  # fmt: skip
             self._due += late
         self._compare_clocks()

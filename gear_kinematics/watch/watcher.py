@@ -31,7 +31,7 @@ class Watcher:
     """A context manager that watches a node, or the first that runs, in a separate thread."""
 
     def __init__(self, node: str = '', actuator: str = '') -> None:
-        self.view = View()
+        self.view = view_of(None, looking=True)
         self.drawn: tuple[Mechanism | None, float] = None, 0.0
         """The mechanism, if more than its ratio is known, and the module of its teeth, m."""
         self._wanted = f'/{node.removeprefix("/")} {actuator}'.rstrip() if node else ''

@@ -159,25 +159,29 @@ def joint_states(folder, positions, **topics):
     return folder / 'bag'
 
 
-ENCODER = 'the output? Repeat with --encoder-joint, and its topic if needed: '
+ROTOR = 'which joint is the rotor? Repeat with --joint, and its topic if needed: '
+ENCODER = 'which joint is the output? Repeat with --encoder-joint, and its topic if needed: '
 
 
 @pytest.mark.parametrize(
     ('topics', 'options', 'said'),
     [
-        ({'a': ['m', 'o'], 'b': ['p']}, '', 'the rotor? {}: m on /a, o on /a, p on /b'),
-        ({'a': ['m', 'o'], 'b': ['p']}, '--rotor-topic a', 'the rotor? {}: m on /a, o on /a'),
-        ({'a': ['m'], 'b': ['o'], 'c': ['p']}, '--joint m', ENCODER + 'o on /b, p on /c'),
-        ({'a': ['m']}, '--joint n', 'the rotor? {}: m on /a'),
-        ({'rotor_state': ['m']}, '', 'the output? There is none.'),
+        ({'a': ['m', 'o'], 'b': ['p']}, '', ROTOR + 'm, o on /a; p on /b'),
+        (
+            {'a': ['m', 'o'], 'b': ['p']},
+            '--rotor-topic a',
+            ROTOR + 'm, o on /a',
+        ),
+        ({'a': ['m'], 'b': ['o'], 'c': ['p']}, '--joint m', ENCODER + 'o on /b; p on /c'),
+        ({'a': ['m']}, '--joint n', "no joint 'n'. " + ROTOR.partition('? ')[2] + 'm on /a'),
+        ({'rotor_state': ['m']}, '', 'which joint is the output? There is none.'),
     ],
 )
 def test_topics_and_joints_that_are_missing_or_several_are_named(
     topics, options, said, positions, tmp_path
 ):
     bag = joint_states(tmp_path, [each[:9] for each in positions], **topics)
-    said = said.format('Repeat with --joint, and its topic if needed')
-    assert refusal('commission', bag, *options.split()).endswith(f'which joint is {said}')
+    assert refusal('commission', bag, *options.split()).endswith(said)
 
 
 @pytest.mark.parametrize(

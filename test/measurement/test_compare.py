@@ -132,8 +132,8 @@ def test_ramps_of_other_amplitudes_are_left_out_and_named(reports):
     ('low', 'high', 'told'),
     [
         (3, 40, '; there is play of at least 3′'),
-        (0, 39, '; whether play is left cannot be told (at most 39′)'),
-        (0, None, '; whether play is left cannot be told'),
+        (0, 39, '; whether play is left is undetermined (at most 39′)'),
+        (0, None, '; whether play is left is undetermined'),
     ],
 )
 def test_backlash_is_compared_by_its_interval(low, high, told):

@@ -597,19 +597,17 @@ def listening(monkeypatch, tmp_path):
     return tmp_path
 
 
-JOINTS = (
-    'which joint is the rotor? Repeat with --joint, and its topic if needed: '
-    'brake on /motor/joint_states, m1 on /motor/joint_states'
-)
+JOINTS = 'Repeat with --joint, and its topic if needed: brake, m1 on /motor/joint_states'
+ROTOR = f'which joint is the rotor? {JOINTS}'
 
 
 @pytest.mark.parametrize(
     ('arguments', 'cause'),
     [
-        ([], JOINTS),
-        (['--joint', 'm11'], JOINTS),
-        (['--topic', 'motor/joint_state'], JOINTS),
-        (['--topic', '/odd'], JOINTS),
+        ([], ROTOR),
+        (['--joint', 'm11'], f"no joint 'm11'; did you mean `m1`? {JOINTS}"),
+        (['--topic', 'motor/joint_state'], ROTOR),
+        (['--topic', '/odd'], ROTOR),
         (
             ['--joint', 'm1'],
             'what is the ratio of the gear? Repeat with it, such as --ratio -19 or --teeth 80/76',
