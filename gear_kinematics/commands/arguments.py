@@ -47,7 +47,7 @@ def group(parser: argparse.ArgumentParser, title: str) -> argparse._ArgumentGrou
     return next(known, None) or parser.add_argument_group(title)
 
 
-ALL = 'use only this one of the `actuators` in the file (default: all)'
+ALL = 'use this actuator of an arm only (default: all)'
 """The help on `--actuator` where a command works on all of them."""
 
 
@@ -57,7 +57,7 @@ def add_config(
     default: str = 'config/actuator.yaml',
     *,
     chosen: str = '',
-    actuator: str = 'use this one of the `actuators` in the file',
+    actuator: str = 'use this actuator of an arm',
 ) -> None:
     """Add the options for the parameters of a node.
 

@@ -33,7 +33,7 @@ def add_report_forms(parser: argparse.ArgumentParser, *, junit: bool = False) ->
     group = arguments.group(parser, 'output')
     for form in _FORMS:
         if junit or form != 'junit':
-            text = f'write the report as {form} (-: stdout)'
+            text = f'write the report as {form.upper()} (-: stdout)'
             group.add_argument(f'--{form}', metavar='FILE', help=text)
     group.add_argument('--plot', metavar='FILE', help='write a figure: .png, .svg or .pdf')
     add_force(parser)

@@ -143,11 +143,6 @@ class ClosedForm:
     """
 
     def __init__(self, mechanism: Mechanism) -> None:
-        if not isinstance(mechanism, Mechanism):
-            raise TypeError(
-                f'solve needs a Mechanism, not a {type(mechanism).__name__}; for a GearRatio, '
-                'call output_angle(*split_turns(rotor_angle), numpy)'
-            )
         self._eccentricity = mechanism.eccentricity
         self._cams = tuple(branch.cam_direction for branch in mechanism.branches)
         self._slide_ratio = mechanism.ring_teeth / mechanism.satellite_teeth
@@ -228,9 +223,14 @@ def solve(
             ±`MOST_TURNS`.
 
     Raises:
-        TypeError: if only the ratio of the gear is known, with what to call instead.
+        TypeError: if `mechanism` is none, with what to call for a GearRatio.
         ValueError: if `rotor_turns` are not integers up to ±`MOST_TURNS`.
     """
+    if not isinstance(mechanism, Mechanism):
+        raise TypeError(
+            f'solve needs a Mechanism, not a {type(mechanism).__name__}; for a GearRatio, '
+            'call output_angle(*split_turns(rotor_angle), numpy)'
+        )
     form, ratio = closed_form(mechanism), mechanism.gear_ratio
     moving = bool(np.any(rotor_velocity) or np.any(rotor_acceleration))
     inputs = (whole_turns(rotor_turns), rotor_angle, rotor_velocity, rotor_acceleration)

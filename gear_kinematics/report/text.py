@@ -83,7 +83,9 @@ def section_lines(section: Section, *, brief: bool = False) -> Iterator[str]:
     findings, answer = list(section.findings), section.answer
     if section.verdict:
         passed = section.verdict == Verdict.PASS or not findings
-        gravest = '' if passed else f': {findings.pop(0).text.removesuffix(".")}'
+        gravest = (
+            '' if passed else f': {findings.pop(0).text.removeprefix(name).removesuffix(".")}'
+        )
         yield f'{name}verdict: {OUTCOME[section.verdict]}{gravest}{f"; {answer}" * bool(answer)}'
     for finding in findings:
         yield f'{name}{finding.kind}: {finding.text}'

@@ -94,7 +94,7 @@ def test_an_unexpected_error_makes_one_bag_unusable_and_no_other(options):
     assert lines[-1].endswith('; --debug shows where') == (not options)
     assert ('Traceback' in done.stderr) == bool(options)
     assert len(lines) == 1 or options
-    assert f'{bags[0]}: verdict: unusable: {bags[0]}: unexpected ' in done.stdout
+    assert f'{bags[0]}: verdict: unusable: unexpected ' in done.stdout
     assert f'{bags[1]}: verdict: passed; ' in done.stdout
 
 

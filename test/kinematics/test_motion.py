@@ -303,5 +303,7 @@ def test_a_state_and_the_signature_are_short_to_read(actuator):
 def test_a_ratio_alone_is_refused_with_what_to_call_instead():
     with pytest.raises(TypeError, match=r'not a GearRatio; .* call output_angle\(\*split_turns'):
         solve(GearRatio(-19), 0.5)
+    with pytest.raises(TypeError, match='needs a Mechanism, not a list'):
+        solve([0.5], 314.0)
     turns, rest = GearRatio(-19).output_angle(*split_turns([0.5, 19.0 * 7.0]), np)
     np.testing.assert_allclose(2.0 * math.pi * turns + rest, [-0.5 / 19.0, -7.0], rtol=1e-15)
