@@ -2,13 +2,13 @@
 """Homes a running node by one call of its service."""
 
 import time
+from concurrent.futures import Future
 
 from rclpy.executors import SingleThreadedExecutor
-from std_srvs.srv import Trigger
 
 from gear_kinematics.ros.graph import Graph
 from gear_kinematics.ros.live import replay_node
-from gear_kinematics.watch.gear import Answer
+from gear_kinematics.watch.gear import Answer, GearNode
 from gear_kinematics.watch.view import UNANSWERED
 from gear_kinematics.wire.nearest import among, listed
 
@@ -39,17 +39,21 @@ def home(wanted: str, actuator: str) -> Answer:
         if not wanted and len(gears) > 1:
             raise ValueError(f'which node is to be homed? Repeat with --node: {listed(gears)}')
         name = wanted or gears[0]
-        service = '/'.join(filter(None, (name, actuator, 'home')))
+        gear = GearNode(node, name, actuator)
+        service = gear.homing.srv_name
         known = {each for each, _ in node.get_service_names_and_types()}
-        client = node.create_client(Trigger, service)
-        if not client.wait_for_service(_SEARCH if service in known else _DELAY):
+        if not gear.homing.wait_for_service(_SEARCH if service in known else _DELAY):
             homes = sorted(each for each in known if each.startswith(name) and 'home' in each)
             raise ValueError(f'there is no service {service}{among(service, homes)}')
-        asked = client.call_async(Trigger.Request())
+        answer: Future[Answer] = Future()
+        gear.home(answer)
         executor = SingleThreadedExecutor(context=node.context)
         executor.add_node(node)
-        executor.spin_until_future_complete(asked, _PATIENCE)
+        end = time.monotonic() + _PATIENCE
+        while time.monotonic() < end and not answer.done():
+            executor.spin_once(timeout_sec=_PERIOD)
         executor.shutdown()
-        if not asked.done():
+        if not answer.done():
             raise RuntimeError(f'{name}: {UNANSWERED}')
-        return Answer(f'{name}: {asked.result().message}', asked.result().success)
+        text, done = answer.result()
+        return Answer(f'{name}: {text}', done)

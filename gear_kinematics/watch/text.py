@@ -61,7 +61,7 @@ def show(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> Non
             asked = watcher.ask({'do': 'show', 'node': others[0]})
         elif (asking and pressed == 'y') or (pressed == 'h' and not view.question):
             # Without a question it is refused, and why.
-            asked = watcher.ask({'do': 'home', 'revision': asking or view.revision})
+            asked = watcher.ask({'do': 'home', 'revision': asking if pressed == 'y' else 0})
         if pressed or not view.question:
             asking = view.revision if pressed == 'h' and view.question else 0
         rows = rows_of(view)

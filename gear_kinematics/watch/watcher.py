@@ -132,7 +132,8 @@ class Watcher:
         if not (gear and gear.running and gear.homing.service_is_ready()):
             raise ValueError('No node is ready.')
         if command.get('revision') != gear.revision:
-            raise ValueError(f'Nothing was done: {gear.name} or its parameters are new here.')
+            new = f'{gear.name} or its parameters are new here, or there is no output'
+            raise ValueError(f'Nothing was done: {new}.')
         return gear
 
     def _do(self, command: Any, answer: 'Future[Answer]') -> None:

@@ -36,7 +36,7 @@ from gear_kinematics.watch import drivers
 from gear_kinematics.watch.drivers import DriverTopic
 from gear_kinematics.watch.gear import Answer, GearNode, JointValue, Status
 from gear_kinematics.watch.page import drawing
-from gear_kinematics.watch.text import line, list_drivers, rows_of, table
+from gear_kinematics.watch.text import line, list_drivers, rows_of, show, table
 from gear_kinematics.watch.view import UNANSWERED, Entry, View, status_entry, values_of, view_of
 from gear_kinematics.watch.watcher import Watcher
 from gear_kinematics.wire import topics
@@ -534,6 +534,19 @@ JOINTS = {'rotor': ['/j', 'm'], 'output': ['/j', 'o']}
 def test_what_cannot_be_done_is_answered(running, command, answer):
     text, done = running.ask(command).result(20.0)
     assert (text[: len(answer)], done) == (answer, False)
+
+
+@pytest.mark.parametrize(
+    ('question', 'keys', 'revisions'),
+    [('Home it?', 'hy', [7]), ('Home it?', 'hny', []), ('Home it?', 'y', []), ('', 'h', [0])],
+)
+def test_keys_home_nothing_without_a_question(monkeypatch, question, keys, revisions):
+    watcher = WatcherStandIn(View(question=question, revision=7))
+    monkeypatch.setattr(
+        'gear_kinematics.watch.text._show', lambda _, __, frame: [*map(frame, keys)]
+    )
+    show(watcher, Console(), bool)
+    assert [asked['revision'] for asked in watcher.asked] == revisions
 
 
 @pytest.mark.parametrize('revision', [None, 6, 7])
