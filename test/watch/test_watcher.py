@@ -480,6 +480,7 @@ def test_watcher_goes_on_after_what_it_cannot_show(monkeypatch):
     def broken(*_, **__):
         raise OverflowError('too odd')
 
+    monkeypatch.setattr('gear_kinematics.watch.watcher._SEARCH', 0.0)
     with Watcher() as going_on:
         monkeypatch.setattr('gear_kinematics.watch.watcher.view_of', broken)
         wait_until(lambda: going_on.view.state == 'fault', 'the fault')
