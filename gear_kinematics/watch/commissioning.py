@@ -47,6 +47,7 @@ class LiveCommissioning:
         self._rotor = deque[Message](maxlen=_MOST_STATES)
         self._states = States(*self._topics, parameters, _MOST_STATES)
         self._taken: SimpleQueue[list[Message]] = SimpleQueue()
+        self._found: Commissioning | None = None  # what is shown of
         self._count, self._due = 0, 0.0
         self._pool = ThreadPoolExecutor(1)
         self._analysis = self._pool.submit(self._guide)
@@ -58,11 +59,16 @@ class LiveCommissioning:
         if time.monotonic() >= self._due and self._analysis.done():
             before, self._analysis = self._analysis, self._pool.submit(self._guide)
             self._due = time.monotonic() + _PAUSE
-            self.shown = before.result()
+            self.shown, self._found = before.result()
 
     def result(self) -> Commissioning:
-        """Analyse the messages so far; raises ValueError if there is nothing to measure."""
-        result = self._pool.submit(self._analyse).result()
+        """Analyse the messages so far; raises ValueError if there is nothing to measure.
+
+        A ratio that was shown stays: messages that a busy machine loses can make it undetermined.
+        """
+        result, found = self._pool.submit(self._analyse).result(), self._found
+        if not result.between and found and found.between and found.request == result.request:
+            result = found
         data, received = [m[2] for m in self._rotor], [m[1] for m in self._rotor]
         asked = questions(data, received, self.request.rotor.joint, result.between)
         return replace(result, questions=tuple(asked))
@@ -101,12 +107,13 @@ class LiveCommissioning:
             raise ValueError(f'Nothing is changed: {needed}; write the file, and start it.')
         return changed
 
-    def _guide(self) -> Guide:
+    def _guide(self) -> tuple[Guide, Commissioning | None]:
         """Show which values of a parameter file are known, and how to find the others."""
         try:
             result = self._analyse()
         except ValueError as error:  # there is nothing to measure yet
-            return Guide(GUIDE, 0.0, (Entry('heard', f'{self._count} messages', str(error)),))
+            nothing = Entry('heard', f'{self._count} messages', str(error))
+            return Guide(GUIDE, 0.0, (nothing,)), None
         angle = result.longest.encoders.measured
         forward = float((angle - np.minimum.accumulate(angle)).max())
         backward = float((np.maximum.accumulate(angle) - angle).max())
@@ -119,4 +126,5 @@ class LiveCommissioning:
             tone: Tone = 'notable' if found.value is None else ''
             entries.append(Entry(found.name, shown(found.value), found.evidence, tone))
         advice = result.answer if min(moved) == 1.0 else GUIDE
-        return Guide(advice, float(np.mean([*moved, bool(result.between)])), tuple(entries))
+        known = float(np.mean([*moved, bool(result.between)]))
+        return Guide(advice, known, tuple(entries)), result

@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 import time
-from collections import deque
 from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
@@ -44,9 +43,12 @@ class Bench(Participant):
         self.output: list[JointState] = []
         self.node.create_subscription(JointState, 'rotor_state', self.rotor.append, qos)
         self.node.create_subscription(JointState, 'output_encoder', self.output.append, qos)
-        # Of which a busy reader misses all but the newest.
-        self.newest = deque([JointState()], maxlen=1)
-        self.node.create_subscription(JointState, 'rotor_state', self.newest.append, 1)
+
+        def keep_newest(message):  # beside which a busy reader misses the others
+            self.newest = message
+
+        self.newest = JointState()
+        self.node.create_subscription(JointState, 'rotor_state', keep_newest, 1)
         self._commands = self.node.create_publisher(JointState, 'rotor_command', qos)
         self._loads = self.node.create_publisher(Float64, 'load_torque', qos)
 
@@ -97,7 +99,7 @@ class Bench(Participant):
 
     def up_to_date(self) -> bool:
         """Whether the latest state is of the present time; 0.4 s are those of a busy machine."""
-        return abs(time.time_ns() - stamp_of(self.newest[0])) < 4e8
+        return abs(time.time_ns() - stamp_of(self.newest)) < 4e8
 
     def text(self) -> str:
         return self._log.read_text('utf-8')

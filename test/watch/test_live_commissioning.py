@@ -96,6 +96,16 @@ def test_parameters_are_those_of_the_gear(monkeypatch):
     assert abs(zero) < 121 * 1e-4  # both start at 0, within the play
 
 
+def test_ratio_that_was_shown_is_not_lost_with_later_messages(monkeypatch):
+    live = hear(monkeypatch, 90.0, '121')
+    # As after many messages in a row were lost, across which the rotor cannot be unwrapped.
+    later = replace(live.result(), between=None)
+    monkeypatch.setattr(live, '_analyse', lambda: later)
+    assert str(live.result().between) == '-121'
+    later = replace(later, request=replace(later.request, ratio=GearRatio.parse('100')))
+    assert not live.result().between  # which is another question
+
+
 def test_file_has_the_zero_of_the_end(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     live = hear(monkeypatch, 90.0, '121', seconds=7.0, zero_here='END')
