@@ -1,9 +1,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Stop operators along a motion, against a loop over its samples."""
 
+import weakref
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from gear_recordings import encoders
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from gear_kinematics.measurement.calibration.model import without_delays
 from gear_kinematics.measurement.calibration.terms import Samples
 from gear_kinematics.measurement.recording import Encoders, Recording
 
@@ -69,3 +72,23 @@ def test_state_between_two_samples_of_the_rotor():
     # From the bound 0.25 at 1.0, back by 0.05, and by 0.1 + 0.1.
     assert middle == pytest.approx([0.2, 0.05])
     assert known.all()
+
+
+def test_states_of_a_model_are_gone_before_those_of_the_next_are_followed():
+    """They are most of the memory of a calibration."""
+
+    class Model:
+        samples, delays = (), ()
+
+    made = []
+
+    def model_of(shifts):
+        assert not any(earlier() for earlier in made)
+        model = Model()
+        model.samples = [SimpleNamespace(shift=shift) for shift in shifts]
+        model.delays = [SimpleNamespace(value=0.01, clear=True)]
+        made.append(weakref.ref(model))
+        return model
+
+    without_delays(model_of, 1)
+    assert len(made) == 2

@@ -143,6 +143,7 @@ def without_delays(
         late = [delay.value if delay and delay.clear else 0.0 for delay in delays]
         if np.allclose(late, [s.shift for s in model.samples], rtol=0.0, atol=_SETTLED):
             break
+        del model  # the states of its stop operators take as much memory as those of the next one
         model = model_of(late)
     return model, delays
 
