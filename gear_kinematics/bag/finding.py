@@ -19,7 +19,19 @@ _STORAGE_NAME = re.compile(
 )
 """Name of a file of a recording; since Lyrical, of a split one, a counter and the date."""
 _METADATA = 'metadata.yaml'
-_TABLES = {'.csv', '.tsv'}
+_TEXTS = '.csv', '.tsv', '.txt', '.dat', '.asc', '.lvm'
+_COMMON = {'.txt', '.dat'}  # which often are no recordings
+COMPRESSED = '.gz', '.zst', '.zip', '.bz2', '.xz'
+"""Ends of the names of texts that are compressed, behind those of `TABLES`."""
+TABLES = {
+    **dict.fromkeys(_TEXTS, 'text'),
+    '.parquet': 'parquet',
+    '.mat': 'mat',
+    '.tdms': 'tdms',
+    **dict.fromkeys(('.mf4', '.mdf'), 'mf4'),
+    **dict.fromkeys(('.xlsx', '.xlsm'), 'workbook'),
+}
+"""Formats of tables by the ends of their names."""
 
 
 class Found(NamedTuple):
@@ -55,7 +67,14 @@ def _recording(path: Path) -> Path:
 def is_recording(path: Path) -> bool:
     """Return whether a file has the name of a recording or its metadata."""
     name = path.name
-    return bool(BAG_NAME.search(name)) or path.suffix.lower() in _TABLES or name == _METADATA
+    table = bool(table_format(path)) and path.suffix.lower() not in _COMMON
+    return bool(BAG_NAME.search(name)) or table or name == _METADATA
+
+
+def table_format(path: Path) -> str:
+    """Return the format of a table by its name, one of `TABLES`; '' if it is none."""
+    *_, inner, last = '', '', *(end.lower() for end in path.suffixes)
+    return TABLES.get(inner if last in COMPRESSED and inner in _TEXTS else last, '')
 
 
 def _glob(pattern: str, faults: dict[Path, str]) -> Iterator[Path]:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from gear_kinematics.bag import Bag, BagError
-from gear_kinematics.bag.finding import BAG_NAME
+from gear_kinematics.bag.finding import BAG_NAME, COMPRESSED, TABLES, table_format
 from gear_kinematics.measurement.cells import numbers
 from gear_kinematics.measurement.dialects import TableFile, loaded, open_text
 
@@ -126,29 +126,20 @@ def _workbook(path: Path) -> TableFile:
     return open_text(path, sheet.to_csv(header=False, index=False).encode())
 
 
-_TEXTS = '.csv', '.tsv', '.txt', '.dat', '.asc', '.lvm'
-_COMPRESSED = '.gz', '.zst', '.zip', '.bz2', '.xz'
-READERS: Mapping[str, Callable[[Path], TableFile]] = {
-    **dict.fromkeys(_TEXTS, open_text),
-    **dict.fromkeys((text + end for text in _TEXTS for end in _COMPRESSED), open_text),
-    '.parquet': _parquet,
-    '.mat': _mat,
-    '.tdms': _tdms,
-    **dict.fromkeys(('.mf4', '.mdf'), _mf4),
-    **dict.fromkeys(('.xlsx', '.xlsm'), _workbook),
+_READERS: Mapping[str, Callable[[Path], TableFile]] = {
+    'text': open_text,
+    'parquet': _parquet,
+    'mat': _mat,
+    'tdms': _tdms,
+    'mf4': _mf4,
+    'workbook': _workbook,
 }
-"""What opens a table, by the end of its name."""
-
-
-def _ending(path: Path) -> str:
-    """The end of a name that says the format, compressed or not."""
-    *_, inner, last = '', '', *path.suffixes
-    return (inner + last if last.lower() in _COMPRESSED else last).lower()
+"""What opens a table, by the format that `TABLES` has for its name."""
 
 
 def is_table(path: Path) -> bool:
     """Return whether a recording is a table, by its name; otherwise it is a bag."""
-    return _ending(path) in READERS
+    return bool(table_format(path))
 
 
 @contextmanager
@@ -159,10 +150,9 @@ def open_bag(path: Path) -> Iterator[Bag]:
             yield bag
     except BagError as error:
         if path.is_file() and not BAG_NAME.search(path.name):
-            tables = ', '.join(one for one in READERS if one.count('.') == 1)
             kinds = (
-                f'{error}; bags are .mcap, .db3, .bag and folders, tables {tables}, texts also '
-                f'compressed as {", ".join(_COMPRESSED)}'
+                f'{error}; bags are .mcap, .db3, .bag and folders, tables {", ".join(TABLES)}, '
+                f'texts also compressed as {", ".join(COMPRESSED)}'
             )
             raise BagError(kinds) from error
         raise
@@ -172,10 +162,9 @@ def open_table(path: Path) -> TableFile:
     """Open a table; OSError or ValueError if it cannot be read."""
     if path.exists() and not path.is_file():
         raise ValueError('not a regular file')
-    suffix = _ending(path)
     try:
-        return READERS[suffix](path)
+        return _READERS[table_format(path)](path)
     except (ImportError, OSError, ValueError):
         raise
     except Exception as error:  # of the libraries, each of which has its own
-        raise ValueError(f'cannot be read as {suffix}: {error}') from error
+        raise ValueError(f'cannot be read as {path.suffix}: {error}') from error

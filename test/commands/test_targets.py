@@ -26,7 +26,8 @@ def work(tmp_path, monkeypatch):
     shutil.copy(SERVO / 'servo_point_to_point_0.mcap', tmp_path / 'k2.mcap')
     shutil.copytree(BAGS / 'driver_faults', tmp_path / 'bag')
     shutil.copy(RAMPS, tmp_path / 'before.csv')
-    shutil.copy(RAMPS, tmp_path / 'samples.txt')
+    for name in ('samples.txt', 'bench.mf4', 'before.csv.gz'):
+        shutil.copy(RAMPS, tmp_path / name)
     (tmp_path / 'link').symlink_to('k1.mcap')
     (tmp_path / 'my.yaml').write_text('/**: {ros__parameters: {module: 0.0005}}\n')
     (tmp_path / 'notes.md').write_text(NOTES)
@@ -48,6 +49,8 @@ RECORDINGS = {
     'lost-motion --plot before.csv samples.txt': 'a recording',
     'calibrate samples.txt -o before.csv': 'a recording',
     'describe --json before.csv': 'a recording',
+    'describe --json bench.mf4': 'a recording',
+    'describe --json before.csv.gz': 'a recording',
     'index --degrees 1 --json k1.mcap': 'a recording',
     'animate k1.mcap': 'a recording',
 }
