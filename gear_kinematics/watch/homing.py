@@ -39,9 +39,9 @@ def home(wanted: str, actuator: str) -> Answer:
         if not wanted and len(gears) > 1:
             raise ValueError(f'which node is to be homed? Repeat with --node: {listed(gears)}')
         name = wanted or gears[0]
+        known = {each for each, _ in node.get_service_names_and_types()}  # before its clients
         gear = GearNode(node, name, actuator)
         service = gear.homing.srv_name
-        known = {each for each, _ in node.get_service_names_and_types()}
         if not gear.homing.wait_for_service(_SEARCH if service in known else _DELAY):
             homes = sorted(each for each in known if each.startswith(name) and 'home' in each)
             raise ValueError(f'there is no service {service}{among(service, homes)}')
