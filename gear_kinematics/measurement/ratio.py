@@ -32,6 +32,8 @@ _BY_CHANCE = 0.05
 _MAX_DISTANCE = 2
 """Expanded uncertainties within which a fraction may be the true ratio: of 20 recordings, one has
 it beyond a single one."""
+_BEYOND = 0.05
+"""Share of those recordings: a coincidence has to be that much less likely in their place."""
 _CANDIDATES = 10
 
 
@@ -43,7 +45,7 @@ class RatioEstimate:
     candidates: tuple[Fraction, ...]
     """Fractions that may be the ratio by denominator, the nearest first; the one that is taken."""
     taken: GearRatio | None = None
-    """The simplest fraction, if it is in the interval and no other is as simple around it."""
+    """The simplest fraction that may be the ratio, unless it can be there by chance."""
     advice: str = ''
     """How far to turn the output to tell the ratio; empty if it is taken."""
 
@@ -152,7 +154,9 @@ def _judged(measured: Estimate, turned: float) -> RatioEstimate:
     # Fewer than q (q + 1)/2 fractions per unit have a denominator of at most q.
     q = simplest.denominator
     enough = _BY_CHANCE / (_MAX_DISTANCE * q * (q + 1))
-    if abs(value - simplest) <= spread < enough:
+    if abs(value - simplest) > spread:
+        enough *= _BEYOND
+    if spread < enough:
         return RatioEstimate(measured, (simplest,), GearRatio(simplest))
     # Over a turn, the uncertainty falls as it grows.
     more = 90 * math.ceil(spread / enough * turned / 90.0)

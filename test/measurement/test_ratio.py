@@ -139,6 +139,19 @@ def test_what_inertia_winds_up_is_in_the_interval():
     assert found.taken == 19
 
 
+@pytest.mark.parametrize(
+    ('ratio', 'beyond', 'taken'),
+    [('-19', 1.6, True), ('-58/3', 1.6, False), ('-19', 2.4, False)],  # of 3 there are more
+)
+def test_ratio_a_little_beyond_its_interval_is_taken_if_it_can_be_no_coincidence(
+    ratio, beyond, taken
+):
+    measured = estimate_ratio(*angles(Fraction(ratio), 1.5)).measured
+    off = beyond * measured.expanded + float(Fraction(ratio)) - measured.value
+    found = estimate_ratio(*angles(float(Fraction(ratio)) + off, 1.5))
+    assert found.taken == (Fraction(ratio) if taken else None)
+
+
 def test_a_ratio_that_is_no_simple_fraction_is_not_taken():
     found = estimate_ratio(*angles(-math.pi * math.e, 5.0))
     assert found.taken is None
