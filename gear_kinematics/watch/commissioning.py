@@ -64,11 +64,13 @@ class LiveCommissioning:
     def result(self) -> Commissioning:
         """Analyse the messages so far; raises ValueError if there is nothing to measure.
 
-        A ratio that was shown stays: messages that a busy machine loses can make it undetermined.
+        A ratio that was shown stays, with a note: messages that a busy machine loses can make it
+        undetermined.
         """
         result, found = self._pool.submit(self._analyse).result(), self._found
         if not result.between and found and found.between and found.request == result.request:
-            result = found
+            later = f'With the messages that came later: {result.answer}'
+            result = replace(found, notes=(*found.notes, later))
         data, received = [m[2] for m in self._rotor], [m[1] for m in self._rotor]
         asked = questions(data, received, self.request.rotor.joint, result.between)
         return replace(result, questions=tuple(asked))

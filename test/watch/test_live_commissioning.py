@@ -101,7 +101,9 @@ def test_ratio_that_was_shown_is_not_lost_with_later_messages(monkeypatch):
     # As after many messages in a row were lost, across which the rotor cannot be unwrapped.
     later = replace(live.result(), between=None)
     monkeypatch.setattr(live, '_analyse', lambda: later)
-    assert str(live.result().between) == '-121'
+    kept = live.result()
+    assert str(kept.between) == '-121'
+    assert kept.notes[-1] == f'With the messages that came later: {later.answer}'
     later = replace(later, request=replace(later.request, ratio=GearRatio.parse('100')))
     assert not live.result().between  # which is another question
 
