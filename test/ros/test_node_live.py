@@ -140,7 +140,7 @@ def test_node_of_another_mechanism_with_other_names(start, tmp_path):
     assert live.peer.status()[0] == OK
     line = live.lines('INFO')[0]
     assert 'gear ratio -58/3' in line.text
-    assert f"joint 'm7' on {live.peer.namespace}/motor/joint_states" in line.text
+    assert f"listening on {live.peer.namespace}/motor/joint_states for joint 'm7', " in line.text
 
 
 # One output for each valid input.
