@@ -49,7 +49,7 @@ _LISTENERS = 2  # to each encoder: the node and the recorder
 _PROBE_PERIOD = 0.05  # s
 _AFTERWARDS = 0.1  # s to wait for unexpected messages
 _WINDOW = 500  # messages by which the node may lag; a queue of DEPTH does not overflow
-_STOP_TIMEOUT = 10.0  # s for a node to end; it needs one at most
+_STOP_TIMEOUT = 30.0  # s for a node to end; it needs one at most
 _MAX_SILENCE = 5.0  # s without messages after which no more are expected; DDS repeats every 3 s
 _PROBE_SECOND = 2**31 - 1  # the latest in a stamp
 _PROBE_STAMP = struct.pack('<iI', _PROBE_SECOND, 0)
@@ -190,7 +190,7 @@ class Replay:
         """Close the topics."""
         self._resources.close()
 
-    def wait_for_node(self, joint: str, timeout: float = 20.0) -> None:
+    def wait_for_node(self, joint: str, timeout: float = 60.0) -> None:
         """Wait until probes are answered, since discovery on this side does not suffice.
 
         The probes have a stamp in the far future and are not recorded; the node restarts at the
