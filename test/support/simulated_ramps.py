@@ -187,6 +187,8 @@ def hysteresis(scenario: Scenario) -> Value:
     """
     first = tuple(loop for loop in scenario.loops if loop == scenario.loops[0])
     repeats = (_REPEATS, *np.shape(scenario.friction))
+    if _is_timeless(scenario):
+        first = tuple((amplitude, 4.0 * INTERVAL) for amplitude, _ in first)
     rows = round(first[0][1] / INTERVAL)
     motion = _motion(replace(scenario, loops=first), repeats, np.random.default_rng(0))
     at_zero = [angle for row, angle in enumerate(motion) if row % (rows // 2) == 0]
@@ -232,17 +234,21 @@ def _motion(
     if np.any(s.inertia):
         yield from _moved(s, torque, strength[loop])
         return
+    if _is_timeless(s):
+        loads = _held(torque, loop, strength)
+        yield from s.twist(loads) + 0.5 * s.play * np.sign(loads)
+        return
     load = np.zeros(shape)
     built = np.zeros(shape)  # N·m, friction that has built up, with its sign
     late = np.zeros((len(s.creeps), *shape))
     creeps = [(share, -np.expm1(-INTERVAL / constant)) for share, constant in s.creeps]
-    builds_up, grows, slips = map(np.any, (s.bristle, s.load_friction, s.slip))
+    builds_up, changes = np.any(s.bristle), np.any(s.load_friction) or np.any(s.slip)
     for k, applied in enumerate(torque):
         fresh = strength[loop[k]]
-        held = fresh + s.load_friction * np.abs(load) if grows else fresh
+        held = fresh + s.load_friction * np.abs(load)
         if builds_up:
             load, built = _bristles(applied, load, built, held, s.bristle)
-        elif grows or slips:
+        elif changes:
             net = applied - load
             moves = np.abs(net) > held
             sliding = held * (1.0 - s.slip)
@@ -257,6 +263,23 @@ def _motion(
         for j, (share, gain) in enumerate(creeps):
             late[j] += (share * twist - late[j]) * gain
         yield twist + 0.5 * s.play * np.sign(load) + late.sum(axis=0)
+
+
+def _is_timeless(s: Scenario) -> bool:
+    """Say whether Coulomb friction alone acts, so that only the turns of the torque matter."""
+    return not (s.creeps or any(map(np.any, (s.inertia, s.bristle, s.load_friction, s.slip))))
+
+
+def _held(torque: np.ndarray, loop: np.ndarray, strength: np.ndarray) -> np.ndarray:
+    """Hold the load within the friction of the torque: (time, ..., gears), N·m."""
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(torque)))) + 2  # a way ends at its peak
+    starts = np.union1d(turns, np.flatnonzero(np.diff(loop)) + 1)
+    loads = np.zeros((len(torque), *strength.shape[1:]))
+    for way in np.split(np.arange(len(torque)), starts):
+        friction = strength[loop[way[0]]]
+        applied = torque[way].reshape(-1, *[1] * friction.ndim)
+        loads[way] = np.clip(loads[way[0] - 1], applied - friction, applied + friction)
+    return loads
 
 
 def _moved(s: Scenario, torque: np.ndarray, strength: np.ndarray) -> Iterator[np.ndarray]:
