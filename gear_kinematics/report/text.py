@@ -82,11 +82,13 @@ def section_lines(section: Section, *, brief: bool = False) -> Iterator[str]:
     name = f'{section.name}: ' if section.name else ''
     findings, answer = list(section.findings), section.answer
     if section.verdict:
-        passed = section.verdict == Verdict.PASS or not findings
-        gravest = (
-            '' if passed else f': {findings.pop(0).text.removeprefix(name).removesuffix(".")}'
-        )
-        yield f'{name}verdict: {OUTCOME[section.verdict]}{gravest}{f"; {answer}" * bool(answer)}'
+        verdict = f'{name}verdict: {OUTCOME[section.verdict]}'
+        if section.verdict != Verdict.PASS and findings:
+            gravest = findings.pop(0).text.removesuffix('.')
+            if name:  # an error begins with it, on a cluster as an absolute path
+                gravest = gravest.rpartition(name)[2]
+            verdict += f': {gravest}'
+        yield f'{verdict}; {answer}' if answer else verdict
     for finding in findings:
         yield f'{name}{finding.kind}: {finding.text}'
     if answer and not section.verdict:
