@@ -2,6 +2,7 @@
 """A model simulated by MuJoCo: every body, with its joints, springs and loops."""
 
 import mujoco
+import numpy as np
 
 from gear_kinematics.twin.gear import TwinGear
 from gear_kinematics.twin.mjcf import mjcf
@@ -42,14 +43,13 @@ class MujocoModel:
         self._lock(self._output, self._output_lock, self.output_locked)
         self.data.qfrc_applied[self._rotor] = rotor_torque
         self.data.qfrc_applied[self._output] = load_torque
-        step = self.model.opt.timestep
         self._owed += duration
-        steps = round(self._owed / step)
-        self._owed -= steps * step
+        steps = round(self._owed / self._step)
+        self._owed -= steps * self._step
         if self._gear.errors:
             for _ in range(steps):
                 error = self._gear.error(self.data.qpos[self._rotor])
-                self.model.tendon_lengthspring[self._tendons] = self._springs - error
+                self._lengths[self._tendons] = self._springs - error
                 mujoco.mj_step(self.model, self.data)
         elif steps:
             mujoco.mj_step(self.model, self.data, steps)
@@ -58,8 +58,8 @@ class MujocoModel:
 
     def _bound(self) -> None:
         """Keep the speed within what MuJoCo follows: all velocities at once, as the loops ask."""
-        data, fastest = self.data, _FASTEST / self.model.opt.timestep
-        if data.warning.number.any():
+        data, fastest = self.data, _FASTEST / self._step
+        if any(self._warnings.tolist()):
             self.notice = 'the motion was beyond what MuJoCo follows, and has begun anew'
             mujoco.mj_resetData(self.model, data)
         elif (speed := abs(data.qvel[self._rotor])) > fastest:
@@ -70,10 +70,15 @@ class MujocoModel:
         self._gear = gear
         self.model = mujoco.MjModel.from_xml_string(mjcf(gear, shown=False))
         self.data = mujoco.MjData(self.model)
+        self._step = self.model.opt.timestep
+        # Views of what MuJoCo reads and counts, as each access by name takes longer than its use.
+        self._lengths, self._warnings = self.model.tendon_lengthspring, self.data.warning.number
         branches = gear.parameters.branches
         tendons = range(self.model.ntendon)
-        self._tendons = [each for each in tendons if self.model.tendon(each).name != 'shaft']
-        self._springs = self.model.tendon_lengthspring[self._tendons]
+        self._tendons = np.array(
+            [each for each in tendons if self.model.tendon(each).name != 'shaft']
+        )
+        self._springs = self._lengths[self._tendons]
         # Each joint has one coordinate.
         self._rotor, self._output, *self._satellites = (
             self.model.joint(name).id
