@@ -20,18 +20,23 @@ from gear_kinematics.measurement.ramp_gate import (
     jumped,
     left_out,
     longest,
+    shifted,
     usual,
 )
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RotorMotion
+from gear_kinematics.measurement.two_encoders import directions
 from gear_kinematics.measurement.wording import ARC_MINUTES
 from gear_kinematics.report.document import counted, number
 
 _FEWEST = 50  # samples
-_LEAST_TRAVEL = math.radians(10.0)  # of the output: without it, the ratio does not show
+_LEAST_TRAVEL = math.radians(3.0)  # of the output: without it, the ratio does not show
 _STEPS = 12.0  # times the step that 98 % of such medians have: no gear's error
 _LEAST_STEP = math.radians(0.25)
 _STAYS = 4  # samples in a row: no stray reading
 _REVERSAL = 4  # samples around it in which the output may lag
+_MOST_LOST = math.radians(5.0)  # by a gear that is usable
+_LIKELY, _TRIED, _MOST_OF = 4.0, 8, 0.6  # such steps; of which so many; share of it that stays
+_LEAST_SLIP, _PLACE = math.radians(0.15), math.radians(2.0)  # of output angles that are compared
 _FROZEN = math.radians(3.0)  # of the output, that one shaft does while the other stands
 _LEAST_SHARE = 0.25  # of samples that are used: else it is the ratio that is not understood
 _CLEAR = 4.0  # such steps: clear slips, however short the parts between them
@@ -62,7 +67,8 @@ def gated(recording: Recording) -> Recording:
     if slope is None or abs(slope) * np.ptp(rotor) < _LEAST_TRAVEL:
         return recording
     error = both.measured - slope * rotor
-    frozen = _frozen(both.measured, slope * rotor) | _frozen(slope * rotor, both.measured)
+    ideal, turned_output = slope * rotor, np.unwrap(both.measured)
+    frozen = _frozen(both.measured, usual(ideal)) | _frozen(ideal, usual(turned_output))
     rows = np.flatnonzero(~frozen)
     if len(rows) < _FEWEST:
         return recording
@@ -74,17 +80,22 @@ def gated(recording: Recording) -> Recording:
     if (rest := float(np.ptp(error[rows] - line(rotor[rows])))) < NO_ENCODER:
         fault = computed(rest)
         return replace(recording, computed=fault, faults=(*recording.faults, fault))
-    ideal = slope * np.diff(rotor[rows])
-    calm, moved = np.diff(usual(error[rows])), slope * np.diff(usual(rotor[rows]))
+    ideal = ideal[rows]
+    level = usual(error[rows])
+    calm, moved = np.diff(level), np.diff(usual(ideal))
     fastest = float(np.quantile(np.abs(moved), 0.98))
-    limit = max(_STEPS * float(np.quantile(np.abs(calm), 0.98)), _LEAST_STEP)
-    faults, impossible = (
-        (np.abs(steps) > limit) & ~_lost_motion(steps, ideal, fastest)
-        for steps in (calm, np.diff(error[rows]))
-    )
-    if np.mean(faults) > _MOST_FAULTS:
+    usually = float(np.quantile(np.abs(calm), 0.98))
+    limit = max(_STEPS * usually, _LEAST_STEP)
+    lost = _lost_motion(calm, np.diff(ideal), fastest)
+    if np.mean((np.abs(calm) > limit) & ~lost) > _MOST_FAULTS:
         return recording
-    kept, jumps = _followed(error[rows], rows, limit, impossible, periods[-1])
+    steps = np.diff(error[rows])
+    # Lost motion stays until the next reversal: what comes back at once is a stray reading.
+    most = min(1.1 * float(np.max(np.abs(calm), where=lost, initial=0.0)), _MOST_LOST)
+    lost = _lost_motion(steps, np.diff(ideal), fastest) & (np.abs(steps) <= most)
+    slipped = _slipped(level, ideal, usually)
+    impossible = ((np.abs(steps) > limit) & ~lost) | slipped
+    kept, jumps = _followed(error[rows], rows, limit, impossible, slipped, periods[-1])
     kept = rows[kept]
     own = [abs(rotor[rows[k]] - rotor[rows[k - 1]]) for k in jumps]
     if own and max(own) > _RANGE * np.ptp(rotor):  # an encoder of another range than a turn
@@ -154,8 +165,34 @@ def _lost_motion(steps: Array, ideal: Array, fastest: float) -> NDArray[np.bool_
     return lost
 
 
+def _slipped(error: Array, ideal: Array, usually: float) -> NDArray[np.bool_]:
+    """Find steps of the error, (n - 1,), after which it is another one at all angles and ways.
+
+    Args:
+        error: (n,), rad, without stray readings.
+        ideal: (n,), output angle, rad.
+        usually: rad, the step that 98 % have.
+    """
+    steps = np.diff(error)
+    found = np.zeros(len(steps), bool)
+    likely = np.flatnonzero(np.abs(steps) > max(_LIKELY * usually, _LEAST_SLIP))
+    if not len(likely):
+        return found
+    place = np.round(ideal / _PLACE) + 1j * directions(ideal, _PLACE)
+    for row in likely[np.argsort(-np.abs(steps[likely]))][:_TRIED].tolist():
+        shifts = shifted(place, error, slice(0, row + 1), slice(row + 1, len(error)))
+        shares = shifts / steps[row]
+        found[row] = len(shares) > 0 and shares.min() > _MOST_OF and shares.max() < 1.0 / _MOST_OF
+    return found
+
+
 def _followed(
-    error: Array, rows: Array, limit: float, impossible: NDArray[np.bool_], period: float
+    error: Array,
+    rows: Array,
+    limit: float,
+    impossible: NDArray[np.bool_],
+    slipped: NDArray[np.bool_],
+    period: float,
 ) -> tuple[Array, list[int]]:
     """Follow the error, rad, both ways from its longest part without an impossible step.
 
@@ -164,6 +201,7 @@ def _followed(
         rows: (n,), their numbers.
         limit: rad, of a step; after a longer gap, the error may have changed by its range, too.
         impossible: (n - 1,), steps that are.
+        slipped: (n - 1,), those of them that stay, however small they are.
         period: rad, of the error: what wraps of an encoder add to it.
 
     Returns:
@@ -184,10 +222,12 @@ def _followed(
             # Neighbours of a stray reading of the rotor are interpolated to it a little.
             level = np.median(error[begin:end][::way][:_STAYS])
             before = np.median(reached[::-way][:_STAYS])
-            if abs(math.remainder(level - before, period)) > limit + spread * gap:
-                if end - begin < _STAYS:
+            place = begin if way > 0 else end
+            moved = abs(math.remainder(level - before, period)) > limit + spread * gap
+            if moved or slipped[place - 1]:
+                if end - begin < _STAYS and not slipped[place - 1]:
                     continue
-                jumps.append(begin if way > 0 else end)
+                jumps.append(place)
                 beyond = True
             if not beyond:
                 kept.append(np.arange(begin, end))

@@ -105,7 +105,7 @@ def _slips(ramps: Loading) -> list[tuple[float, int]]:
         # At least a loop before and a loop behind.
         begin = [0, *turns[turns <= last]][-_LOOP:][0]
         end = [*turns[turns > row], len(angle)][:_LOOP][-1]
-        shifts = _shifts(place, angle, slice(begin, last + 1), slice(row, end))
+        shifts = shifted(place, angle, slice(begin, last + 1), slice(row, end))
         if not len(shifts):
             rest = np.ptp(np.append(angle[: last + 1], angle[row:] - size))
             loaded = abs(ramps.torque[row]) > _LOADED * most
@@ -118,7 +118,7 @@ def _slips(ramps: Loading) -> list[tuple[float, int]]:
     return [(size, row) for size, row in found if abs(size) > _BEYOND * back]
 
 
-def _shifts(place: Array, angle: Array, before: slice, after: slice) -> Array:
+def shifted(place: Array, angle: Array, before: slice, after: slice) -> Array:
     """Median change of an angle at equal places, rad, for each way that both slices share."""
     shared = np.intersect1d(place[before], place[after])
     # Just around the step, they have the same places by themselves.

@@ -81,8 +81,13 @@ def test_a_gear_whose_only_error_is_its_play_is_not_taken_for_computed(gate):
 
 @pytest.mark.parametrize(
     'wrong',
-    [{(700, 2): 3.0}, {(700, 1): 0.0}, {(100, 2): 3.0, (300, 1): 0.0, (301, 1): 9e3, (900, 2): 9}],
-    ids=['output', 'rotor', 'several'],
+    [
+        {(700, 2): 3.0},
+        {(700, 1): 0.0},
+        {(371, 1): -136.0},
+        {(100, 2): 3.0, (300, 1): 0.0, (301, 1): 9e3, (900, 2): 9},
+    ],
+    ids=['output', 'rotor', 'rotor at a reversal', 'several'],
 )
 def test_stray_readings_are_left_out_and_named(clean, gate, wrong):
     for place, value in wrong.items():
@@ -128,6 +133,15 @@ def test_a_jump_divides_and_is_named_with_its_moment(clean, gate, column, size, 
     assert found.encoders.measured == pytest.approx(clean[:900, 2], abs=1e-9)
     named = re.match('the output jumps by (.*)° against the rotor at 36 s', found.faults[0])
     assert float(named[1]) == pytest.approx(degrees, abs=0.1)  # and the gear's own error
+
+
+@pytest.mark.parametrize(('row', 'column', 'size'), [(600, 2, 5e-3), (372, 1, 0.6)])
+def test_a_small_slip_and_a_jump_at_a_reversal_are_named(clean, gate, row, column, size):
+    """What stays at all angles and ways is no lost motion, however small it is."""
+    clean[row:, column] += size
+    _, found = gate(clean)
+    assert f'against the rotor at {0.04 * row:g} s' in found.faults[0]
+    assert len(found.encoders.measured) == max(row, len(clean) - row)
 
 
 def test_each_of_many_slips_divides_and_is_told(clean, gate):
