@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gear_kinematics.measurement.columns import TIME_UNITS, Column
 from gear_kinematics.measurement.recording import Array
-from gear_kinematics.report.document import number
+from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.wire.cdr import SECOND
 
 _DATES = 978_307_200.0, 4_102_444_800.0
@@ -66,8 +66,8 @@ def stamps(
     clock: Column | None,
     times: Array | None,
     kept: Array,
-    remarks: list[str],
-    faults: list[str],
+    remarks: list[Observed],
+    faults: list[Observed],
     *,
     alone: bool,
 ) -> tuple[Array, Array]:
@@ -96,28 +96,24 @@ def stamps(
             f'as in --time-column {example}'
         )
     if lost := np.count_nonzero(~readable):
-        remarks.append(f'{lost} rows without a time in {clock.name} were left out')
+        remarks.append(Observation.NO_TIMES(rows=lost, column=clock.name))
     rows, stamp = rows[readable], stamp[readable]
     if stamp.min() >= 0 and stamp.max() < _DAY:  # times of the day begin again at midnight
         stamp = stamp + _DAY * np.cumsum(np.diff(stamp, prepend=stamp[0]) < -0.5 * _DAY)
     for before, size in _restore(stamp) if alone else ():
-        when = f'{number((before - stamp[0]) / SECOND, 6)} s'
-        faults.append(f'the clock was set back by {number(size / SECOND)} s after {when}')
+        after = (before - stamp[0]) / SECOND
+        faults.append(Observation.SET_BACK_AFTER(size=size / SECOND, seconds=after))
     order, end = _order(stamp)
     if late := end - len(order):
-        remarks.append(f'the time in {clock.name} is out of order in {late} rows: left out')
+        remarks.append(Observation.TIMES_OUT_OF_ORDER(rows=late, column=clock.name))
     if end < len(stamp):
-        what = f'goes back after {end} rows: the others are left out'
-        faults.append(f'the time in {clock.name} {what}')
+        faults.append(Observation.TIMES_GO_BACK(rows=end, column=clock.name))
     if stamp[order[-1]] == stamp[order[0]] and len(order) > 1:
         raise ValueError(f'the times in {clock.name}: they stand still')
     stamp, rows = stamp[order], rows[order]
     new = np.flatnonzero(np.diff(stamp, prepend=stamp[0] - 1))
     if 2 * len(new) < len(stamp):
-        remarks.append(
-            f'{len(stamp)} rows have {len(new)} different times in {clock.name}: those with the '
-            'same one are taken to be evenly spaced'
-        )
+        remarks.append(Observation.SAME_TIMES(rows=len(stamp), times=len(new), column=clock.name))
         last = stamp[-1] + np.median(np.diff(stamp[new]))
         spread = np.interp(
             np.arange(len(stamp)), [*new, len(stamp)], [*(stamp[new] - stamp[0]), last - stamp[0]]

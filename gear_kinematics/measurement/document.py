@@ -12,7 +12,7 @@ from gear_kinematics.measurement.figures import GearFigures
 from gear_kinematics.measurement.loops import Ramps
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.measured import LOST_MOTION, Measured, shown
-from gear_kinematics.measurement.wording import plain
+from gear_kinematics.measurement.sentences import plain
 from gear_kinematics.report.document import (
     Case,
     Cell,
@@ -52,7 +52,8 @@ def document(
     """Return the document on recordings, with a section for each, and then their comparison."""
     sections, recordings = [], []
     for report in reports:
-        sentences = answer(report), limits.judge(report), tuple(map(printable, remarks(report)))
+        notes = [*report.recording.sentences, *(found.sentence for found in remarks(report))]
+        sentences = answer(report).sentence, [*limits.judge(report)], tuple(map(printable, notes))
         sections.append(_section(report, *sentences))
         recordings.append(_recording(report, *sentences))
     verdicts = [section.verdict for section in sections if section.verdict]
@@ -82,7 +83,7 @@ def _section(
         (Verdict.PASS if passed else Verdict.FAIL) if judged else None,
         (
             *(
-                Sentence('finding', f'{one.text[0].upper()}{one.text[1:]}.')
+                Sentence('finding', one.why.sentence)
                 for one in sorted(judged, key=lambda one: one.holds)
             ),
             Sentence('finding', said),
@@ -90,7 +91,7 @@ def _section(
         remarked,
         Figure(tuple(panels(report)), columns=_COLUMNS),
         key=Table.of_values(Layout.INLINE, *_main(report).items()),
-        cases=tuple(Case(one.limit, () if one.holds else (one.text,)) for one in judged)
+        cases=tuple(Case(one.limit, () if one.holds else (str(one.why),)) for one in judged)
         or (Case('measured'),),
     )
 
@@ -155,7 +156,7 @@ def _recording(
     return {
         'recording': report.name,
         'answer': said,
-        'limits': {one.limit: {'holds': one.holds, 'text': one.text} for one in judged},
+        'limits': {one.limit: {'holds': one.holds, 'text': str(one.why)} for one in judged},
         'columns': recording.columns,
         'samples': recording.rows,
         'error': recording.damage,

@@ -15,8 +15,6 @@ from numpy.typing import NDArray
 
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.ramp_gate import (
-    NAMED,
-    gated_ramps,
     jumped,
     left_out,
     longest,
@@ -24,9 +22,9 @@ from gear_kinematics.measurement.ramp_gate import (
     usual,
 )
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RotorMotion
+from gear_kinematics.measurement.sentences import NAMED, Observation
 from gear_kinematics.measurement.two_encoders import directions
-from gear_kinematics.measurement.wording import ARC_MINUTES
-from gear_kinematics.report.document import counted, number
+from gear_kinematics.report.document import number
 
 _FEWEST = 50  # samples
 _LEAST_TRAVEL = math.radians(3.0)  # of the output: without it, the ratio does not show
@@ -52,9 +50,6 @@ def gated(recording: Recording) -> Recording:
     Without such readings, or if the output hardly moves, the recording itself is returned.
     """
     both = recording.encoders
-    if both is None and recording.locked:
-        ramps, faults_of_ramps = gated_ramps(recording.locked)
-        return replace(recording, locked=ramps, faults=(*recording.faults, *faults_of_ramps))
     if both is None or len(both.measured) < _FEWEST:
         return recording
     turned = both.rotor.turned
@@ -78,8 +73,8 @@ def gated(recording: Recording) -> Recording:
         error[rows] -= period * np.cumsum(np.round(steps / period))
     line = np.polynomial.Polynomial.fit(rotor[rows], error[rows], 1)
     if (rest := float(np.ptp(error[rows] - line(rotor[rows])))) < NO_ENCODER:
-        fault = computed(rest)
-        return replace(recording, computed=fault, faults=(*recording.faults, fault))
+        fault = Observation.COMPUTED(deviation=rest)
+        return replace(recording, faults=(*recording.faults, fault))
     ideal = ideal[rows]
     level = usual(error[rows])
     calm, moved = np.diff(level), np.diff(usual(ideal))
@@ -106,33 +101,24 @@ def gated(recording: Recording) -> Recording:
         return recording
     first, last = kept[0], kept[-1]
     stray = np.setdiff1d(np.arange(first, last + 1), kept)
-    unit, time = (' s', both.seconds) if both.timed else ('', both.seconds + 1.0)
-    at = 'at' if both.timed else 'at sample'
+    time = both.seconds if both.timed else both.seconds + 1.0
     found = []
     isolated = stray[~frozen[stray]]
     if len(isolated):
-        found.append(left_out(time[isolated], at, unit))
+        found.append(left_out(time[isolated], timed=both.timed))
     if len(still := np.flatnonzero(frozen)):
         times = np.split(time[still], 1 + np.flatnonzero(np.diff(still) > 1))
+        unit = ' s' if both.timed else ''
         spans = [f'{number(each[0], 6)} to {number(each[-1], 6)}{unit}' for each in times]
-        more = f' and {counted(len(spans) - NAMED, "more time")}' if len(spans) > NAMED else ''
         found.append(
-            f'an encoder stood still while the other moved, from {", ".join(spans[:NAMED])}'
-            f'{more}: {len(still)} readings left out'
+            Observation.STOOD_STILL(spans=spans[:NAMED], more=len(spans[NAMED:]), count=len(still))
         )
-    sizes = [(float(error[rows[k]] - error[rows[k - 1]]), float(time[rows[k]])) for k in jumps]
-    found += jumped(sizes, at, unit)
+    sizes = [(float(time[rows[k]]), float(error[rows[k]] - error[rows[k - 1]])) for k in jumps]
+    found += jumped(sizes, timed=both.timed)
     if first or last + 1 < len(error):
-        found.append(longest(time[first], time[last], unit))
+        found.append(longest(time[kept], timed=both.timed))
     encoders = _without(both, slope * turned, kept, stray)
     return replace(recording, encoders=encoders, faults=(*recording.faults, *found))
-
-
-def computed(deviation: float) -> str:
-    """Say that an output deviates from the rotor by too little, rad, to be measured."""
-    within = number(deviation * ARC_MINUTES, 2)
-    followed = f'the output follows the rotor within {within}′'
-    return f'{followed}, as if it were computed from it, and shows nothing of the gear'
 
 
 def output_by_rotor(rotor: Array, measured: Array) -> float | None:

@@ -10,6 +10,7 @@ from gear_kinematics.measurement.measured import HYSTERESIS, LOST_MOTION, Measur
 from gear_kinematics.measurement.ramp_gate import gated_ramps
 from gear_kinematics.measurement.ratio import check_ratio
 from gear_kinematics.measurement.recording import Recording
+from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.transmission import TransmissionFigures, transmission_figures
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import number
@@ -28,10 +29,8 @@ class LostMotion:
     measured: bool = False
     """Whether an encoder measured the output under torque; if not, it is taken to be locked."""
     transmission: TransmissionFigures | None = None
-    remarks: tuple[str, ...] = ()
-    """Sentences about what was found."""
-    wrong_ratio: str = ''
-    """Sentence on what is wrong with the ratio; empty if nothing shows."""
+    wrong_ratio: Observed | None = None
+    """What is wrong with the ratio, if anything shows."""
 
     @property
     def main_figures(self) -> tuple[Measured, ...]:
@@ -68,9 +67,8 @@ def measure(
     Raises:
         RampError, RecordingError: if nothing can be measured.
     """
-    encoders, remarks = recording.encoders, list[str]()
-    ratio = parameters.gear.gear_ratio
-    found, wrong = None, ''
+    encoders, ratio = recording.encoders, parameters.gear.gear_ratio
+    found = wrong = None
     if encoders:
         wrong = check_ratio(encoders, ratio)
         found = transmission_figures(encoders, ratio, parameters.transmission_error_travel)
@@ -81,10 +79,12 @@ def measure(
         try:
             ramps = find_ramps(loading.torque, loading.angle)
             figures = gear_figures(ramps, loading.angle_step.size, rated_torque)
-            recording = replace(recording, faults=faults)
-            report = replace(report, figures=figures, measured=loading.measured)
         except RampError as error:
             if not found:
-                raise RampError('; '.join((str(error), *faults))) from error
-            remarks.append(f'{error}.')
-    return replace(report, recording=recording, remarks=(*recording.sentences, *remarks))
+                raise RampError('; '.join(map(str, (error, *faults)))) from error
+            no_ramps = Observation.NO_RAMPS(why=str(error))
+            recording = replace(recording, remarks=(*recording.remarks, no_ramps))
+            return replace(report, recording=recording)
+        recording = replace(recording, faults=faults)
+        return replace(report, recording=recording, figures=figures, measured=loading.measured)
+    return report

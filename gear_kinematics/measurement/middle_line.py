@@ -10,13 +10,13 @@ the backlash is the angle in its middle over which there is no load.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
 from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
 
 from gear_kinematics.measurement.loops import Array, Loop, Ramps
+from gear_kinematics.measurement.sentences import Cause
 from gear_kinematics.statistics.uncertainty import Estimate, resolution, student_t
 
 _ANGLES = 400
@@ -50,17 +50,6 @@ _MOVED_BY_GAP = 2.0
 gears with inertia need 1.7 at the most."""
 _NORMAL = 10**9
 """Degrees of freedom of a normal distribution."""
-
-
-class Cause(Enum):
-    """Why the backlash has no value; the text says so, or what to record instead."""
-
-    NONE = ''
-    FRICTION = 'to separate them, ramp to a torque of at least twice the friction'
-    REPEATS = 'to separate them, repeat the ramps five times or more'
-    BENT = 'the spring bends too much near zero torque to separate them'
-    SOFT = 'a spring that is soft around zero torque would show the same'
-    CONTRADICTION = 'the ramps of different amplitude contradict each other: record them again'
 
 
 class Backlash(NamedTuple):

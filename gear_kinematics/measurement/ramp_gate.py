@@ -4,7 +4,6 @@
 After a slip, the angle at the same torque is another one.
 """
 
-import math
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
@@ -13,11 +12,9 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from gear_kinematics.measurement.recording import Array, Loading
+from gear_kinematics.measurement.sentences import NAMED, Observation, Observed
 from gear_kinematics.measurement.two_encoders import directions
-from gear_kinematics.report.document import counted, number
 
-NAMED = 3
-"""Faults of a kind that are named with their moments."""
 _FEWEST = 50  # samples
 _WINDOW = 5  # samples in whose median a stray reading, or two, do not show
 _RAMP_STEPS = 25.0  # times the step that 98 % of medians have; noisy torques have up to 15
@@ -32,39 +29,51 @@ _MOST_KEPT = 2.0  # times a step, by which either way has another angle behind i
 _LOADED = 0.5  # of the torque, where no play is crossed; and of the range of the angle
 
 
-def gated_ramps(ramps: Loading) -> tuple[Loading, tuple[str, ...]]:
+def gated_ramps(ramps: Loading) -> tuple[Loading, tuple[Observed, ...]]:
     """Leave out readings that leave both neighbours and come back, and all before or after a slip.
 
+    What remains is searched again until nothing more is found, as a fault can hide another.
+
     Returns:
-        The longest part without a slip, and what was left out, in clauses.
+        The longest part without a slip, and what was left out.
     """
-    if len(ramps.torque) < _FEWEST:
-        return ramps, ()
-    faults, time = [], ramps.moments
-    at, unit = ('at', ' s') if ramps.seconds is not None else ('at sample', '')
-    stray = np.zeros(len(time), bool)
+    time, timed = ramps.moments, ramps.seconds is not None
+    strays = saturated = np.zeros(0)
+    jumps: list[tuple[float, float]] = []
+    before = len(time) + 1
+    while _FEWEST <= len(time) < before:
+        before = len(time)
+        stray = _stray(ramps)
+        if np.mean(stray) <= _MOST_STRAY:
+            strays = np.append(strays, time[stray])
+            ramps, time = ramps.chosen(~stray), time[~stray]
+        cut = _saturated(ramps)
+        if np.mean(cut) <= _MOST_SATURATED:
+            saturated = np.append(saturated, time[cut])
+            ramps, time = ramps.chosen(~cut), time[~cut]
+        if slips := _slips(ramps):
+            jumps += [(float(time[row]), size) for size, row in slips]
+            edges = [0, *(row for _, row in slips), len(time)]
+            part = slice(*max(pairwise(edges), key=lambda part: part[1] - part[0]))
+            ramps, time = ramps.chosen(part), time[part]
+    faults = [left_out(np.sort(strays), timed=timed)] if len(strays) else []
+    if len(saturated):
+        first, count = float(np.min(saturated)), len(saturated)
+        faults.append(Observation.SATURATED(timed=timed, moment=first, count=count))
+    faults += jumped(sorted(jumps), timed=timed)
+    if jumps:
+        faults.append(longest(time, timed=timed))
+    return ramps, tuple(faults)
+
+
+def _stray(ramps: Loading) -> NDArray[np.bool_]:
+    """Find readings of torque or angle, (n,), that leave their neighbours far."""
+    stray = np.zeros(len(ramps.torque), bool)
     for values in (ramps.torque, ramps.angle):
         calm = usual(values)
         most = _RAMP_STEPS * np.quantile(np.abs(np.diff(calm)), 0.98)
         stray |= np.abs(values - calm) > max(most, _LEAST_STRAY * np.ptp(calm))
-    if stray.any() and np.mean(stray) <= _MOST_STRAY:
-        faults.append(left_out(time[stray], at, unit))
-        ramps, time = ramps.chosen(~stray), time[~stray]
-    cut = _saturated(ramps)
-    if cut.any() and np.mean(cut) <= _MOST_SATURATED:
-        faults.append(
-            f'the torque sensor is saturated, first {at} {number(time[cut][0], 6)}{unit}: '
-            f'{np.count_nonzero(cut)} readings left out, in which the angle comes and goes'
-        )
-        ramps, time = ramps.chosen(~cut), time[~cut]
-    slips = _slips(ramps)
-    faults += jumped([(size, float(time[row])) for size, row in slips], at, unit)
-    if slips:
-        edges = [0, *(row for _, row in slips), len(time)]
-        first, end = max(pairwise(edges), key=lambda part: part[1] - part[0])
-        ramps = ramps.chosen(slice(first, end))
-        faults.append(longest(time[first], time[end - 1], unit))
-    return ramps, tuple(faults)
+    return stray
 
 
 def _saturated(ramps: Loading) -> NDArray[np.bool_]:
@@ -133,28 +142,24 @@ def shifted(place: Array, angle: Array, before: slice, after: slice) -> Array:
     return np.array([np.median(way) for way in ways if len(way)])
 
 
-def left_out(moments: Array, at: str, unit: str) -> str:
-    """Say which readings were left out."""
-    named = ', '.join(number(moment, 6) for moment in moments[:NAMED])
-    more = f' and {len(moments) - NAMED} more' if len(moments) > NAMED else ''
-    what = 'reading that contradicts' if len(moments) == 1 else 'readings that contradict'
-    return f'{len(moments)} {what} both neighbours left out, {at} {named}{unit}{more}'
+def left_out(moments: Array, *, timed: bool) -> Observed:
+    """Name the moments of readings that are left out."""
+    named = moments[:NAMED].tolist()
+    more = len(moments) - len(named)
+    return Observation.STRAY(timed=timed, moments=named, more=more, count=len(moments))
 
 
-def jumped(jumps: Sequence[tuple[float, float]], at: str, unit: str) -> Iterator[str]:
-    """Say by how much, rad, and when the output has jumped."""
-    for size, moment in jumps[:NAMED]:
-        jump = f'the output jumps by {number(math.degrees(size))}° against the rotor'
-        when = f'{at} {number(moment, 6)}{unit}'
-        yield f'{jump} {when} (a slip, or an encoder that jumped)'
+def jumped(jumps: Sequence[tuple[float, float]], *, timed: bool) -> Iterator[Observed]:
+    """Name the moments and sizes, rad, of jumps."""
+    for moment, size in jumps[:NAMED]:
+        yield Observation.JUMPED(timed=timed, moment=moment, angle=size)
     if further := len(jumps[NAMED:]):
-        yield f'{counted(further, "further jump")} of the output against the rotor'
+        yield Observation.JUMPED_FURTHER(count=further)
 
 
-def longest(first: float, last: float, unit: str) -> str:
-    """Say which part of a recording is used."""
-    span = f'{number(first, 6)} to {number(last, 6)}{unit}'
-    return f'only the longest part without a fault is used, {span}'
+def longest(time: Array, *, timed: bool) -> Observed:
+    """Name the part of a recording that is used, by its times."""
+    return Observation.LONGEST_PART(timed=timed, first=float(time[0]), last=float(time[-1]))
 
 
 def usual(values: Array) -> Array:

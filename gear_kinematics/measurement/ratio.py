@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from gear_kinematics.kinematics.gear_ratio import GearRatio, simplest_fraction
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.recording import Encoders, RecordingError
+from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.two_encoders import STEP, EncoderFit, directions
-from gear_kinematics.measurement.wording import plus_minus
 from gear_kinematics.statistics.uncertainty import Estimate
 
 Array = NDArray[np.float64]
@@ -46,21 +46,16 @@ class RatioEstimate:
     """Fractions that may be the ratio by denominator, the nearest first; the one that is taken."""
     taken: GearRatio | None = None
     """The simplest fraction that may be the ratio, unless it can be there by chance."""
-    advice: str = ''
-    """How far to turn the output to tell the ratio; empty if it is taken."""
+    advice: Observed | None = None
+    """What to record to tell the ratio; None if it is taken."""
 
     def fits(self, ratio: Fraction) -> bool:
         """Return whether this may be the true ratio."""
         return abs(self.measured.value - ratio) <= _MAX_DISTANCE * self.measured.expanded
 
-    @property
-    def plus_minus(self) -> str:
-        """The measured ratio ± its expanded uncertainty."""
-        return plus_minus(self.measured)
 
-
-def check_ratio(encoders: Encoders, assumed: GearRatio) -> str:
-    """Compare a recording with a ratio; return what is wrong in a sentence, or nothing.
+def check_ratio(encoders: Encoders, assumed: GearRatio) -> Observed | None:
+    """Compare a recording with a ratio; return what is wrong, if anything.
 
     Raises:
         RecordingError: if the errors cover a whole turn; within the turn they then mean nothing.
@@ -69,32 +64,32 @@ def check_ratio(encoders: Encoders, assumed: GearRatio) -> str:
     if float(np.ptp(np.remainder(error - error[0] + 0.5 * TURN, TURN))) >= 0.5 * TURN:
         why = wrong or 'the ratio is wrong, or an encoder counts backwards'
         raise RecordingError(f'the output does not follow the rotor: {why}')
-    return f'The recording does not have the ratio {assumed}: {wrong}.' if wrong else ''
+    return Observation.NOT_THE_RATIO(assumed=assumed, why=wrong) if wrong else None
 
 
-def wrong_ratio(encoders: Encoders, assumed: Fraction) -> str:
-    """Say in a clause which ratio a recording has, if it is clearly not the assumed one.
+def wrong_ratio(encoders: Encoders, assumed: Fraction) -> Observed | None:
+    """Find which ratio a recording has, if it is clearly not the assumed one.
 
     It is found if, between samples, the output turns at most half a turn more or less than by the
     assumed one.
     """
     found = _estimated(encoders, assumed)
     if found and found.fits(assumed):
-        return ''
+        return None
     upside_down = _estimated(encoders, 1 / assumed)
     for ratio in (1 / assumed, -1 / assumed):
         if upside_down and upside_down.fits(ratio):
-            measured = f'the recorded ratio is {upside_down.plus_minus}, not {assumed}'
-            meant = 'the speed of the rotor by that of the output'
-            return f'{measured}, which is upside down: give --ratio={ratio}, {meant}'
+            measured = upside_down.measured
+            return Observation.UPSIDE_DOWN(measured=measured, assumed=assumed, ratio=ratio)
     if not found:
         more = np.ptp(np.unwrap(encoders.measured)) > np.ptp(encoders.rotor.turned)
-        return 'the output turns more than the rotor: exchange the two' if more else ''
-    measured = f'the recorded ratio is {found.plus_minus}, not {assumed}'
+        return Observation.EXCHANGED() if more else None
     if found.fits(-assumed):
-        return f'{measured}: an encoder counts backwards, or --ratio={-assumed} is right'
-    such = '' if found.taken else ' it, such as'
-    return f'{measured}; gearkin commission finds it, or give{such} --ratio={found.candidates[0]}'
+        what, ratio = Observation.COUNTS_BACKWARDS, -assumed
+    else:
+        what = Observation.ANOTHER_RATIO if found.taken else Observation.OTHER_RATIOS
+        ratio = found.candidates[0]
+    return what(measured=found.measured, assumed=assumed, ratio=ratio)
 
 
 def _estimated(encoders: Encoders, assumed: Fraction) -> RatioEstimate | None:
@@ -161,9 +156,9 @@ def _judged(measured: Estimate, turned: float) -> RatioEstimate:
     # Over a turn, the uncertainty falls as it grows.
     more = 90 * math.ceil(spread / enough * turned / 90.0)
     more = more if turned >= _ONE_TURN else _ONE_TURN
-    advice = f'turn the output by {more}° or more'
+    advice = Observation.TURN_FURTHER(degrees=more)
     if not turned < more <= _MOST_TURNED:
-        advice = 'turning further hardly helps: sample both encoders at once, and more often'
+        advice = Observation.SAMPLE_TOGETHER()
     candidates = islice(_fractions(low, high, q, value), _CANDIDATES)
     return RatioEstimate(measured, tuple(candidates), advice=advice)
 

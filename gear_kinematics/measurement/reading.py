@@ -24,6 +24,7 @@ from gear_kinematics.measurement.recording import (
     match,
 )
 from gear_kinematics.measurement.rotor_fields import MOST
+from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.stamps import RestoredClock, in_order
 from gear_kinematics.measurement.tables import read_table
 from gear_kinematics.parameters import NodeParameters
@@ -143,18 +144,20 @@ class States:
         """
         rotor, encoder, parameters = self._rotor, self._encoder, self._parameters
         rejected = self._gear.input.rejected
-        remarks = [f'{rotor}: {count} states {cause}' for cause, count in rejected.items()]
+        remarks = [
+            Observation.REJECTED(topic=rotor, count=count, cause=cause)
+            for cause, count in rejected.items()
+        ]
         for topic, read in ((rotor, self._inputs), (encoder, self._outputs)):
             if read.every > 1:
-                what = f'one state of {read.every} is used: no more are kept in memory'
-                remarks.append(f'{topic}: {what}')
+                remarks.append(Observation.STATES_THINNED(topic=topic, every=read.every))
         columns = self._inputs.joined()
         rows = len(columns[0]) if columns else 0
         if not rows:
             why = f': {self._gear.input.why_rejected}' if rejected else ''
             raise BagError(f'{path}: no usable rotor states on {rotor}{why}')
         stamp, turns, angle, effort, segment = _in_order(columns, rotor, remarks)
-        has_effort = np.isfinite(effort).any()
+        clock, has_effort = self._clock.steps, np.isfinite(effort).any()
         motion = RotorMotion(stamp, turns, angle, effort if has_effort else None, segment)
         described = [f'rotor {rotor}, joint {parameters.rotor_joint!r}, rad']
         encoders = locked = None
@@ -180,7 +183,7 @@ class States:
         return Recording(
             path, path.name, tuple(described), rows, encoders, locked,
             tuple(remarks), damage,
-            tuple(f'the clock was {step}: nothing is interpolated' for step in self._clock.steps),
+            tuple(Observation.SET_BACK_AT(size=s.size / SECOND, stamp=s.stamp) for s in clock),
         )  # fmt: skip
 
 
@@ -214,13 +217,13 @@ class _Columns:
         return [np.concatenate(batches) for batches in zip(*self._batches, strict=True)]
 
 
-def _in_order(columns: Sequence[Array], topic: str, remarks: list[str]) -> list[Array]:
+def _in_order(columns: Sequence[Array], topic: str, remarks: list[Observed]) -> list[Array]:
     """Keep the rows whose stamps, the first column, are in order; remark what is left out."""
     kept, disordered = in_order(columns[0])
     if disordered:
-        remarks.append(f'{topic}: {disordered} states out of order')
+        remarks.append(Observation.STATES_OUT_OF_ORDER(topic=topic, count=disordered))
     if rest := len(columns[0]) - len(kept) - disordered:
-        remarks.append(f'{topic}: the clock was set back; the last {rest} states are left out')
+        remarks.append(Observation.SET_BACK_FAR(topic=topic, count=rest))
     return [column[kept] for column in columns]
 
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from gear_kinematics.bag import TopicMessages
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.encoder_step import Step
+from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.wire.cdr import SECOND
 
 Array = NDArray[Any]
@@ -244,16 +245,19 @@ class Recording:
     encoders: Encoders | None = None
     locked: Loading | None = None
     """Angles under torque without an encoder at the output, which is taken to be locked."""
-    remarks: tuple[str, ...] = ()
-    """Clauses about what was left out or assumed."""
+    remarks: tuple[Observed, ...] = ()
+    """What was left out or assumed."""
     damage: str | None = None
     """At which reading ended."""
-    faults: tuple[str, ...] = ()
-    """Clauses about what cannot be true, such as a slip, each with its moment."""
-    computed: str = ''
-    """One of them, if the output follows the rotor more closely than a gear's; else empty."""
+    faults: tuple[Observed, ...] = ()
+    """What cannot be true, such as a slip, each with its moment."""
     rotor_messages: TopicMessages | None = None
     """The first messages of the rotor, of a bag that is read as recorded."""
+
+    @property
+    def computed(self) -> Observed | None:
+        """The fault that the output follows the rotor more closely than that of a gear, if any."""
+        return next((f for f in self.faults if f.what is Observation.COMPUTED), None)
 
     @property
     def sentences(self) -> list[str]:

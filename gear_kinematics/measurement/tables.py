@@ -38,6 +38,7 @@ from gear_kinematics.measurement.recording import (
     locked_shaft,
     match,
 )
+from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.wire.cdr import SECOND
 
 _LEAST = 1e-30
@@ -59,7 +60,6 @@ _LIKELY = re.compile(r'(?i)pos|ang|enc|theta|winkel|(rad|deg|rev|inc|cnt|counts)
 """In names of those that are proposed before others."""
 _COUNTS = '--rotor-counts', '4096', '--output-counts', '4096'
 """Words for columns with whole numbers, for an example."""
-_PART = 'one row of {} is used: no more are kept in memory'
 _SHOWN = 800  # characters of an error, as those of a file can be many
 
 
@@ -135,8 +135,8 @@ class _Samples:
         clocks = {role: table.clocks.get(column.name, usual) for role, column in found.items()}
         wanted = {column.name for column in found.values()} | {*clocks.values(), rest or ''}
         raw, every = table.load(sorted(wanted - {''}))
-        self.remarks = [_PART.format(every)] if every > 1 else []
-        self.faults = list[str]()
+        self.remarks = [Observation.ROWS_THINNED(every=every)] if every > 1 else []
+        self.faults = list[Observed]()
         if clock and not (sources.time or table.first.get(usual, usual)):
             filled = raw[usual] == raw[usual]  # NaN is not equal to itself
             clock = clock if filled.any() else None
@@ -169,7 +169,7 @@ class _Samples:
         for roles in [[role] for role in found] if apart else [[*found]]:
             kept = usable[roles[0]] if apart else both
             if (left_out := np.count_nonzero(~kept)) and not apart:
-                self.remarks.append(f'{left_out} rows were left out: no numbers, or too large')
+                self.remarks.append(Observation.ROWS_LEFT_OUT(rows=left_out))
             times = raw.get(clocks[roles[0]])
             stamp, chosen = stamps(clock, times, kept, self.remarks, self.faults, alone=not apart)
             values = {role: data[role][chosen] for role in roles}

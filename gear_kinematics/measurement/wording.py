@@ -1,12 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The formatting of measured quantities, for people and for JSON."""
+"""The formatting of measured quantities."""
 
 import math
-from dataclasses import fields, is_dataclass
-from fractions import Fraction
-from typing import Any
-
-import numpy as np
 
 from gear_kinematics.report.document import number
 from gear_kinematics.statistics.uncertainty import COVERAGE, Estimate
@@ -52,24 +47,3 @@ def shown(value: str | float | None) -> str:
     if value is None:
         return 'undetermined'
     return f'{value:.6g}' if isinstance(value, float) else str(value) or "''"
-
-
-def plain(value: Any) -> Any:
-    """Convert dataclasses to mappings for JSON, without arrays."""
-    match value:
-        case Estimate():
-            return {
-                'value': value.value,
-                'standard_uncertainty': value.standard,
-                'degrees_of_freedom': value.degrees_of_freedom,
-                'expanded_uncertainty': value.uncertainty,
-                'repeats': value.repeats,
-            }
-        case Fraction():
-            return str(value)
-        case tuple() | list():
-            return [plain(item) for item in value]
-    if is_dataclass(value):
-        members = ((field.name, getattr(value, field.name)) for field in fields(value))
-        return {name: plain(it) for name, it in members if not isinstance(it, np.ndarray)}
-    return value

@@ -22,6 +22,7 @@ from gear_kinematics.measurement.commissioning.document import write_file
 from gear_kinematics.measurement.gate import gated
 from gear_kinematics.measurement.reading import States
 from gear_kinematics.measurement.rotor_fields import questions
+from gear_kinematics.measurement.sentences import Observation
 from gear_kinematics.measurement.wording import shown
 from gear_kinematics.parameters import PARAMETERS, NodeParameters, default_config
 from gear_kinematics.watch.gear import GearNode
@@ -69,7 +70,7 @@ class LiveCommissioning:
         """
         result, found = self._pool.submit(self._analyse).result(), self._found
         if not result.between and found and found.between and found.request == result.request:
-            later = f'With the messages that came later: {result.answer}'
+            later = Observation.WITH_LATER_MESSAGES(answer=result.answer)
             result = replace(found, notes=(*found.notes, later))
         data, received = [m[2] for m in self._rotor], [m[1] for m in self._rotor]
         asked = questions(data, received, self.request.rotor.joint, result.between)
@@ -99,7 +100,7 @@ class LiveCommissioning:
         """
         result, parameters = self.result(), gear.parameters
         if not result.between:
-            raise ValueError(result.answer)
+            raise ValueError(str(result.answer))
         if not parameters or not all(map(gear.hears, self._topics)):
             topics = ' and '.join(self._topics)
             raise ValueError(f'{gear.name} does not hear {topics}: write the file, and start it.')
@@ -126,7 +127,7 @@ class LiveCommissioning:
         entries = [Entry('heard', f'{self._count} messages', heard)]
         for found in result.values:
             tone: Tone = 'notable' if found.value is None else ''
-            entries.append(Entry(found.name, shown(found.value), found.evidence, tone))
-        advice = result.answer if min(moved) == 1.0 else GUIDE
+            entries.append(Entry(found.name, shown(found.value), str(found.evidence), tone))
+        advice = str(result.answer) if min(moved) == 1.0 else GUIDE
         known = float(np.mean([*moved, bool(result.between)]))
         return Guide(advice, known, tuple(entries)), result

@@ -2,7 +2,6 @@
 """What a report says of a recording: its answer, its remarks, and what became of limits."""
 
 import math
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -13,8 +12,9 @@ from gear_kinematics.measurement.answer import Limits, answer, remarks
 from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.measured import Measured
-from gear_kinematics.measurement.middle_line import Backlash, Cause
+from gear_kinematics.measurement.middle_line import Backlash
 from gear_kinematics.measurement.reading import read
+from gear_kinematics.measurement.sentences import Cause, Observation
 from gear_kinematics.measurement.wording import rounded
 from gear_kinematics.report.document import Tone
 from gear_kinematics.statistics.uncertainty import Component, Estimate
@@ -40,31 +40,30 @@ def report(report_of):
 
 
 @pytest.mark.parametrize(
-    ('name', 'limit', 'holds', 'said'),
+    ('name', 'limit', 'holds', 'why'),
     [
-        ('hysteresis', 33.5 * ARC_MINUTE, True, 'is within the limit of 33.5′'),
-        ('hysteresis', 32.0 * ARC_MINUTE, False, 'is beyond the limit of 32′'),
-        ('backlash', 10.5 * ARC_MINUTE, True, 'is within the limit'),
-        ('backlash', 10.0 * ARC_MINUTE, False, 'may be beyond the limit of 10′'),
-        ('backlash', 9.0 * ARC_MINUTE, False, 'is beyond the limit of 9′'),
-        ('lost_motion', 1.0, True, 'is within'),
-        ('lost_motion', 1e-4, False, 'is beyond'),
-        ('stiffness', 290.0, True, 'is within the limit of 290 N·m/rad'),
-        ('stiffness', 310.0, False, 'is beyond the limit of 310 N·m/rad'),
+        ('hysteresis', 33.5 * ARC_MINUTE, True, 'WITHIN_LIMIT'),
+        ('hysteresis', 32.0 * ARC_MINUTE, False, 'BEYOND_LIMIT'),
+        ('backlash', 10.5 * ARC_MINUTE, True, 'WITHIN_LIMIT'),
+        ('backlash', 10.0 * ARC_MINUTE, False, 'PERHAPS_BEYOND'),
+        ('backlash', 9.0 * ARC_MINUTE, False, 'BEYOND_LIMIT'),
+        ('lost_motion', 1.0, True, 'WITHIN_LIMIT'),
+        ('lost_motion', 1e-4, False, 'BEYOND_LIMIT'),
+        ('stiffness', 290.0, True, 'WITHIN_LIMIT'),
+        ('stiffness', 310.0, False, 'BEYOND_LIMIT'),
     ],
 )
-def test_limits_are_held_exceeded_or_not_shown(report, name, limit, holds, said):
+def test_limits_are_held_exceeded_or_not_shown(report, name, limit, holds, why):
     (judged,) = Limits(**{name: limit}).judge(report)
-    assert (judged.holds, said in judged.text) == (holds, True), judged.text
+    assert (judged.holds, judged.why.what) == (holds, Observation[why])
 
 
 def test_what_is_not_known_holds_no_limit(report_of):
     ideal = 0.01 * np.arange(400)
     output = ideal + 1e-5 * np.sin(ideal)
     judged = Limits(1.0, 1.0, 1.0, 1.0).judge(report_of(rotor=-19.0 * ideal, output=output))
-    assert len(judged) == 4
-    assert not any(one.holds for one in judged)
-    assert all('is not known' in one.text for one in judged)
+    found = [(one.holds, one.why.what) for one in judged]
+    assert found == 4 * [(False, Observation.NOT_KNOWN)]
 
 
 @pytest.mark.parametrize('name', ['hysteresis', 'stiffness', 'backlash'])
@@ -74,8 +73,8 @@ def test_a_limit_cannot_be_shown_to_hold_where_the_uncertainty_is_unknown(report
     limits = {'stiffness': 1.0} | dict.fromkeys(['hysteresis', 'backlash'], 1.0)
     (judged,) = Limits(**{name: limits[name]}).judge(report)
     assert not judged.holds
-    said = 'is not known' if name == 'backlash' else 'cannot be shown to hold the limit'
-    assert said in judged.text
+    unknown = Observation.NOT_KNOWN if name == 'backlash' else Observation.MEASURED_ONCE
+    assert judged.why.what is unknown
 
 
 @pytest.mark.parametrize(('amplitude', 'below'), [(4.0, True), (40.0, False)])
@@ -84,51 +83,57 @@ def test_lost_motion_below_the_friction_is_said_and_not_judged(report_of, amplit
     report = report_of(angle=creep(GEAR, torque), torque=torque)
     (judged,) = Limits(lost_motion=1.0).judge(report)
     assert judged.holds != below
-    assert ('cannot be judged: it is read at a torque below the friction' in judged.text) == below
-    assert ('below the friction of 1' in ' '.join(remarks(report))) == below
+    assert (judged.why.what is Observation.NOT_JUDGED) == below
+    said = [
+        found.values for found in remarks(report) if found.what is Observation.READ_BELOW_FRICTION
+    ]
+    known = {'torque': pytest.approx(0.12), 'friction': pytest.approx(1.0, rel=0.01)}
+    assert said == [known] * below
 
 
 @pytest.mark.parametrize(
-    ('friction', 'said'),
+    ('friction', 'what', 'cause'),
     [
-        (0.5, '′ is play, the rest friction.'),
+        (0.5, Observation.PLAY, None),
         # Of 4 N·m: the spring beyond the play is hardly loaded.
-        (3.9, 'How much of it is play is not known; to separate them, ramp to a torque of at'),
+        (3.9, Observation.PLAY_UNKNOWN, Cause.FRICTION),
     ],
 )
-def test_the_answer_is_a_sentence_for_who_must_decide(report_of, friction, said):
+def test_answer_tells_play_from_friction_where_it_can(report_of, friction, what, cause):
     report = report_of(angle=creep(GEAR._replace(friction=friction), SMALL), torque=SMALL)
-    sentence = answer(report)
-    assert sentence.startswith('At zero torque the output rests anywhere within ')
-    assert said in sentence
-    wide = Backlash(0.0, 0.132 * ARC_MINUTE, Cause.REPEATS)
-    figures = replace(report.figures, backlash=wide)
-    assert '′; backlash: 0 to 0.13′, the rest ' in answer(replace(report, figures=figures))
+    found = answer(report)
+    assert (found.what, found.values.get('cause')) == (what, cause)
+    slow = Observation.PLAY_BY_SLOW_RAMPS if friction < 1.0 else Observation.PLAY_NOT_SEPARATED
+    for unclear, said in (
+        (Cause.REPEATS, Observation.PLAY_NOT_SEPARATED),
+        (Cause.BENT, slow),
+        (Cause.NONE, Observation.PLAY_WITHIN),
+    ):
+        figures = replace(report.figures, backlash=Backlash(0.0, 0.1, unclear))
+        assert answer(replace(report, figures=figures)).what is said
 
 
 def test_remarks_tell_what_a_single_loop_cannot(report_of):
     torque = ramps((4.0, 200))
     report = report_of(angle=creep(GEAR, torque), torque=torque)
-    said = ' '.join(remarks(report))
-    assert 'All ramps have about one amplitude' in said
-    assert 'Inferred, not measured' in said
-    assert 'to separate them, repeat the ramps five times or more' in answer(report)
+    said = [found.what for found in remarks(report)]
+    assert said == [Observation.INFERRED, Observation.ONE_AMPLITUDE, Observation.PLUS_MINUS]
+    assert answer(report).values['cause'] is Cause.REPEATS
 
 
-@pytest.mark.parametrize(('zero', 'said'), [(2.0, 'The torque goes from -8 to 12 N·m'), (1.0, '')])
-def test_zero_of_a_torque_sensor_is_questioned_where_its_peaks_differ(report_of, zero, said):
+@pytest.mark.parametrize(('zero', 'ends'), [(2.0, [-8.0, 12.0]), (1.0, [])])
+def test_zero_of_a_torque_sensor_is_questioned_where_its_peaks_differ(report_of, zero, ends):
     torque = ramps(*[(10.0, 200)] * 3)
     report = report_of(angle=creep(GEAR, torque), torque=torque + zero)
-    found = [text for text in remarks(report) if 'its sensor reads 0' in text]
-    assert [text.partition(':')[0] for text in found] == [said] * bool(said)
+    found = [each for each in remarks(report) if each.what is Observation.UNEQUAL_PEAKS]
+    assert [end for each in found for end in each.values.values()] == pytest.approx(ends)
 
 
 def test_ramps_in_which_friction_holds_the_gear_tell_nothing(report_of):
     torque = ramps(*[(4.0, 200)] * 5, *[(40.0, 2000)] * 3)
     held = Gear(play=0.0, stiffness=300.0, friction=4.5)
-    sentence = answer(report_of(angle=creep(held, torque), torque=torque))
-    within = 2.0 * 4.5 / 300.0 / ARC_MINUTE
-    assert sentence.startswith(f'At zero torque the output rests anywhere within {within:.1f}')
+    width = answer(report_of(angle=creep(held, torque), torque=torque)).values['hysteresis']
+    assert width.value == pytest.approx(2.0 * 4.5 / 300.0, rel=1e-3)
 
 
 @pytest.mark.parametrize('rows', [0, 15])
@@ -136,7 +141,7 @@ def test_a_torque_that_is_later_than_the_angle_makes_the_hysteresis_negative(rep
     angle = creep(Gear(play=0.0, stiffness=300.0, friction=0.1), SMALL)
     late = np.concatenate([np.zeros(rows), SMALL])[: len(SMALL)]
     report = report_of(angle=angle, torque=late)
-    assert answer(report).startswith('The hysteresis is negative') == (rows > 0)
+    assert (answer(report).what is Observation.NEGATIVE_HYSTERESIS) == (rows > 0)
     (judged,) = Limits(hysteresis=1.0).judge(report)
     assert judged.holds == (rows == 0)
 
@@ -165,10 +170,10 @@ def test_values_are_written_to_the_second_digit_of_their_uncertainty(value, spre
 
 def test_lost_motion_is_not_told_where_its_uncertainty_says_nothing(shared_path, config):
     path = shared_path('data/faults/both_encoders_clean.csv')
-    assert re.search(
-        r'on reversals it loses 6\.(89|9)', answer(measure(read(path, config), config))
-    )
+    found = answer(measure(read(path, config), config))
+    assert found.what is Observation.LOSES
+    assert found.values['lost'].value == pytest.approx(6.9 * ARC_MINUTE, rel=0.002)
     # A step of a quarter of a turn, 284 arcmin at the output.
     report = measure(read(path, config, Sources(rotor_counts=4)), config)
     assert (report.transmission.lost_motion, report.transmission.reversals) == (None, None)
-    assert answer(report).endswith('what it loses on reversals cannot be told.')
+    assert answer(report).what is Observation.LOSS_NOT_TOLD

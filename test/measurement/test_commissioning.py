@@ -20,6 +20,7 @@ from gear_kinematics.measurement.commissioning.document import actuator_file, do
 from gear_kinematics.measurement.commissioning.encoder_range import find_range
 from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.measurement.recording import Recording, RecordingError
+from gear_kinematics.measurement.sentences import Observation
 from gear_kinematics.parameters import NodeParameters
 
 STROKE = 15.0  # rad of the output
@@ -120,7 +121,8 @@ def test_position_that_repeats_after_another_range(size, low, step, found, every
     position = np.round(position / step) * step if step else position
     result = commissioned(recorded(position, output, times))
     assert result.between == -19
-    assert f'position repeats after {found:.6g}'[:30] in result.answer
+    assert result.answer.what is Observation.RATIO_AND_RANGE
+    assert result.answer.values['size'] == pytest.approx(found, rel=4e-6, abs=1e-8)
     file = parameters(result, tmp_path)
     assert file.rotor_encoder_range == pytest.approx(found, rel=4e-6, abs=1e-8)
     error = (rotor - file.rotor_zero) / -19.0 - output
@@ -173,7 +175,8 @@ def test_less_than_a_rotor_turn_leaves_the_kind_open():
     times, rotor, output = readings(profile=ramped_strokes(0.2, 10.0, 1.0))
     result = commissioned(recorded(rotor, output, times), ratio=GearRatio(-19))
     (kind,) = (each for each in result.values if each.name == 'rotor_encoder')
-    assert (kind.value, kind.evidence[:28]) == (None, 'the rotor turned 0.605 turns')
+    assert (kind.value, kind.evidence.what) == (None, Observation.TURNED_TOO_LITTLE)
+    assert kind.evidence.values['turns'] == pytest.approx(0.605, abs=5e-4)
     assert 'rotor_encoder' not in actuator_file(result).split('# Open')[0]
 
 
@@ -214,7 +217,7 @@ def test_zero_outside_of_the_recording_is_refused():
 def test_rotor_and_output_that_are_exchanged_give_no_file():
     times, rotor, output = readings()
     result = commissioned(recorded(output, rotor, times))
-    assert 'the output turns more than the rotor: exchange the two' in result.answer
+    assert 'the output turns more than the rotor: exchange the two' in str(result.answer)
     assert not result.between
 
 

@@ -104,7 +104,7 @@ def test_ratio_of_a_recording_is_named_with_its_uncertainty(assumed, profile, sp
     drive = Drive(PLAY, ERRORS, noise=0.3 * ARC_MINUTE, **STEPS)
     both = recorded(drive, profile, 16.0, 100.0)
     try:
-        said = check_ratio(both, GearRatio.parse(assumed))
+        said = str(check_ratio(both, GearRatio.parse(assumed)))
     except RecordingError as error:
         said = str(error)
     value, _, uncertainty, *_ = said.split('the recorded ratio is ')[1].split()

@@ -18,6 +18,7 @@ from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.ramp_gate import gated_ramps
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import RecordingError
+from gear_kinematics.measurement.sentences import Observation
 from gear_kinematics.measurement.tables import read_table
 from gear_kinematics.parameters import NodeParameters
 
@@ -57,12 +58,10 @@ def test_output_that_is_computed_from_the_rotor_is_named(clean, gate, decimals, 
     """The best gears and encoders deviate by some seconds of arc, 1e-5 rad."""
     clean[:, 2] = np.round(clean[:, 1] / -19.0 + error * np.sin(clean[:, 1]), decimals)
     _, found = gate(clean)
-    assert [fault.partition(' within ')[0] for fault in found.faults] == (
-        ['the output follows the rotor'] * named
-    )
+    assert [fault.what for fault in found.faults] == [Observation.COMPUTED] * named
     report = measure(found, NodeParameters.load())
     (check,) = Limits(lost_motion=1.0).judge(report)
-    assert answer(report).startswith('The output follows the rotor within') is named
+    assert (answer(report).what is Observation.COMPUTED) is named
     assert check.holds is not named
 
 
@@ -74,9 +73,9 @@ def test_a_gear_whose_only_error_is_its_play_is_not_taken_for_computed(gate):
         output[k] = min(max(output[k - 1], angle - play / 2), angle + play / 2)
     _, found = gate(np.column_stack([time, -19.0 * ideal, output]))
     report = measure(found, NodeParameters.load())
-    assert 'computed' not in answer(report)
+    assert answer(report).what is not Observation.COMPUTED
     (check,) = Limits(lost_motion=play / 2).judge(report)
-    assert 'is beyond' in check.text
+    assert check.why.what is Observation.BEYOND_LIMIT
 
 
 @pytest.mark.parametrize(
@@ -97,8 +96,11 @@ def test_stray_readings_are_left_out_and_named(clean, gate, wrong):
     both = found.encoders
     assert both.measured == pytest.approx(clean[rows, 2], abs=1e-9)
     assert both.at_measured(both.rotor.turned) == pytest.approx(clean[rows, 1], abs=1e-6)
-    (remark,) = found.faults
-    assert f'{0.04 * min(wrong)[0]:g}' in remark
+    (fault,) = found.faults
+    assert fault.what is Observation.STRAY
+    assert fault.values['moments'] == pytest.approx(
+        0.04 * np.unique([row for row, _ in wrong])[:3]
+    )
 
 
 @pytest.mark.parametrize(('column', 'value'), [(1, -9999.0), (2, 0.0)], ids=['rotor', 'output'])
@@ -118,8 +120,8 @@ def test_a_frozen_encoder_is_named_and_its_readings_are_left_out(clean, gate, co
     _, found = gate(clean)
     assert len(found.encoders.measured) == len(clean) - 80
     assert np.ptp(found.encoders.error(RATIO)) < np.radians(0.5)
-    (remark,) = found.faults
-    assert 'stood still while the other moved, from 28 to 30.36 s, 36 to 36.76 s: 80' in remark
+    spans = ['28 to 30.36 s', '36 to 36.76 s']
+    assert found.faults == (Observation.STOOD_STILL(spans=spans, more=0, count=80),)
 
 
 @pytest.mark.parametrize(
@@ -131,8 +133,9 @@ def test_a_jump_divides_and_is_named_with_its_moment(clean, gate, column, size, 
     clean[900:, column] += size
     _, found = gate(clean)
     assert found.encoders.measured == pytest.approx(clean[:900, 2], abs=1e-9)
-    named = re.match('the output jumps by (.*)° against the rotor at 36 s', found.faults[0])
-    assert float(named[1]) == pytest.approx(degrees, abs=0.1)  # and the gear's own error
+    jump = found.faults[0].values
+    assert (found.faults[0].what, jump['moment']) == (Observation.JUMPED, pytest.approx(36.0))
+    assert np.degrees(jump['angle']) == pytest.approx(degrees, abs=0.1)  # and the gear's own error
 
 
 @pytest.mark.parametrize(('row', 'column', 'size'), [(600, 2, 5e-3), (372, 1, 0.6)])
@@ -140,7 +143,8 @@ def test_a_small_slip_and_a_jump_at_a_reversal_are_named(clean, gate, row, colum
     """What stays at all angles and ways is no lost motion, however small it is."""
     clean[row:, column] += size
     _, found = gate(clean)
-    assert f'against the rotor at {0.04 * row:g} s' in found.faults[0]
+    jump = found.faults[0]
+    assert (jump.what, jump.values['moment']) == (Observation.JUMPED, pytest.approx(0.04 * row))
     assert len(found.encoders.measured) == max(row, len(clean) - row)
 
 
@@ -150,9 +154,9 @@ def test_each_of_many_slips_divides_and_is_told(clean, gate):
         clean[row:, 2] += np.radians(5.0)
     _, found = gate(clean)
     assert len(found.encoders.measured) == 300
-    named = ' '.join(found.faults)
-    assert re.findall('against the rotor at ([^ ]*) s', named) == ['12', '24', '36']
-    assert '1 further jump of the output' in named
+    named = [fault.values for fault in found.faults if fault.what is Observation.JUMPED]
+    assert [jump['moment'] for jump in named] == pytest.approx([12.0, 24.0, 36.0])
+    assert Observation.JUMPED_FURTHER(count=1) in found.faults
 
 
 @pytest.mark.parametrize('size', [0.1, 0.3, 50.0])
@@ -161,7 +165,7 @@ def test_a_clock_that_is_set_back_goes_on_and_is_told(clean, gate, size):
     recording, _ = gate(clean)
     assert recording.encoders.measured == pytest.approx(clean[:, 2], abs=1e-9)
     assert recording.encoders.seconds == pytest.approx(0.04 * np.arange(len(clean)), abs=1e-6)
-    assert recording.faults == (f'the clock was set back by {size:g} s after 35.96 s',)
+    assert recording.faults == (Observation.SET_BACK_AFTER(size=size, seconds=35.96),)
 
 
 @pytest.mark.parametrize('rows', [[901, 900], [903, 900, 901, 902], [902, 903, 900, 901]])
@@ -186,7 +190,7 @@ def test_wraps_of_encoders_of_one_turn_are_no_faults(clean, gate):
     clean[700, 1] = (clean[700, 1] + 1.3) % (2.0 * np.pi)
     _, found = gate(clean)
     assert len(found.encoders.measured) == len(clean) - 1
-    assert found.faults[0].endswith('left out, at 28 s')
+    assert found.faults[0].values['moments'] == pytest.approx([28.0])
 
 
 def test_a_calibration_does_not_help_where_the_error_rises(shared_path):
@@ -212,12 +216,11 @@ def test_stray_readings_of_ramps_are_left_out(shared_path, config, tmp_path, col
     table = np.loadtxt(path, delimiter=',', skiprows=1)
     table[300, column] = value
     write_csv(tmp_path / 'r.csv', **dict(zip(('time', 'angle', 'torque'), table.T, strict=True)))
-    recording = read(tmp_path / 'r.csv', config)
-    (fault,) = recording.faults
-    assert fault == '1 reading that contradicts both neighbours left out, at 15 s'
-    hysteresis = measure(recording, config).figures.hysteresis
-    assert hysteresis.value == pytest.approx(np.radians(13.8 / 60), rel=0.02)
-    assert not read(path, config).faults
+    report = measure(read(tmp_path / 'r.csv', config), config)
+    (fault,) = report.recording.faults
+    assert (fault.what, fault.values['moments']) == (Observation.STRAY, [15.0])
+    assert report.figures.hysteresis.value == pytest.approx(np.radians(13.8 / 60), rel=0.02)
+    assert not measure(read(path, config), config).recording.faults
 
 
 TORQUE = ramps(*[(10.0, 75)] * 3)
@@ -252,7 +255,7 @@ def test_a_slip_under_torque_is_named_and_not_measured_across(
         assert rows < 500  # without a whole loop on either side
         said = str(error)
     else:
-        said = report.recording.faults[0]
+        said = str(report.recording.faults[0])
         assert report.figures.hysteresis.value == pytest.approx(HYSTERESIS, rel=0.02)
     named = re.search('the output jumps by (.*)° against the rotor at (.*) s ', said)
     assert float(named[1]) == pytest.approx(degrees, abs=0.3)  # and the motion meanwhile
@@ -270,7 +273,6 @@ def test_no_slip_is_seen_in_real_ramps(shared_path, config, every):
 def test_a_saturated_torque_sensor_is_named(config, tmp_path):
     torque = np.clip(TORQUE, -99.0, 7.0)
     path = write_csv(tmp_path / 'r.csv', torque_nm=torque, angle_rad=TWIST)
-    recording = read(path, config)
-    (fault,) = recording.faults
-    assert fault.startswith('the torque sensor is saturated, first at sample 54: 135 readings')
-    assert np.max(recording.locked.torque) < 7.0
+    ramps, faults = gated_ramps(read(path, config).locked)
+    assert faults == (Observation.SATURATED(timed=False, moment=54.0, count=135),)
+    assert np.max(ramps.torque) < 7.0

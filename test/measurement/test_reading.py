@@ -17,6 +17,7 @@ from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.reading import read, read_encoders
 from gear_kinematics.measurement.recording import RecordingError
+from gear_kinematics.measurement.sentences import Observation
 from gear_kinematics.measurement.stamps import RestoredClock
 
 TURN = 2.0 * math.pi
@@ -153,7 +154,7 @@ def test_times_that_go_back_end_the_recording_there(tmp_path, config):
     assert len(both.measured) == 5500
     assert np.max(np.abs(both.at_measured(both.ideal(Fraction(-19))))) <= 0.1 + 1e-12
     fault, _ = recording.faults  # and that the output is computed from the rotor
-    assert fault == 'the time in time goes back after 5500 rows: the others are left out'
+    assert fault == Observation.TIMES_GO_BACK(rows=5500, column='time')
 
 
 def test_rows_that_are_not_finite_are_left_out_and_reported(tmp_path, config, angle):
@@ -162,7 +163,7 @@ def test_rows_that_are_not_finite_are_left_out_and_reported(tmp_path, config, an
     torque = [*TORQUE[:-1], 'N/A']
     recording = read(write_csv(tmp_path / 'r.csv', angle=holes, torque=torque), config)
     assert len(recording.locked.angle) == len(angle) - 3
-    assert recording.remarks == ('3 rows were left out: no numbers, or too large',)
+    assert recording.remarks == (Observation.ROWS_LEFT_OUT(rows=3),)
 
 
 @pytest.mark.parametrize(
@@ -202,7 +203,7 @@ def test_long_files_are_read_in_part(tmp_path, config, monkeypatch):
     columns = {'angle': rows / 2**12, 'torque': rows / 2.5, 'time_s': rows}
     recording = read(write_csv(tmp_path / 'r.csv', **columns), config)
     np.testing.assert_array_equal(recording.locked.angle, rows[::4] / 2**12)
-    assert recording.remarks == ('one row of 4 is used: no more are kept in memory',)
+    assert recording.remarks == (Observation.ROWS_THINNED(every=4),)
 
 
 def test_long_bags_are_read_in_part(tmp_path, config, monkeypatch):
@@ -213,7 +214,7 @@ def test_long_bags_are_read_in_part(tmp_path, config, monkeypatch):
     np.testing.assert_array_equal(recording.encoders.rotor.stamp, samples.stamps[::4])
     np.testing.assert_array_equal(recording.encoders.measured, samples.positions[::4])
     assert recording.remarks == tuple(
-        f'{topic}: one state of 4 is used: no more are kept in memory'
+        Observation.STATES_THINNED(topic=topic, every=4)
         for topic in ('/rotor_state', '/output_encoder')
     )
 
@@ -268,22 +269,21 @@ def test_an_encoder_without_stamps_has_the_times_of_reception(tmp_path, config):
     np.testing.assert_allclose(both.error(Fraction(-19)), 0.01, rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize('step', ['0.040', '0.300', '2.500'])
+@pytest.mark.parametrize('step', [0.04, 0.3, 2.5])
 def test_a_clock_that_is_set_back_is_restored_and_named(tmp_path, config, step):
     ideal = np.linspace(0.0, 1.0, 4000) ** 2
     stamps = START + np.arange(4000) * MS
     late = stamps.copy()
-    late[3000:] -= round(1000 * float(step)) * MS
+    late[3000:] -= round(1000 * step) * MS
     late[[1000, 1001]] = late[[1001, 1000]]  # disorder is no step
     rotor = Samples(late, -19.0 * ideal, received=stamps)
     write_recording(tmp_path / 'back', rotor, Samples(late, ideal, received=stamps))
     recording, both = read_encoders(tmp_path / 'back', config)
     fault, _ = recording.faults  # and that the output is computed from the rotor
-    back = f'the clock was set back by {step} s at {stamps[2999]}'
-    assert fault == f'{back}: nothing is interpolated'
+    assert fault == Observation.SET_BACK_AT(size=step, stamp=stamps[2999])
     assert recording.remarks == (
-        '/rotor_state: 1 states out of order',
-        '/output_encoder: 1 states out of order',
+        Observation.REJECTED(topic='/rotor_state', count=1, cause='out of order'),
+        Observation.STATES_OUT_OF_ORDER(topic='/output_encoder', count=1),
     )
     assert len(both.measured) == 3999
     assert np.ptp(both.error(Fraction(-19))) < 1e-6
@@ -301,7 +301,7 @@ def test_a_stall_is_no_step_of_the_clock(tmp_path, config, stall):
     rotor = Samples(stamps, -19.0 * ideal, received=received)
     write_recording(tmp_path / 'bag', rotor, Samples(stamps, ideal, received=received))
     recording, both = read_encoders(tmp_path / 'bag', config)
-    assert not any('clock' in fault for fault in recording.faults)
+    assert not any(fault.what is Observation.SET_BACK_AT for fault in recording.faults)
     assert np.ptp(both.error(Fraction(-19))) < 1e-6
 
 

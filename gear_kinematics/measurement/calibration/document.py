@@ -10,13 +10,8 @@ from gear_kinematics.measurement.calibration.check import Judgement
 from gear_kinematics.measurement.calibration.fit import LEAST_COVERAGE, Fit
 from gear_kinematics.measurement.envelope import envelope
 from gear_kinematics.measurement.recording import Array
-from gear_kinematics.measurement.wording import (
-    ARC_MINUTES,
-    PERCENT,
-    arc_minutes,
-    plain,
-    plus_minus,
-)
+from gear_kinematics.measurement.sentences import Observation, Observed, plain
+from gear_kinematics.measurement.wording import ARC_MINUTES, arc_minutes, plus_minus
 from gear_kinematics.report.document import (
     Cell,
     Document,
@@ -32,28 +27,24 @@ from gear_kinematics.report.document import (
     number,
     printable,
 )
-from gear_kinematics.statistics.uncertainty import COVERAGE, Estimate
-
-_MILLI = 1e3
+from gear_kinematics.statistics.uncertainty import COVERAGE
 
 
 def document(fit: Fit, target: str) -> Document:
     """Return the document on a calibration, whose file is the target."""
     made, errors = fit.calibration, fit.calibration.validation
     verdict = Verdict.PASS if fit.helps else Verdict.FAIL
-    before, after = map(_arc_minutes, (errors.rms_before, errors.rms_after))
-    within = f'{100.0 * errors.coverage:.1f} % of it within the {PERCENT} interval'
-    finding = (
-        f'The error falls from {before} to {after} arcmin rms on held-out data, {within} of '
-        f'± {_arc_minutes(made.half_width)} arcmin. The node takes the file as its parameter '
-        'calibration.'
-        if fit.helps
-        else f'The error falls from {before} to {after} arcmin rms on held-out data, but only '
-        f'{within}, which is too narrow. Nothing is written; record more turns of the output, '
-        'in both directions.'
-        if errors.coverage < LEAST_COVERAGE and errors.rms_after < errors.rms_before
-        else f'No correction helps: with the best one the error is {after} arcmin rms instead of '
-        f'{before} on held-out data, {within}. Nothing is written.'
+    if fit.helps:
+        what = Observation.ERROR_FALLS
+    elif errors.coverage < LEAST_COVERAGE and errors.rms_after < errors.rms_before:
+        what = Observation.TOO_NARROW
+    else:
+        what = Observation.NO_CORRECTION
+    finding = what(
+        before=errors.rms_before,
+        after=errors.rms_after,
+        inside=100.0 * errors.coverage,
+        half_width=made.half_width,
     )
     terms = Table.of_items(
         {
@@ -65,12 +56,12 @@ def document(fit: Fit, target: str) -> Document:
         fit.terms,
         ('', 'likely cause'),
     )
-    sentences = list(_remarks(fit))
+    sentences = [*map(str, _remarks(fit))]
     section = Section(
         printable(target),
         (terms,),
         verdict,
-        (Sentence('finding', finding),),
+        (Sentence('finding', str(finding)),),
         tuple(map(printable, sentences)),
         _figure(made.half_width, fit.output, fit.before, fit.after),
     )
@@ -83,32 +74,21 @@ def document(fit: Fit, target: str) -> Document:
         'gear_ratio': str(made.gear_ratio),
         'left_out': plain(errors) | widths,
         'terms': plain(fit.terms),
-        'not_fitted': fit.refused,
+        'not_fitted': plain(fit.refused),
         'recordings': [plain(r.used) | {'delay': plain(r.delay)} for r in fit.recordings],
         'remarks': sentences,
     }
     return Document('gearkin calibrate', (section,), data, verdict)
 
 
-def _remarks(fit: Fit) -> Iterator[str]:
-    """Yield the basis and the limits of the calibration, in sentences."""
+def _remarks(fit: Fit) -> Iterator[str | Observed]:
+    """Yield the basis and the limits of the calibration."""
     for r in fit.recordings:
         yield from (f'{r.used.name}: {text}' for text in r.remarks)
         if r.delay and r.delay.clear:
-            yield f'{r.used.name}: {_late(r.delay)}'
+            yield Observation.OUTPUT_LATE(recording=r.used.name, delay=r.delay)
     for name, cause in fit.refused.items():
-        yield f'{name} is not fitted: {cause}.'
-
-
-def _late(delay: Estimate) -> str:
-    return (
-        f'the output angles are later than the rotor angles by {plus_minus(delay, _MILLI)} ms, or '
-        'the gear winds up in proportion to its speed. This part of the error is left out.'
-    )
-
-
-def _arc_minutes(angle: float) -> str:
-    return number(angle * ARC_MINUTES)
+        yield Observation.NOT_FITTED(term=name, cause=cause)
 
 
 def _figure(half_width: float, angle: Array, before: Array, after: Array) -> Figure:
@@ -148,25 +128,18 @@ def check_document(path: Path, half_width: float, judgements: Sequence[Judgement
 
 
 def _section(half_width: float, judged: Judgement) -> Section:
-    before, after = _arc_minutes(judged.rms_before), _arc_minutes(judged.rms_after)
     inside = 100.0 * judged.within_interval
-    spread = 100.0 * judged.within_interval_uncertainty
     if judged.fits:
-        finding = (
-            f'The calibration {"holds" if judged.holds else "does not help"}: {inside:.1f} ± '
-            f'{spread:.1f} % of the measured angles are within the {PERCENT} interval; it changes '
-            f'the error from {before} to {after} arcmin rms.'
+        finding = (Observation.HOLDS if judged.holds else Observation.DOES_NOT_HELP)(
+            inside=inside,
+            spread=100.0 * judged.within_interval_uncertainty,
+            before=judged.rms_before,
+            after=judged.rms_after,
         )
     else:
-        left = f'{after}′ rms'
-        if judged.left_order:
-            size, often = judged.left_order
-            left = f'{_arc_minutes(size)}′ {often}'
-        finding = (
-            f'The calibration no longer holds: {inside:.1f} % instead of {PERCENT} lie within the '
-            f'interval; what is left: {left}. Calibrate the gear again.'
-        )
-    delay = plus_minus(judged.delay, _MILLI)
+        left, often = judged.left_order or (judged.rms_after, 'rms')
+        finding = Observation.NO_LONGER_HOLDS(inside=inside, left=left, often=often)
+    delay = plus_minus(judged.delay, 1e3)
     values = (
         ('delay of the output', delay, 'ms'),
         ('wider for what was not calibrated', number(100.0 * judged.uncalibrated), '% of samples'),
@@ -176,7 +149,7 @@ def _section(half_width: float, judged: Judgement) -> Section:
         printable(judged.name),
         (Table.of_values(Layout.LINES, *cells),),
         Verdict.PASS if judged.holds else Verdict.FAIL,
-        (Sentence('finding', finding),),
+        (Sentence('finding', str(finding)),),
         tuple(map(printable, judged.remarks)),
         _figure(half_width, judged.output, judged.before, judged.after),
     )

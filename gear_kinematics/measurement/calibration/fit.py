@@ -34,9 +34,10 @@ from gear_kinematics.measurement.calibration.model import (
     without_delays,
 )
 from gear_kinematics.measurement.calibration.terms import Recorded, Samples, thinned
-from gear_kinematics.measurement.gate import NO_ENCODER, computed
+from gear_kinematics.measurement.gate import NO_ENCODER
 from gear_kinematics.measurement.ratio import wrong_ratio
 from gear_kinematics.measurement.recording import Array, RecordingError
+from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.share import version
 from gear_kinematics.statistics.uncertainty import Estimate, jackknife
 
@@ -80,7 +81,7 @@ class Fit:
     """Whether it reduces the error by more than a standard error, and its interval holds."""
     terms: tuple[FittedTerm, ...]
     recordings: tuple[FittedRecording, ...]
-    refused: Mapping[str, str]
+    refused: Mapping[str, Observed]
     """Terms that the recordings cannot determine, with the cause."""
     output: Array
     """Ideal output angle."""
@@ -113,8 +114,8 @@ def fit(
             raise RecordingError(f'{recording.name}: {wrong}')
     samples = [Samples(*recording, ratio) for recording in recordings]
     if (deviation := max(float(np.ptp(s.error)) for s in samples)) < NO_ENCODER:
-        raise RecordingError(computed(deviation))
-    refused: dict[str, str] = {}
+        raise RecordingError(str(Observation.COMPUTED(deviation=deviation)))
+    refused: dict[str, Observed] = {}
     orders = candidates.known_orders(samples, ratio, mechanism, refused)
 
     def model_of(shifts: Sequence[float]) -> GearModel:
@@ -132,7 +133,7 @@ def _result(
     ratio: Fraction,
     mechanism: Mechanism | None,
     delays: Sequence[Estimate | None],
-    refused: Mapping[str, str],
+    refused: Mapping[str, Observed],
 ) -> Fit:
     samples, deviation = model.samples, model.values() @ model.coefficients[0]
     constant = -float(deviation.mean())

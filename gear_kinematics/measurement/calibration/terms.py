@@ -16,6 +16,7 @@ from gear_kinematics.correction.corrector import MAX_GAP
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.recording import Array, Encoders, Recording
+from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.wording import ARC_MINUTES
 from gear_kinematics.report.document import number
 
@@ -201,7 +202,7 @@ def known_orders(
     samples: Sequence[Samples],
     ratio: Fraction,
     mechanism: Mechanism | None,
-    refused: dict[str, str],
+    refused: dict[str, Observed],
 ) -> list[Term]:
     """The orders of which a recording contains two cycles, after trends instead of others.
 
@@ -219,7 +220,7 @@ def known_orders(
                 order = Order(name, cycles, 0.0, 0.0)
                 found.setdefault(cycles, Term(name, cause, order))
                 continue
-            refused[name] = f'the longest travel holds {held:.2g} cycles, less than 2'
+            refused[name] = Observation.FEW_CYCLES(cycles=held)
             # Higher multiples do not differ from the first over a part of its cycle, and a whole
             # number of cycles in a turn of the rotor is not tied to the output's angle.
             few = body == 'output' and multiple <= 1.0 + travel * float(unit)
@@ -230,23 +231,23 @@ def known_orders(
     return sorted(found.values(), key=lambda term: not term.is_trend)
 
 
-def wind_up(samples: Sequence[Samples], refused: dict[str, str]) -> list[Term]:
+def wind_up(samples: Sequence[Samples], refused: dict[str, Observed]) -> list[Term]:
     """The wind-up, if torque was recorded and varies."""
     torques = [s.torque for s in samples if s.torque is not None]
     if len(torques) < len(samples):
         if torques:
-            refused['wind-up'] = 'not every recording has an effort throughout'
+            refused['wind-up'] = Observation.SOME_EFFORTS()
         return []
     mean = float(np.mean(np.concatenate(torques)))
     deviation = float(np.sqrt(np.mean([np.var(torque) for torque in torques])))
     if deviation <= 1e-9 * abs(mean) or deviation == 0.0:
-        refused['wind-up'] = 'the torque does not vary'
+        refused['wind-up'] = Observation.TORQUE_CONSTANT()
         return []
     cause = 'torsional compliance under the torque'
     return [Term('wind-up', cause, Compliance(0.0, mean), deviation)]
 
 
-def stops(samples: Sequence[Samples], refused: dict[str, str]) -> list[Term]:
+def stops(samples: Sequence[Samples], refused: dict[str, Observed]) -> list[Term]:
     """Stop operators over the width of the error, which is at least that of its hysteresis.
 
     Those are left out whose travel was made too seldom to know the state.
@@ -261,5 +262,5 @@ def stops(samples: Sequence[Samples], refused: dict[str, str]) -> list[Term]:
             for s, states in zip(samples, known, strict=True):
                 s.used = np.flatnonzero(states)  # where all smaller ones are known, too
         else:
-            refused[name] = f'its state is known at {100 * share:.0f} % of the samples'
+            refused[name] = Observation.STATE_UNKNOWN(percent=100.0 * share)
     return kept

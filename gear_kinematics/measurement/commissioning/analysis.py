@@ -19,11 +19,11 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.commissioning.joint import Joint
 from gear_kinematics.measurement.ratio import RatioEstimate, estimate_ratio
 from gear_kinematics.measurement.recording import Encoders, Recording, RecordingError
+from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.transmission import transmission_figures
 from gear_kinematics.measurement.two_encoders import ENCODER_ERROR
-from gear_kinematics.measurement.wording import plus_minus
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.report.document import counted, number
+from gear_kinematics.report.document import number
 
 _FASTER = 2.0
 """The speed that is allowed / the greatest seen, which is hardly the greatest that there is."""
@@ -63,8 +63,8 @@ class Value:
     name: str
     value: str | int | float | None
     """Value; None if it is open."""
-    evidence: str
-    """Evidence in one line; for an open value, what is known and what to do."""
+    evidence: Observed
+    """Evidence; for an open value, what is known and what to do."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -80,11 +80,11 @@ class Commissioning:
     """Between the encoders; None where it cannot be estimated."""
     between: GearRatio | None
     """The exact ratio between the encoders; None where it is open, so that there is no file."""
-    answer: str
-    """The result in a sentence."""
+    answer: Observed
+    """The result."""
     values: tuple[Value, ...]
-    notes: tuple[str, ...]
-    """Sentences on what is no parameter."""
+    notes: tuple[Observed, ...]
+    """What is no parameter."""
     questions: tuple[str, ...] = ()
     """Clauses on fields of the rotor's messages that seem to be wrong."""
 
@@ -115,30 +115,33 @@ def commission(
     answer, encoders, known = evidence, longest.encoders, request.file or NodeParameters.load()
     speed = float(np.max(np.abs(encoders.speed(Fraction(1)))))
     both = encoders.rotor.seconds, encoders.seconds
-    rotor, output = (f'{(len(times) - 1) / np.ptp(times):.4g} Hz' for times in both)
-    reached = f'The rotor turned at up to {number(speed)} rad/s'
-    notes = [f'{reached}. Rates: {rotor} of the rotor, {output} of the output.']
+    rotor, output = ((len(times) - 1) / np.ptp(times) for times in both)
+    notes = [Observation.SPEED_AND_RATES(speed=speed, rotor=rotor, output=output)]
     named = ('rotor_joint', request.rotor), ('output_encoder_joint', request.output)
-    names = (Value(name, joint, f'a joint of {topic}') for name, (topic, joint) in named if topic)
-    values = [*(() if request.file else names), *_kind(joints)]
+    values = [
+        Value(name, joint, Observation.JOINT(topic=topic))
+        for name, (topic, joint) in named
+        if topic and not request.file
+    ]
+    values += _kind(joints)
     if between:
-        answer = f'The gear has the ratio {request.ratio or between} ({evidence}).'
-        if longest.rotor_range not in {0.0, TURN}:
-            answer += f" The rotor's position repeats after {number(longest.rotor_range, 6)} rad."
+        repeats = longest.rotor_range not in {0.0, TURN}
+        what = Observation.RATIO_AND_RANGE if repeats else Observation.GEAR_RATIO
+        exact = request.ratio or between
+        answer = what(ratio=exact, evidence=evidence, size=longest.rotor_range)
         values += _ratio(between, evidence, request)
         values += _zeros(joints, between, request)
         travel = known.transmission_error_travel
         if delay := transmission_figures(encoders, between, travel).delay:
-            late = f'are late by {plus_minus(delay, 1e3)} ms' if delay.clear else ''
-            notes.append(f'The stamps of the output {late or "have no measurable delay"}.')
+            late = Observation.LATE if delay.clear else Observation.NOT_LATE
+            notes.append(late(delay=delay))
         else:
-            advice = 'turn the output there and back three times, at different speeds'
-            values.append(
-                Value('delay', None, f'it cannot be separated from hysteresis; {advice}')
-            )
+            values.append(Value('delay', None, Observation.DELAY_OR_HYSTERESIS()))
     elif ratio and ratio.advice and not longest.recording.faults:
-        values.append(Value('ratio', None, f'{ratio.plus_minus}; {ratio.advice}'))
+        seen = Observation.RATIO_SO_FAR(measured=ratio.measured, advice=ratio.advice)
+        values.append(Value('ratio', None, seen))
     if speed > known.max_rotor_speed:
+        reached = Observation.FASTEST(speed=speed)
         values.append(Value('max_rotor_speed', _FASTER * speed, reached))
     return Commissioning(
         request, joints, longest, ratio, between, answer, tuple(values), tuple(notes)
@@ -147,7 +150,7 @@ def commission(
 
 def _decided(
     longest: Joint, given: GearRatio | None
-) -> tuple[RatioEstimate | None, GearRatio | None, str]:
+) -> tuple[RatioEstimate | None, GearRatio | None, Observed]:
     """The ratio between the encoders, the exact one, and why it is that one, or why it is open."""
     encoders, faults = longest.encoders, longest.recording.faults
     try:
@@ -155,44 +158,43 @@ def _decided(
             longest.turned, encoders.measured, encoders.seconds, encoders.interpolated
         )
     except RecordingError as error:
-        return None, None, f'The ratio is undetermined: {error}.'
-    seen = f'{ratio.plus_minus} after {math.degrees(longest.travel):.1f}° of the output'
+        return None, None, Observation.NO_RATIO(why=str(error))
+    seen = {'measured': ratio.measured, 'degrees': math.degrees(longest.travel)}
     if not (exact := given or ratio.taken):
-        such = ', '.join(map(str, ratio.candidates))
-        advice = 'record it anew without these faults' if faults else ratio.advice
-        advice += ', or give the ratio of the nameplate'
-        return ratio, None, f'The ratio is undetermined: {seen}, such as {such}; {advice}.'
+        candidates, advice = [*ratio.candidates], ratio.advice
+        advice = Observation.RECORD_ANEW() if faults else advice
+        return ratio, None, Observation.OPEN_RATIO(**seen, candidates=candidates, advice=advice)
     for between in (exact, -exact):
         if ratio.fits(between):
-            why = 'which the given one fits' if given else 'the only simple fraction'
-            return ratio, GearRatio(between), f'{seen}, {why}'
-    return ratio, None, f'The given ratio {exact} does not agree with the measured {seen}.'
+            why = Observation.FITS_GIVEN_RATIO if given else Observation.ONLY_FRACTION
+            return ratio, GearRatio(between), why(**seen)
+    return ratio, None, Observation.GIVEN_RATIO_DISAGREES(**seen, given=exact)
 
 
 def _kind(joints: Sequence[Joint]) -> Iterator[Value]:
     """The kind of the rotor's encoder, and its range."""
     ranges = {joint.rotor_range for joint in joints if joint.rotor_range}
-    wraps = counted(sum(joint.rotor_wraps for joint in joints), 'wrap')
+    wraps = sum(joint.rotor_wraps for joint in joints)
     turns = max(float(np.ptp(joint.turned)) for joint in joints) / TURN
-    seen = f'the rotor turned {number(turns)} turns'
     if len(ranges) > 1:
         found = ' and '.join(number(each) for each in sorted(ranges))
-        yield Value('rotor_encoder_range', None, f'it differs: {found} rad; record again')
+        yield Value('rotor_encoder_range', None, Observation.RANGES_DIFFER(ranges=found))
     elif ranges == {TURN}:
-        yield Value('rotor_encoder', 'single_turn', f'{wraps} of a turn')
+        yield Value('rotor_encoder', 'single_turn', Observation.WRAPS_OF_A_TURN(wraps=wraps))
     elif ranges:
-        yield Value('rotor_encoder', 'multi_turn', f'{seen} with {wraps}')
+        seen = Observation.TURNED_WITH_WRAPS(turns=turns, wraps=wraps)
+        yield Value('rotor_encoder', 'multi_turn', seen)
         size = ranges.pop()
-        whole = f' ({round(size / TURN)} turns)' if size == TURN * round(size / TURN) else ''
-        evidence = f'{wraps} by equal steps of {number(size, 6)} rad{whole}'
+        whole = round(size / TURN) if size == TURN * round(size / TURN) else 0
+        evidence = Observation.EQUAL_STEPS(wraps=wraps, size=size, turns=whole)
         yield Value('rotor_encoder_range', size, evidence)
     elif turns <= _ONE_TURN:
-        yield Value('rotor_encoder', None, f'{seen}; turn it by more than one')
+        yield Value('rotor_encoder', None, Observation.TURNED_TOO_LITTLE(turns=turns))
     else:
-        yield Value('rotor_encoder', 'multi_turn', f'{seen} without a wrap')
+        yield Value('rotor_encoder', 'multi_turn', Observation.TURNED(turns=turns))
 
 
-def _ratio(between: GearRatio, evidence: str, request: Request) -> Iterator[Value]:
+def _ratio(between: GearRatio, evidence: Observed, request: Request) -> Iterator[Value]:
     """The ratio of the gear, and the senses of both encoders."""
     ratio = request.ratio or between
     if request.teeth:
@@ -200,26 +202,26 @@ def _ratio(between: GearRatio, evidence: str, request: Request) -> Iterator[Valu
         yield Value('satellite_teeth', request.teeth[1], evidence)
     else:
         pairs = tooth_pairs(ratio, ratio, _MOST_TEETH) if ratio < 0 else ()
-        teeth = ', '.join(f'{ring}/{satellite}' for ring, satellite in islice(pairs, _SHOWN))
-        evidence += f'; teeth such as {teeth}' if teeth else ''
+        teeth = [f'{ring}/{satellite}' for ring, satellite in islice(pairs, _SHOWN)]
+        evidence = Observation.TEETH(evidence=evidence, teeth=teeth) if teeth else evidence
         yield Value('gear_ratio', str(ratio), evidence)
     sense = request.file.output_encoder_direction if request.file else 1
-    which = 'the same sense' if between > 0 else 'opposite senses'
-    which += '' if request.ratio else ', which gives the ratio its sign'
+    which = (Observation.SAME_SENSE if between > 0 else Observation.OPPOSITE_SENSES)()
+    which = which if request.ratio else Observation.SENSE_GIVES_SIGN(sense=which)
     direction = sense if ratio == between else -sense
-    yield Value('rotor_direction', direction, f'the encoders count in {which}')
-    yield Value('output_encoder_direction', sense, 'the sense of the encoder is kept')
+    yield Value('rotor_direction', direction, which)
+    yield Value('output_encoder_direction', sense, Observation.SENSE_KEPT())
 
 
 def _zeros(joints: Sequence[Joint], between: GearRatio, request: Request) -> Iterator[Value]:
     """Find the zeros with which the output angles of both encoders agree on average."""
     last, ratio, file, moment = joints[-1], float(between), request.file, request.zero_here
     zero = shown = file.output_encoder_zero if file else 0.0
-    why, turn = 'the zero of the encoder is kept', TURN if last.output_wraps else math.inf
+    why, turn = Observation.ZERO_KEPT(), TURN if last.output_wraps else math.inf
     if moment is not None:
         zero = float(last.encoders.measured[last.row_at(moment)])
         shown = math.remainder(zero, turn)
-        why = f'the output angle is 0 at {moment} of {last.recording.name}'
+        why = Observation.ZERO_AT(moment=moment, recording=last.recording.name)
     zeros = last.turned - ratio * (last.encoders.measured - zero)
     mean, spread = float(np.mean(zeros)), float(np.ptp(zeros / ratio))
     period, error = abs(ratio) * turn, max(spread, ENCODER_ERROR)
@@ -235,5 +237,4 @@ def _zeros(joints: Sequence[Joint], between: GearRatio, request: Request) -> Ite
         if file.absolute or abs(off) <= error:  # with a reference, the node finds it
             mean = file.rotor_zero
     yield Value('output_encoder_zero', shown, why)
-    degrees = number(math.degrees(spread))
-    yield Value('rotor_zero', mean, f'both encoders agree within {degrees}° of the output')
+    yield Value('rotor_zero', mean, Observation.ENCODERS_AGREE(spread=spread))

@@ -10,7 +10,8 @@ import numpy as np
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.commissioning.analysis import Commissioning, Value
 from gear_kinematics.measurement.envelope import envelope
-from gear_kinematics.measurement.wording import plain, shown
+from gear_kinematics.measurement.sentences import Observation, plain
+from gear_kinematics.measurement.wording import plus_minus, shown
 from gear_kinematics.parameters.arm_file import add_actuators
 from gear_kinematics.parameters.new_config import arm_head, quoted, start_command, write_new
 from gear_kinematics.parameters.node_parameters import default_config
@@ -34,7 +35,7 @@ _INDENT = '    '
 def actuator_file(result: Commissioning, name: str = default_config().name) -> str:
     """Return the text of a parameter file of a name; ValueError if the ratio is open."""
     if not result.between:
-        raise ValueError(result.answer)
+        raise ValueError(str(result.answer))
     command = start_command(result.request.rotor.topic, name, result.request.output.topic)
     return '\n'.join(
         [
@@ -58,7 +59,7 @@ def write_file(result: Commissioning, path: Path, actuator: str = '') -> str:
         ValueError: if the ratio is open, or the file cannot be written.
     """
     if not result.between:
-        raise ValueError(result.answer)
+        raise ValueError(str(result.answer))
     command = start_command(result.request.rotor.topic, path.name, result.request.output.topic)
     if actuator:
         lines = [*_comment(_found(result)), *_values(result)]
@@ -78,10 +79,10 @@ def _values(result: Commissioning) -> Iterator[str]:
         if found.value is None:
             yield from _comment(f'Open: {found.name}: {found.evidence}.')
         else:
-            yield from _comment(found.evidence)
+            yield from _comment(str(found.evidence))
             yield f'{found.name}: {_yaml(found.value)}'
     for note in (*result.notes, *(f'{question}.' for question in result.questions)):
-        yield from _comment(note)
+        yield from _comment(str(note))
 
 
 def _comment(text: str) -> Iterator[str]:
@@ -100,16 +101,17 @@ def document(result: Commissioning, target: str) -> Document:
     wrong = result.changes(file) if file else {}
     if wrong:
         said = (f'{n} is {shown(old)}, not {shown(new)}' for n, (old, new) in wrong.items())
-        answer = f'{target} is contradicted: {"; ".join(said)}.'
+        answer = Observation.CONTRADICTED(target=target, changes='; '.join(said))
     elif result.between:
-        answer += f' {target} agrees.' if file else f' It is written to {target}.'
+        what = Observation.AGREES if file else Observation.WRITTEN
+        answer = what(answer=answer, target=target)
     columns: dict[str, Callable[[Value], str]] = {
         'parameter': lambda v: v.name,
         'value': lambda v: printable(shown(v.value)),
-        'evidence': lambda v: printable(v.evidence),
+        'evidence': lambda v: printable(str(v.evidence)),
     }
     table = Table.of_items(columns, result.values, ('', *columns))
-    remarks, names = [*result.notes], [joint.recording.name for joint in result.joints]
+    remarks, names = [*map(str, result.notes)], [joint.recording.name for joint in result.joints]
     for joint in result.joints:
         remarks += [f'{joint.recording.name}: {what}' for what in joint.recording.sentences]
     verdict = None if result.between and not wrong else Verdict.FAIL
@@ -117,14 +119,14 @@ def document(result: Commissioning, target: str) -> Document:
         printable(', '.join(names)),
         (table,),
         verdict,
-        tuple(Sentence('finding', printable(each)) for each in (answer, *result.questions)),
+        tuple(Sentence('finding', printable(str(each))) for each in (answer, *result.questions)),
         tuple(map(printable, remarks)),
         _figure(result),
     )
     data = {
         'schema': 'gear_kinematics/commissioning',
         'version': 2,
-        'answer': answer,
+        'answer': str(answer),
         'ratio': plain(ratio and ratio.measured),
         'candidates': plain(ratio.candidates if ratio else ()),
         'gear_ratio': plain(result.between and (result.request.ratio or result.between)),
@@ -146,7 +148,7 @@ def _figure(result: Commissioning) -> Figure | None:
     zero = np.mean(rotor - slope * output)
     ends = np.array([output.min(), output.max()])
     recorded = Line('recorded', Pen.THIRD, *envelope(output, rotor))
-    name = f'ratio {result.between or ratio.plus_minus}'
+    name = f'ratio {result.between or plus_minus(ratio.measured)}'
     fitted = Line(name, Pen.MODEL, ends, slope * ends + zero)
     error = Line('error', Pen.FIRST, *envelope(output, output - (rotor - zero) / slope))
     left = 'measured less computed output [°]'

@@ -20,6 +20,7 @@ from gear_kinematics.measurement.loads.recorded import (
     RecordedLoads,
     read_loads,
 )
+from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.parameters.arm import labelled
 from gear_kinematics.report.document import (
     PENS,
@@ -32,7 +33,6 @@ from gear_kinematics.report.document import (
     Sentence,
     Table,
     Verdict,
-    counted,
     number,
     printable,
 )
@@ -93,7 +93,7 @@ def _report(task: LoadTask, loads: RecordedLoads) -> LoadReport:
     source = 'the default parameters' if task.by_default else 'the given parameters'
     answer, loss = _answer(loads, moments, source), loads.slot_loss(task.slot_friction)
     if question := loads.question:
-        answer = f'{answer[:-1]}; {question}.'
+        answer = Observation.IMPLAUSIBLE(answer=answer, question=question)
     if preload and (moments or not question):
         verdict = Verdict.FAIL if moments else Verdict.PASS
     name, actuator = printable(task.bag.name), task.parameters.actuator
@@ -101,8 +101,8 @@ def _report(task: LoadTask, loads: RecordedLoads) -> LoadReport:
         f'{name}: {actuator}' if actuator else name,
         (_table(forces),),
         verdict,
-        tuple(_findings(answer, moments)),
-        tuple(_remarks(task, loads, loss)),
+        tuple(_findings(answer.sentence, moments)),
+        tuple(map(str, _remarks(task, loads, loss))),
         Figure((_over_time(loads),), stacked=True),
         _moving(loads, [moment.stamp for moment in moments[:_MOST_MOMENTS]]),
         below=Figure(tuple(_over_angle(forces)), columns=2),
@@ -110,7 +110,7 @@ def _report(task: LoadTask, loads: RecordedLoads) -> LoadReport:
     data = {
         'name': task.bag.name,
         **({'actuator': actuator} if actuator else {}),
-        'answer': answer,
+        'answer': answer.sentence,
         'verdict': verdict,
         'duration': float(loads.time[-1]),
         'samples': len(loads.time),
@@ -124,50 +124,44 @@ def _report(task: LoadTask, loads: RecordedLoads) -> LoadReport:
     return LoadReport(section, data, loads.damage, loads.taken)
 
 
-def _answer(loads: RecordedLoads, moments: Sequence[Moment], source: str) -> str:
+def _answer(loads: RecordedLoads, moments: Sequence[Moment], source: str) -> Observed:
     """Say whose gear it is, whether both branches stayed in mesh, and with what preload."""
-    seconds, preload, lost = loads.time[-1], abs(loads.parameters.preload), ''
-    gear = f'With the ratio {loads.parameters.mechanism.gear_ratio} of {source}'
-    time = f'{seconds / 60.0:.1f} min' if seconds >= 100.0 else f'{number(seconds)} s'  # noqa: PLR2004
+    seconds, preload = loads.time[-1], abs(loads.parameters.preload)
+    known = {
+        'ratio': loads.parameters.mechanism.gear_ratio,
+        'source': source,
+        'time': f'{seconds / 60.0:.1f} min' if seconds >= 100.0 else f'{number(seconds)} s',  # noqa: PLR2004
+    }
     if not preload:
-        most = number(np.max(np.abs(loads.torque)))
-        given = f'{gear}, over {time} the output gave at most {most} N·m'
-        return f'{given}; without the parameter preload, nothing is known of the mesh.'
-    if moments:
-        total = number(sum(moment.duration for moment in moments))
-        first = f'the first at {moments[0].start:.3f} s'
-        lost = f' except {counted(len(moments), "interval")} ({total} s), {first}'
-    needed = f'{number(loads.needed_preload)} N·m (set: {number(preload)})'
-    held = f'{gear}, in {time} both branches were in mesh{lost}'
-    return f'{held}; the least preload that would have held: {needed}.'
+        return Observation.NO_PRELOAD(**known, torque=float(np.max(np.abs(loads.torque))))
+    known |= {'needed': loads.needed_preload, 'preload': preload}
+    if not moments:
+        return Observation.IN_MESH(**known)
+    total = sum(moment.duration for moment in moments)
+    count, start = len(moments), moments[0].start
+    return Observation.OUT_OF_MESH(**known, count=count, total=total, start=start)
 
 
 def _findings(answer: str, moments: Sequence[Moment]) -> Iterator[Sentence]:
     yield Sentence('error' if moments else 'finding', answer)
     for moment in moments[:_MOST_MOMENTS]:
-        text = (
-            f'branch {moment.branch} was out of mesh for {number(moment.duration)} s from '
-            f'{moment.start:.3f} s on: {number(-moment.least_margin)} N·m beyond the preload'
+        found = Observation.BRANCH_OUT_OF_MESH(
+            branch=moment.branch,
+            duration=moment.duration,
+            start=moment.start,
+            torque=-moment.least_margin,
         )
-        yield Sentence('error', text, moment.start)
+        yield Sentence('error', str(found), moment.start)
 
 
-def _remarks(task: LoadTask, loads: RecordedLoads, loss: float) -> Iterator[str]:
+def _remarks(task: LoadTask, loads: RecordedLoads, loss: float) -> Iterator[Observed]:
     if loads.left_out:
-        causes = ', '.join(f'{cause} {count}' for cause, count in loads.left_out.items())
-        yield f'Messages left out: {causes}.'
+        causes = [f'{cause} {count}' for cause, count in loads.left_out.items()]
+        yield Observation.MESSAGES_LEFT_OUT(causes=causes)
     if math.isfinite(task.cam_rating):
-        yield (
-            f'L10 by ISO 281 for ball bearings of C = {number(task.cam_rating)} N, at the speed '
-            'and the cubic mean load of this recording; without lubrication and contamination '
-            'factors.'
-        )
+        yield Observation.LIFE(rating=task.cam_rating)
     if math.isfinite(loss):
-        yield (
-            f'At μ = {task.slot_friction:g}, friction of the slots takes {100.0 * loss:.1f} % of '
-            'the work of the output, if each couple acts as two forces at a distance of twice '
-            'the rolling radius of the satellite.'
-        )
+        yield Observation.SLOT_LOSS(friction=task.slot_friction, percent=100.0 * loss)
 
 
 def _table(forces: Sequence[Force]) -> Table:

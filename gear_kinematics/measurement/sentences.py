@@ -1,0 +1,343 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Everything that a measurement can say of a recording, each with its sentence.
+
+A sentence is formatted with the values of an `Observed`, in SI units. `{x:arcmin}` shows a number
+or an estimate in a unit of `_UNITS`, and `{x:arcmin.2}` a number to two digits;
+`{n:%d loop|%d loops}` shows a count with its noun, or nothing if it is 0; lists have commas.
+"""
+
+import math
+import string
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gear_kinematics.measurement.wording import ARC_MINUTES, PERCENT, plus_minus
+from gear_kinematics.report.document import number
+from gear_kinematics.statistics.uncertainty import Estimate
+
+NAMED = 3
+"""Moments of a kind that are named."""
+_UNITS = {'si': 1.0, 'arcmin': ARC_MINUTES, 'deg': math.degrees(1.0), 'ms': 1e3}
+
+# Parts of several sentences
+_RESTS = 'At zero torque the output rests anywhere within {hysteresis:arcmin}′'
+_PLAY = _RESTS + '; backlash: {low:arcmin.2} to {high:arcmin.2}′, the rest friction'
+_DEVIATES = 'In one direction the output deviates by {error:arcmin}′ peak to peak'
+_VALUE, _LIMIT = 'the {figure} of {value} ', 'the limit of {limit}'
+_RATIO = 'the recorded ratio is {measured:si}, not {assumed}'
+_SEEN = '{measured:si} after {degrees:.1f}° of the output'
+_TURNED = 'the rotor turned {turns:si} turns'
+_FALLS = 'The error falls from {before:arcmin} to {after:arcmin} arcmin rms on held-out data, '
+_INSIDE = '{inside:.1f} % of it within the ' + f'{PERCENT} interval'
+_JUDGED = (
+    ': {inside:.1f} ± {spread:.1f} % of the measured angles are within the '
+    f'{PERCENT} interval; '
+    'it changes the error from {before:arcmin} to {after:arcmin} arcmin rms.'
+)
+_MESH = 'With the ratio {ratio} of {source}, in {time} both branches were in mesh'
+_NEEDED = '; the least preload that would have held: {needed:si} N·m (set: {preload:si})'
+
+
+class Cause(Enum):
+    """Why the backlash has no value; the text says so, or what to record instead."""
+
+    NONE = ''
+    FRICTION = 'to separate them, ramp to a torque of at least twice the friction'
+    REPEATS = 'to separate them, repeat the ramps five times or more'
+    BENT = 'the spring bends too much near zero torque to separate them'
+    SOFT = 'a spring that is soft around zero torque would show the same'
+    CONTRADICTION = 'the ramps of different amplitude contradict each other: record them again'
+
+
+class Observation(Enum):
+    """What can be observed in a recording."""
+
+    # Readings that cannot be true; moments are seconds, or numbers of samples if not `timed`
+    STRAY = (
+        '{count:%d reading that contradicts|%d readings that contradict} both neighbours left '
+        'out, {at} {moments:si.6}{unit}{more: and %d more}'
+    )
+    SATURATED = (
+        'the torque sensor is saturated, first {at} {moment:si.6}{unit}: {count} readings left '
+        'out, in which the angle comes and goes'
+    )
+    STOOD_STILL = (
+        'an encoder stood still while the other moved, from {spans}'
+        '{more: and %d more time| and %d more times}: {count} readings left out'
+    )
+    JUMPED = (
+        'the output jumps by {angle:deg}° against the rotor {at} {moment:si.6}{unit} (a slip, or '
+        'an encoder that jumped)'
+    )
+    JUMPED_FURTHER = '{count:%d further jump|%d further jumps} of the output against the rotor'
+    LONGEST_PART = (
+        'only the longest part without a fault is used, {first:si.6} to {last:si.6}{unit}'
+    )
+    COMPUTED = (
+        'the output follows the rotor within {deviation:arcmin.2}′, as if it were computed from '
+        'it, and shows nothing of the gear'
+    )
+    # What was left out when a recording was read, or is assumed
+    SET_BACK_AT = 'the clock was set back by {size:.3f} s at {stamp}: nothing is interpolated'
+    SET_BACK_AFTER = 'the clock was set back by {size:si} s after {seconds:si.6} s'
+    SET_BACK_FAR = '{topic}: the clock was set back; the last {count} states are left out'
+    REJECTED = '{topic}: {count} states {cause}'
+    STATES_THINNED = '{topic}: one state of {every} is used: no more are kept in memory'
+    STATES_OUT_OF_ORDER = '{topic}: {count} states out of order'
+    ROWS_THINNED = 'one row of {every} is used: no more are kept in memory'
+    ROWS_LEFT_OUT = '{rows} rows were left out: no numbers, or too large'
+    NO_TIMES = '{rows} rows without a time in {column} were left out'
+    TIMES_OUT_OF_ORDER = 'the time in {column} is out of order in {rows} rows: left out'
+    TIMES_GO_BACK = 'the time in {column} goes back after {rows} rows: the others are left out'
+    SAME_TIMES = (
+        '{rows} rows have {times} different times in {column}: those with the same one are taken '
+        'to be evenly spaced'
+    )
+    NO_RAMPS = '{why}'
+    # The ratio of both encoders
+    NOT_THE_RATIO = 'The recording does not have the ratio {assumed}: {why}.'
+    EXCHANGED = 'the output turns more than the rotor: exchange the two'
+    UPSIDE_DOWN = (
+        _RATIO + ', which is upside down: give --ratio={ratio}, the speed of the rotor by that of '
+        'the output'
+    )
+    COUNTS_BACKWARDS = _RATIO + ': an encoder counts backwards, or --ratio={ratio} is right'
+    ANOTHER_RATIO = _RATIO + '; gearkin commission finds it, or give --ratio={ratio}'
+    OTHER_RATIOS = _RATIO + '; gearkin commission finds it, or give it, such as --ratio={ratio}'
+    TURN_FURTHER = 'turn the output by {degrees}° or more'
+    SAMPLE_TOGETHER = 'turning further hardly helps: sample both encoders at once, and more often'
+    # What torque ramps show
+    NEGATIVE_HYSTERESIS = (
+        'The hysteresis is negative, {hysteresis:arcmin}′, which no gear has: the torque comes '
+        'later than the angle, as behind a filter or from another clock.'
+    )
+    LOOPS_DIFFER = (
+        'How far the output rests from its middle cannot be told: {hysteresis:arcmin}′. The loops '
+        'differ by more than their width, as where the angle drifts or slips.'
+    )
+    PLAY_UNKNOWN = _RESTS + '. How much of it is play is not known; {cause.value}.'
+    PLAY = _RESTS + '. Of it, {play:arcmin}′ is play, the rest friction.'
+    PLAY_WITHIN = _PLAY + '.'
+    PLAY_NOT_SEPARATED = _PLAY + '; {cause.value}.'
+    PLAY_BY_SLOW_RAMPS = _PLAY + '; to separate them, repeat slow ramps to ±{torque:si.2} N·m.'
+    MEASURED_AT_OUTPUT = (
+        'Measured at the output: the wind-up is that of the gear, if the rotor was measured, too, '
+        'or locked.'
+    )
+    INFERRED = (
+        'Inferred, not measured: the angle is that of the motor encoder, with the output taken to '
+        'be locked. The figures include the compliance of motor, bench and clamping.'
+    )
+    READ_BELOW_FRICTION = (
+        'Lost motion is read at ±{torque:si} N·m, below the friction of {friction:si} N·m: it '
+        'does not contain the play, and no limit is judged by it.'
+    )
+    UNEQUAL_PEAKS = (
+        'The torque goes from {low:si} to {high:si} N·m: check that its sensor reads 0 without a '
+        'load, as hysteresis and backlash are read at zero torque.'
+    )
+    ONE_AMPLITUDE = 'All ramps have about one amplitude: small ones would separate play better.'
+    # What both encoders show
+    HARDLY_MOVES = 'The output does not move far enough in one direction to tell its errors.'
+    DEVIATES = _DEVIATES + '.'
+    LOSES = _DEVIATES + '; on reversals it loses {lost:arcmin}′.'
+    LAGS = (
+        _DEVIATES
+        + '; backward it lags by {lost:arcmin}′, by lost motion or by a delay between the '
+        'encoders.'
+    )
+    LOSS_NOT_TOLD = _DEVIATES + '; what it loses on reversals cannot be told.'
+    DELAY_TAKEN_OUT = (
+        'The stamps of the two encoders differ by a delay. It has been taken out of the '
+        'transmission error.'
+    )
+    DELAY_NOT_TOLD = (
+        'The speed varies too little to tell lost motion from a delay between the encoders: move '
+        'at several speeds.'
+    )
+    NOT_COMPARED = '{count} output angles were not compared: {cause}.'
+    PLUS_MINUS = (
+        f'Each ± contains the value with a probability of {PERCENT}, given the scatter of repeats '
+        'and the steps of the encoders where they are known. Errors of scale (1 % of the torque '
+        'is 1 % of friction and stiffness) and other positions of the output are not in it.'
+    )
+    # What commissioning determines and leaves open, and the evidence
+    GEAR_RATIO = 'The gear has the ratio {ratio} ({evidence}).'
+    RATIO_AND_RANGE = (
+        "The gear has the ratio {ratio} ({evidence}). The rotor's position repeats after "
+        '{size:si.6} rad.'
+    )
+    FITS_GIVEN_RATIO = _SEEN + ', which the given one fits'
+    ONLY_FRACTION = _SEEN + ', the only simple fraction'
+    NO_RATIO = 'The ratio is undetermined: {why}.'
+    OPEN_RATIO = (
+        'The ratio is undetermined: ' + _SEEN + ', such as {candidates}; {advice}, or give the '
+        'ratio of the nameplate.'
+    )
+    GIVEN_RATIO_DISAGREES = (
+        'The given ratio {given} does not agree with the measured ' + _SEEN + '.'
+    )
+    RECORD_ANEW = 'record it anew without these faults'
+    RATIO_SO_FAR = '{measured:si}; {advice}'
+    TEETH = '{evidence}; teeth such as {teeth}'
+    JOINT = 'a joint of {topic}'
+    WRAPS_OF_A_TURN = '{wraps:%d wrap|%d wraps} of a turn'
+    TURNED = _TURNED + ' without a wrap'
+    TURNED_WITH_WRAPS = _TURNED + ' with {wraps:%d wrap|%d wraps}'
+    TURNED_TOO_LITTLE = _TURNED + '; turn it by more than one'
+    RANGES_DIFFER = 'it differs: {ranges} rad; record again'
+    EQUAL_STEPS = '{wraps:%d wrap|%d wraps} by equal steps of {size:si.6} rad{turns: (%d turns)}'
+    SAME_SENSE = 'the encoders count in the same sense'
+    OPPOSITE_SENSES = 'the encoders count in opposite senses'
+    SENSE_GIVES_SIGN = '{sense}, which gives the ratio its sign'
+    SENSE_KEPT = 'the sense of the encoder is kept'
+    ZERO_KEPT = 'the zero of the encoder is kept'
+    ZERO_AT = 'the output angle is 0 at {moment} of {recording}'
+    ENCODERS_AGREE = 'both encoders agree within {spread:deg}° of the output'
+    FASTEST = 'The rotor turned at up to {speed:si} rad/s'
+    SPEED_AND_RATES = (
+        'The rotor turned at up to {speed:si} rad/s. Rates: {rotor:.4g} Hz of the rotor, '
+        '{output:.4g} Hz of the output.'
+    )
+    LATE = 'The stamps of the output are late by {delay:ms} ms.'
+    NOT_LATE = 'The stamps of the output have no measurable delay.'
+    DELAY_OR_HYSTERESIS = (
+        'it cannot be separated from hysteresis; turn the output there and back three times, at '
+        'different speeds'
+    )
+    WITH_LATER_MESSAGES = 'With the messages that came later: {answer}'
+    CONTRADICTED = '{target} is contradicted: {changes}.'
+    AGREES = '{answer} {target} agrees.'
+    WRITTEN = '{answer} It is written to {target}.'
+    # What a calibration is worth, in shares of the samples, and what it lacks
+    ERROR_FALLS = (
+        _FALLS + _INSIDE + ' of ± {half_width:arcmin} arcmin. The node takes the file as its '
+        'parameter calibration.'
+    )
+    TOO_NARROW = (
+        _FALLS + f'but only {_INSIDE}, which is too narrow. Nothing is written; record more turns '
+        'of the output, in both directions.'
+    )
+    NO_CORRECTION = (
+        'No correction helps: with the best one the error is {after:arcmin} arcmin rms instead of '
+        '{before:arcmin} on held-out data, ' + _INSIDE + '. Nothing is written.'
+    )
+    OUTPUT_LATE = (
+        '{recording}: the output angles are later than the rotor angles by {delay:ms} ms, or the '
+        'gear winds up in proportion to its speed. This part of the error is left out.'
+    )
+    NOT_FITTED = '{term} is not fitted: {cause}.'
+    FEW_CYCLES = 'the longest travel holds {cycles:.2g} cycles, less than 2'
+    SOME_EFFORTS = 'not every recording has an effort throughout'
+    TORQUE_CONSTANT = 'the torque does not vary'
+    STATE_UNKNOWN = 'its state is known at {percent:.0f} % of the samples'
+    HOLDS = 'The calibration holds' + _JUDGED
+    DOES_NOT_HELP = 'The calibration does not help' + _JUDGED
+    NO_LONGER_HOLDS = (
+        'The calibration no longer holds: {inside:.1f} % instead of '
+        f'{PERCENT} lie within the '
+        'interval; what is left: {left:arcmin}′ {often}. Calibrate the gear again.'
+    )
+    # What the loads of a recording show
+    NO_PRELOAD = (
+        'With the ratio {ratio} of {source}, over {time} the output gave at most {torque:si} N·m; '
+        'without the parameter preload, nothing is known of the mesh'
+    )
+    IN_MESH = _MESH + _NEEDED
+    OUT_OF_MESH = (
+        _MESH + ' except {count:%d interval|%d intervals} ({total:si} s), the first at '
+        '{start:.3f} s' + _NEEDED
+    )
+    IMPLAUSIBLE = '{answer}; {question}'
+    BRANCH_OUT_OF_MESH = (
+        'branch {branch} was out of mesh for {duration:si} s from {start:.3f} s on: {torque:si} '
+        'N·m beyond the preload'
+    )
+    MESSAGES_LEFT_OUT = 'Messages left out: {causes}.'
+    LIFE = (
+        'L10 by ISO 281 for ball bearings of C = {rating:si} N, at the speed and the cubic mean '
+        'load of this recording; without lubrication and contamination factors.'
+    )
+    SLOT_LOSS = (
+        'At μ = {friction:g}, friction of the slots takes {percent:.1f} % of the work of the '
+        'output, if each couple acts as two forces at a distance of twice the rolling radius of '
+        'the satellite.'
+    )
+    # Limits
+    WITHIN_LIMIT = _VALUE + 'is within ' + _LIMIT
+    BEYOND_LIMIT = _VALUE + 'is beyond ' + _LIMIT
+    PERHAPS_BEYOND = _VALUE + 'may be beyond ' + _LIMIT
+    MEASURED_ONCE = (
+        f'{_VALUE}cannot be shown to hold {_LIMIT}: it was measured once, so that its uncertainty '
+        'is not known'
+    )
+    NOT_KNOWN = 'the {figure} is not known'
+    NOT_JUDGED = 'the {figure} cannot be judged: it is read at a torque below the friction'
+
+    def __call__(self, **values: Any) -> 'Observed':
+        """Return what was observed, with its values."""
+        return Observed(self, values)
+
+
+class Observed(NamedTuple):
+    """Something that was observed, with its values; as text it is the clause or the sentences."""
+
+    what: Observation
+    values: dict[str, Any]
+
+    def __str__(self) -> str:
+        timed = self.values.get('timed')
+        of_moments = {'at': 'at' if timed else 'at sample', 'unit': ' s' if timed else ''}
+        return _Formatter().vformat(self.what.value, (), of_moments | self.values)
+
+    @property
+    def sentence(self) -> str:
+        """The sentences, or the clause as one."""
+        text = str(self)
+        return f'{text[0].upper()}{text[1:].removesuffix(".")}.'
+
+
+class _Formatter(string.Formatter):
+    """Formats numbers and estimates in units, counts and lists."""
+
+    def format_field(self, value: Any, spec: str) -> str:
+        if isinstance(value, list):
+            return ', '.join(self.format_field(each, spec) for each in value)
+        if '%d' in spec:
+            one, _, more = spec.partition('|')
+            text = one if value == 1 else more or one
+            return text % value if value else ''
+        unit, _, digits = spec.partition('.')
+        if unit not in _UNITS:
+            return format(value, spec)
+        if isinstance(value, Estimate):
+            return plus_minus(value, _UNITS[unit])
+        return number(value * _UNITS[unit], int(digits or 3))
+
+
+def plain(value: Any) -> Any:
+    """Convert dataclasses to mappings for JSON, without arrays, and observations to text."""
+    match value:
+        case Estimate():
+            return {
+                'value': value.value,
+                'standard_uncertainty': value.standard,
+                'degrees_of_freedom': value.degrees_of_freedom,
+                'expanded_uncertainty': value.uncertainty,
+                'repeats': value.repeats,
+            }
+        case Fraction() | Observed():
+            return str(value)
+        case Mapping():
+            return {name: plain(item) for name, item in value.items()}
+        case tuple() | list():
+            return [plain(item) for item in value]
+    if is_dataclass(value):
+        members = ((field.name, getattr(value, field.name)) for field in fields(value))
+        return {name: plain(it) for name, it in members if not isinstance(it, np.ndarray)}
+    return value
