@@ -191,10 +191,11 @@ class Bag:
 def by_topic(messages: Iterable[Message], topics: Iterable[str]) -> dict[str, TopicMessages]:
     """Return the messages of each topic."""
     columns = {topic: TopicMessages() for topic in topics}
+    append = {topic: (of.data.append, of.received.append) for topic, of in columns.items()}
     for topic, received, data in messages:
-        column = columns[topic]
-        column.data.append(data)
-        column.received.append(received)
+        add_data, add_received = append[topic]
+        add_data(data)
+        add_received(received)
     return columns
 
 

@@ -11,6 +11,7 @@ from typing import ClassVar
 import numpy as np
 
 from gear_kinematics.correction.calibration_file import Calibration
+from gear_kinematics.validation.fields import Window
 from gear_kinematics.validation.output_topics import STATE_UNITS, Array, Bounds, JointStateTopic
 from gear_kinematics.validation.recorder import HOLE
 from gear_kinematics.wire.topics import CORRECTED_INTERVAL, CORRECTED_STATE
@@ -40,7 +41,7 @@ class CorrectedState(JointStateTopic):
 
     units: ClassVar[Mapping[str, str]] = STATE_UNITS
 
-    def _expected(self, samples: Array) -> Sequence[Bounds]:
+    def _expected(self, samples: Window) -> Sequence[Bounds]:
         position = self._ideal_angle(samples) + samples['deviation']
         history = samples['unknown_history']
         ratio = self._gear.gear_ratio
@@ -59,7 +60,7 @@ class CorrectedInterval(JointStateTopic):
 
     units: ClassVar[Mapping[str, str]] = {'half width': 'rad'}
 
-    def _expected(self, samples: Array) -> Sequence[Bounds]:
+    def _expected(self, samples: Window) -> Sequence[Bounds]:
         half_width = samples['half_width']
         return ((half_width - samples['unknown_history'], half_width),)
 

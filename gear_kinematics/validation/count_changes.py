@@ -11,7 +11,7 @@ from gear_kinematics.kinematics import split_turns
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, repeated
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.validation.causes import FindingCause
-from gear_kinematics.validation.fields import Array, FieldSamples
+from gear_kinematics.validation.fields import Array, FieldSamples, Window
 from gear_kinematics.validation.report import Finding
 
 _MAX_STEPS = 65_536
@@ -61,25 +61,32 @@ class CountChanges:
         self._referenced = -1  # the latest segment that an encoder has referenced
         self._latest = -1, 0.0, 0.0  # segment, angle and error of the latest output
 
-    def move(self, samples: Array, sign: int = 1) -> None:
+    def move(self, samples: Window, sign: int = 1) -> None:
         """Move samples, (n,), by the changes so far, or, -1, back."""
         if len(self._steps) > 1:
             count = self._count_at(samples['number'])
-            samples['turns'] += sign * count['turns']
-            samples['angle'] += sign * count['angle']
+            for name in ('turns', 'angle'):
+                samples[name] = samples[name] + sign * count[name]
 
-    def learn(self, samples: Array, position: FieldSamples) -> bool:
+    def learn(self, samples: Window, position: FieldSamples) -> bool:
         """Learn from output angles at moved samples, (n,), and move these by what is found.
 
         Returns:
             Whether a change was found, so that the expected angles have changed.
         """
-        rows = np.argsort(samples['number'], kind='stable')
-        rows = rows[np.isfinite(position.error[rows])]
+        before, angle_before, error_before = self._latest
+        numbers, error, angle = samples['number'], position.error, position.recorded
+        if len(error) and (numbers[1:] > numbers[:-1]).all():
+            least, greatest = min(error.min(), error_before), max(error.max(), error_before)
+            if greatest - least <= self._tolerance:  # NaN compares false
+                self._last_alone = False
+                self._latest = int(samples['segment'][-1]), float(angle[-1]), float(error[-1])
+                return False
+        rows = np.argsort(numbers, kind='stable')
+        rows = rows[np.isfinite(error[rows])]
         if not len(rows):
             return False
-        error, angle = position.error[rows], position.recorded[rows]
-        before, angle_before, error_before = self._latest
+        error, angle = error[rows], angle[rows]
         jumps = np.abs(np.diff(error, prepend=error_before)) > self._tolerance
         constant = not jumps[1:_FEW].any()
         if (
@@ -89,7 +96,7 @@ class CountChanges:
         steps, moved, turns, rest = [], 0.0, 0.0, 0.0
         self._last_alone = False
         for k in np.flatnonzero(jumps).tolist():
-            sample, jump = samples[rows[k]], float(error[k]) - moved
+            row, jump = rows[k], float(error[k]) - moved
             if k:
                 before, angle_before = int(samples['segment'][rows[k - 1]]), float(angle[k - 1])
             rotor_angle = self._ratio.rotor_angle(jump)
@@ -100,6 +107,7 @@ class CountChanges:
             whole = abs(math.remainder(rotor_angle, period or TURN)) <= near
             if whole:
                 more_turns, more = repeated(round(rotor_angle / (period or TURN)), period or TURN)
+            sample = {name: samples[name][row] for name in ('segment', 'stamp', 'number')}
             number = self._explain(
                 sample, before, angle_before, jump, whole=whole, constant=constant
             )
@@ -109,8 +117,8 @@ class CountChanges:
             moved, turns, rest = moved + jump, turns + more_turns, rest + more
             count = self._count_at(sample['number'])
             steps.append((number, count['turns'] + turns, count['angle'] + rest))
-        latest = samples[rows[-1]]
-        self._latest = int(latest['segment']), float(angle[-1]), float(error[-1]) - moved
+        segment = int(samples['segment'][rows[-1]])
+        self._latest = segment, float(angle[-1]), float(error[-1]) - moved
         if not steps:
             return False
         self.count += len(steps)

@@ -164,8 +164,10 @@ class FactorFit:
 
     def update(self, recorded: Array, expected: Array) -> None:
         """Add values (n,); those that are not finite are left out."""
-        usable = np.isfinite(recorded) & np.isfinite(expected)
-        x, y = expected[usable], recorded[usable]
+        x, y = expected, recorded
+        usable = np.isfinite(x) & np.isfinite(y)
+        if not usable.all():
+            x, y = x[usable], y[usable]
         with np.errstate(over='ignore'):
             self._sums += (x @ x, x @ y, y @ y)
 

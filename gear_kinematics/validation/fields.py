@@ -3,7 +3,7 @@
 
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -17,6 +17,39 @@ Array = NDArray[Any]
 
 _MAX_SAMPLES = 2000
 """Samples of the record, which is halved when there are more."""
+
+
+class Window:
+    """The latest n samples, or some of them, as columns by name, each (n,)."""
+
+    def __init__(self, columns: Mapping[str, Array]) -> None:
+        self.columns = dict(columns)
+
+    def __len__(self) -> int:
+        return len(next(iter(self.columns.values())))
+
+    def __getitem__(self, name: str) -> Array:
+        return self.columns[name]
+
+    def __setitem__(self, name: str, values: Array) -> None:
+        self.columns[name] = values
+
+    def take(self, rows: Array | slice) -> 'Window':
+        """Return samples; those of a slice share the memory of their columns."""
+        return Window({name: values[rows] for name, values in self.columns.items()})
+
+    def extended(self, new: 'Window') -> 'Window':
+        """Return a copy with other samples behind these."""
+        return Window({
+            name: np.concatenate([values, new[name]]) for name, values in self.columns.items()
+        })  # fmt: skip
+
+
+def as_slice(rows: Array) -> Array | slice:
+    """Return the rows as a slice, which is faster, if they follow each other."""
+    if not len(rows) or (rows[-1] - rows[0] + 1 == len(rows) and (rows[1:] > rows[:-1]).all()):
+        return slice(*((int(rows[0]), int(rows[-1]) + 1) if len(rows) else (0, 0)))
+    return rows
 
 
 class Occurrences:
@@ -69,9 +102,9 @@ class FieldErrors:
         """Add samples of messages, with their stamps, ns, and rotor angles, rad, (n,)."""
         error = np.abs(samples.error)
         self.absent.add(stamp[samples.one_sided])
-        self.non_finite.add(stamp[error == np.inf])
         finite = np.isfinite(error)
         if not finite.all():
+            self.non_finite.add(stamp[error == np.inf])
             error, stamp, rotor_angle = error[finite], stamp[finite], rotor_angle[finite]
         if not len(error):
             return
@@ -115,11 +148,13 @@ class SeriesRecorder:
         if not len(stamp):
             return
         self._start = int(stamp[0]) if self._start is None else self._start
-        time = (stamp - self._start) / SECOND
-        rows = np.stack([time, rotor_angle, *(field.error for field in fields)])
-        self._kept = np.hstack([self._kept, self._thinned(rows, self._interval)])
+        moment, errors = self._worst([field.error for field in fields], self._interval)
+        time = (stamp[moment] - self._start) / SECOND
+        new = np.stack([time, rotor_angle[moment], *errors])
+        self._kept = np.hstack([self._kept, new])
         while self._kept.shape[1] > _MAX_SAMPLES:
-            self._kept = self._thinned(self._kept, 2)
+            moment, errors = self._worst(self._kept[2:], 2)
+            self._kept = np.stack([*self._kept[:2, moment], *errors])
             self._interval *= 2
 
     def series(self, topic: str, start: int) -> Series | None:
@@ -135,20 +170,22 @@ class SeriesRecorder:
         }
         return Series(topic, time.tolist(), rotor_angle.tolist(), compared)
 
-    def _thinned(self, rows: Array, interval: int) -> Array:
-        """Keep the moment at which most of a tolerance was used, and the worst of each field."""
-        tolerance = [[max(field.tolerance, sys.float_info.min)] for field in self._fields]
-        # Errors of absent values are less than any other.
-        size = np.where(np.isnan(rows[2:]), -1.0, np.abs(rows[2:]))
-        share = (size / tolerance).max(axis=0, keepdims=True)
-        moment = _greatest(share, interval)[0]
-        error = np.take_along_axis(rows[2:], _greatest(size, interval), axis=1)
-        return np.concatenate([rows[:2, moment], error])
+    def _worst(self, errors: Iterable[Array], interval: int) -> tuple[Array, list[Array]]:
+        """Return when most of a tolerance was used, and the worst of each error, (n,)."""
+        most, worst = np.zeros(0), list[Array]()
+        for error, field in zip(errors, self._fields, strict=True):
+            size = np.abs(error)
+            if np.isnan(size.max()):  # errors of absent values are less than any other
+                size[np.isnan(size)] = -1.0
+            worst.append(error[_greatest(size, interval)])
+            share = size / max(field.tolerance, sys.float_info.min)
+            most = np.maximum(most, share) if len(worst) > 1 else share
+        return _greatest(most, interval), worst
 
 
 def _greatest(size: Array, interval: int) -> Array:
-    """Find the indices of the greatest sizes, (fields, n), of each interval."""
-    fields, count = size.shape
-    padded = np.pad(size, ((0, 0), (0, -count % interval)), constant_values=-np.inf)
-    within = padded.reshape(fields, -1, interval).argmax(axis=2)
-    return np.asarray(np.arange(0, count, interval) + within)
+    """Find the indices of the greatest sizes, (n,), of each interval."""
+    whole = len(size) - len(size) % interval
+    within = size[:whole].reshape(-1, interval).argmax(axis=1)
+    found = np.arange(0, whole, interval) + within
+    return np.append(found, whole + np.argmax(size[whole:])) if whole < len(size) else found

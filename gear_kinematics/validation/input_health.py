@@ -45,7 +45,8 @@ class InputHealth:
         period = np.diff(stamp, prepend=last_stamp) / SECOND
         turned = np.diff(rotor_angle, prepend=last_angle)
         forward = period > 0.0  # neither a duplicate nor a restart
-        period, turned, stamp = period[forward], turned[forward], stamp[forward]
+        if not forward.all():
+            period, turned, stamp = period[forward], turned[forward], stamp[forward]
         if not len(period):
             return
         self._duration += float(period.sum())

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from gear_kinematics.state.loads import NUMBERS, LoadEstimator
-from gear_kinematics.validation.fields import Array, FieldSamples
+from gear_kinematics.validation.fields import Array, FieldSamples, Window
 from gear_kinematics.validation.matching import Expectation, OutputTopic
 from gear_kinematics.validation.output_topics import finite_or_infinite
 from gear_kinematics.wire.batches import decode_numbers
@@ -35,7 +35,7 @@ class LoadTopic(OutputTopic):
             self.joints = self.layout(bytes(self._template.blank)).texts[1:]
         super().__init__(name, '', expectation, _UNITS[topic])
 
-    def answered(self, samples: Array) -> Array:
+    def answered(self, samples: Window) -> Array:
         """Whether each of the oldest samples of the window has its message, or needs none."""
         return np.asarray(super().answered(samples) | np.isnan(samples['acceleration']))
 
@@ -43,7 +43,7 @@ class LoadTopic(OutputTopic):
         stamp, malformed, self._numbers = decode_numbers(messages, self._template, self.label)
         return stamp, malformed
 
-    def _compare(self, rows: Array, samples: Array) -> Sequence[FieldSamples]:
+    def _compare(self, rows: Array | slice, samples: Window) -> Sequence[FieldSamples]:
         motion = samples['velocity'], samples['acceleration']
         loads = self._loads.at(samples['turns'], samples['angle'], samples['effort'], motion)
         expected = np.broadcast_arrays(samples['turns'], *NUMBERS[self._topic](loads))[1:]

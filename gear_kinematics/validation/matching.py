@@ -21,6 +21,8 @@ from gear_kinematics.validation.fields import (
     FieldSamples,
     Occurrences,
     SeriesRecorder,
+    Window,
+    as_slice,
 )
 from gear_kinematics.validation.recorder import NO_INPUT, Missing, RecordedInputs
 from gear_kinematics.validation.report import Finding, TopicReport
@@ -98,7 +100,7 @@ class Matcher:
         self.out_of_order.add(stamps[(steps < 0) & (steps >= -CLOCK_RESET)])
         self._last_stamp = int(stamps[-1])
 
-    def match(self, stamps: Array, received: Array, window: Array) -> Array:
+    def match(self, stamps: Array, received: Array, window: Window) -> Array:
         """Find the sample of each message, (n,), as its index in the window or -1, and mark it."""
         index = np.full(len(stamps), -1, np.intp)
         resets = np.flatnonzero(np.diff(window['stamp']) < -CLOCK_RESET) + 1
@@ -106,7 +108,7 @@ class Matcher:
         while k < len(stamps):
             longest = min(len(stamps) - k, len(window) - self._next)
             ahead = slice(self._next, self._next + longest)
-            alike = _alike(stamps[k : k + longest], received[k : k + longest], window[ahead])
+            alike = _alike(stamps[k : k + longest], received[k : k + longest], window, ahead)
             alike &= ~self.matched[ahead]
             run = longest if alike.all() else int(np.argmin(alike))
             if run and _of_later_clock(stamps[k], received[k], self._next, window, resets):
@@ -126,7 +128,7 @@ class Matcher:
         self.matched = self.matched[count:]
         self._next = max(self._next - count, 0)
 
-    def _look_up(self, stamp: int, received: int, window: Array, resets: Array) -> int:
+    def _look_up(self, stamp: int, received: int, window: Window, resets: Array) -> int:
         alike = np.flatnonzero(_alike(stamp, received, window) & ~self.matched)
         later = [_of_later_clock(stamp, received, row, window, resets) for row in alike.tolist()]
         found = alike[~np.array(later, bool)]
@@ -140,12 +142,15 @@ class Matcher:
         return index
 
 
-def _alike(stamp: Array | int, received: Array | int, window: Array) -> Array:
+def _alike(
+    stamp: Array | int, received: Array | int, window: Window, rows: slice = slice(None)
+) -> Array:
     """Return whether messages can answer samples, not the same stamps after a later restart."""
-    return np.asarray((stamp == window['stamp']) & (window['received'] - CLOCK_RESET <= received))
+    in_time = window['received'][rows] - CLOCK_RESET <= received
+    return np.asarray((stamp == window['stamp'][rows]) & in_time)
 
 
-def _of_later_clock(stamp: int, received: int, row: int, window: Array, resets: Array) -> bool:
+def _of_later_clock(stamp: int, received: int, row: int, window: Window, resets: Array) -> bool:
     """Return whether a message is for an input, even unrecorded, after a sample's next reset.
 
     That is so if it was received nearer to when the input must have been, by its neighbour.
@@ -153,9 +158,8 @@ def _of_later_clock(stamp: int, received: int, row: int, window: Array, resets: 
     after = resets[np.searchsorted(resets, row, 'right') :]
     if not len(after):
         return False
-    later = window[after[0] :]
-    nearest = later[np.argmin(np.abs(later['stamp'] - stamp))]
-    due = nearest['received'] - (nearest['stamp'] - stamp)
+    nearest = after[0] + np.argmin(np.abs(window['stamp'][after[0] :] - stamp))
+    due = window['received'][nearest] - (window['stamp'][nearest] - stamp)
     return bool(abs(received - due) < abs(received - window['received'][row]))
 
 
@@ -183,7 +187,7 @@ def in_order(messages: int, samples: int, fit: Callable[[int, slice], Array]) ->
     return np.array(pairs[1:], np.intp).reshape(-1, 2).T
 
 
-def rotor_angle(samples: Array) -> Array:
+def rotor_angle(samples: Window) -> Array:
     """The rotor angle of samples, (n,), rad."""
     return np.asarray(TURN * samples['turns'] + samples['angle'])
 
@@ -232,7 +236,11 @@ class OutputTopic:
         """Whether its messages have the joints of several actuators: NaN is an absent value."""
 
     def take(
-        self, messages: list[bytes], received: list[int], window: Array, inputs: RecordedInputs
+        self,
+        messages: list[bytes],
+        received: list[int],
+        window: Window,
+        inputs: RecordedInputs,
     ) -> None:
         """Compare new messages, and when they were received, ns, with the latest samples, (n,)."""
         if late := len(self._late[0]):
@@ -260,9 +268,9 @@ class OutputTopic:
         self._unrecorded += int(np.count_nonzero(lacking))
         self.matcher.extra.add(stamps[given_up[~lacking]])
         self._adopt_fields(usable[found], index[found], window)
-        samples = window.take(index[found])  # faster than by an index
+        samples = window.take(as_slice(index[found]))
         self._changes.move(samples)
-        fields = self._compare(usable[found], samples)
+        fields = self._compare(as_slice(usable[found]), samples)
         angle = rotor_angle(samples)
         wrong = np.zeros(len(samples), bool)
         for errors, field in zip(self.errors, fields, strict=True):
@@ -273,13 +281,13 @@ class OutputTopic:
         self._wrong_without_velocity += int(np.count_nonzero(self._without_velocity & ~wrong))
         self.series.update(samples['stamp'], angle, *fields)
 
-    def _adopt_stamps(self, stamps: Array, usable: Array, window: Array) -> None:
+    def _adopt_stamps(self, stamps: Array, usable: Array, window: Window) -> None:
         """Give samples without a stamp the stamp of their output, if it can be found."""
 
-    def _adopt_fields(self, rows: Array, at: Array, window: Array) -> None:
+    def _adopt_fields(self, rows: Array, at: Array, window: Window) -> None:
         """Decide by messages, (n,), whether open fields of their samples count."""
 
-    def answered(self, samples: Array) -> Array:
+    def answered(self, samples: Window) -> Array:
         """Whether each of the oldest samples of the window has its message, or needs none."""
         return self.matcher.matched[: len(samples)]
 
@@ -287,7 +295,7 @@ class OutputTopic:
         """Decode messages for `_compare`; return their stamps and which ones are malformed."""
         raise NotImplementedError
 
-    def _compare(self, rows: Array, samples: Array) -> Sequence[FieldSamples]:
+    def _compare(self, rows: Array | slice, samples: Window) -> Sequence[FieldSamples]:
         """Compare decoded messages with their samples; return the fields of `errors`."""
         raise NotImplementedError
 

@@ -11,7 +11,7 @@ from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.diagnosis import AngleFit, FactorFit, diagnose
-from gear_kinematics.validation.fields import FieldSamples, Occurrences
+from gear_kinematics.validation.fields import FieldSamples, Occurrences, Window, as_slice
 from gear_kinematics.validation.matching import Expectation, OutputTopic, in_order, rotor_angle
 from gear_kinematics.validation.report import Finding
 from gear_kinematics.wire.batches import (
@@ -49,35 +49,34 @@ class JointStateTopic(OutputTopic):
         self._messages, self._states = messages, decode_joint_states(messages, self.label)
         return self._states.stamp, self._states.malformed
 
-    def _compare(self, rows: Array, samples: Array) -> Sequence[FieldSamples]:
+    def _compare(self, rows: Array | slice, samples: Window) -> Sequence[FieldSamples]:
         states = self._states
         without = ~states.joint_found[rows]
         if without.any():
-            self._there = self._there or listed(joints_of(self._messages[rows[without][0]]))
+            first = np.arange(len(states.stamp))[rows][without][0]
+            self._there = self._there or listed(joints_of(self._messages[first]))
             self._faults[FindingCause.NO_JOINT, self._there].add(samples['stamp'][without])
-        recorded = states.values[rows, : len(self.units)]
-        least, most = np.stack(self._expected(samples), axis=-1)
-        # Any value between them is as expected.
-        expected = np.where(np.isfinite(recorded), np.clip(recorded, least, most), least)
-        wanted, there = ~np.isnan(expected), states.present[rows, : len(self.units)]
-        if self.shared:  # a field that others have; but a position cannot be absent
-            there[:, 1:] &= ~np.isnan(recorded[:, 1:])
-        error = np.where(wanted & there, finite_or_infinite(recorded - expected), np.nan)
-        return [
-            FieldSamples(
-                error[:, k],
-                np.flatnonzero(wanted[:, k] != there[:, k]),
-                recorded[:, k],
-                expected[:, k],
-            )
-            for k in range(len(self.units))
-        ]
+        found = list[FieldSamples]()
+        for k, (least, most) in enumerate(self._expected(samples)):
+            recorded, expected = states.values[rows, k], least
+            if least is not most:  # any value between them is as expected
+                inside = np.clip(recorded, least, most)
+                expected = np.where(np.isfinite(recorded), inside, least)
+            error, one_sided = recorded - expected, np.zeros(0, np.intp)
+            if not np.isfinite(error).all():
+                wanted, there = ~np.isnan(expected), states.present[rows, k]
+                if self.shared and k:  # a field that others have; a position cannot be absent
+                    there = there & ~np.isnan(recorded)
+                error = np.where(wanted & there, finite_or_infinite(error), np.nan)
+                one_sided = np.flatnonzero(wanted != there)
+            found.append(FieldSamples(error, one_sided, recorded, expected))
+        return found
 
-    def _expected(self, samples: Array) -> Sequence[Bounds]:
+    def _expected(self, samples: Window) -> Sequence[Bounds]:
         """The least and the greatest value of each field; NaN where it is absent."""
         raise NotImplementedError
 
-    def _ideal_angle(self, samples: Array) -> Array:
+    def _ideal_angle(self, samples: Window) -> Array:
         """The ideal output angle at samples, (n,), rad."""
         turns, angle = samples['turns'], samples['angle']
         if isinstance(self._gear, Mechanism):
@@ -103,17 +102,17 @@ class OutputState(JointStateTopic):
         self._adopted = -1  # number of the latest sample that was given a stamp
         self._absent_velocities = Occurrences()
 
-    def _expected(self, samples: Array) -> Sequence[Bounds]:
+    def _expected(self, samples: Window) -> Sequence[Bounds]:
         ratio = self._gear.gear_ratio
         angle = self._ideal_angle(samples)
         velocity, effort = ratio.output_rate(samples['velocity']), float(ratio) * samples['effort']
         return (angle, angle), (velocity, velocity), (effort, effort)
 
-    def _adopt_stamps(self, stamps: Array, usable: Array, window: Array) -> None:
+    def _adopt_stamps(self, stamps: Array, usable: Array, window: Window) -> None:
         rows = usable[~np.isin(stamps[usable], window['stamp'])]
         unstamped = (window['stamp'] == window['received']) & (window['number'] > self._adopted)
         waiting = np.flatnonzero(unstamped & ~self.matcher.matched)
-        samples = window[waiting]
+        samples = window.take(waiting)
         self._changes.move(samples)
         angle, received = self._ideal_angle(samples), samples['received']
 
@@ -126,18 +125,22 @@ class OutputState(JointStateTopic):
         window['stamp'][waiting[found]] = stamps[rows[answers]]
         self._adopted = int(samples['number'][found].max(initial=self._adopted))
 
-    def _adopt_fields(self, rows: Array, at: Array, window: Array) -> None:
-        values, present = self._states.values[rows], self._states.present[rows]
-        none = ~present | (self.shared & np.isnan(values))
-        without = window['velocity_open'][at] & none[:, 1] & ~np.isnan(window['velocity'][at])
+    def _adopt_fields(self, rows: Array, at: Array, window: Window) -> None:
+        self._without_velocity = np.zeros(len(rows), bool)
+        if not (window['velocity_open'].any() or window['effort_open'].any()):
+            return
+        states, still_open = self._states, window['effort_open'][at]
+        none = ~states.present[rows].T
+        if self.shared:
+            none |= np.isnan(states.values[rows].T)
+        without = window['velocity_open'][at] & none[1] & ~np.isnan(window['velocity'][at])
         self._without_velocity = without
         self._absent_velocities.add(window['stamp'][at[without]])
         window['velocity'][at[without]] = np.nan
-        still_open = window['effort_open'][at]
-        window['effort'][at[still_open & (values[:, 2] == 0.0)]] = 0.0
-        lacking = still_open & none[:, 2]
+        window['effort'][at[still_open & (states.values[rows, 2] == 0.0)]] = 0.0
+        lacking = still_open & none[2]
         window['effort'][at[lacking]] = np.nan
-        if 'acceleration' in (window.dtype.names or ()):  # without either there are no loads
+        if 'acceleration' in window.columns:  # without either there are no loads
             window['acceleration'][at[lacking | without]] = np.nan
 
     def judge_velocities(self, *, contradict: bool) -> None:
@@ -149,7 +152,7 @@ class OutputState(JointStateTopic):
             self.errors[1].absent.add_all(self._absent_velocities)
             self._wrong += self._wrong_without_velocity
 
-    def _compare(self, rows: Array, samples: Array) -> Sequence[FieldSamples]:
+    def _compare(self, rows: Array | slice, samples: Window) -> Sequence[FieldSamples]:
         position, *others = super()._compare(rows, samples)
         if self._changes.learn(samples, position):
             expected = self._ideal_angle(samples)
@@ -159,7 +162,7 @@ class OutputState(JointStateTopic):
         for factor, field in zip(self._factors.values(), others, strict=True):
             factor.update(field.recorded, field.expected)
         error = position.recorded - position.expected
-        usable = np.isfinite(error)
+        usable = as_slice(np.flatnonzero(np.isfinite(error)))
         angles = rotor_angle(samples)[usable], position.recorded[usable]
         self.fit.update(*angles, error[usable])
         return position, *others
@@ -192,13 +195,13 @@ class BodyPoses(OutputTopic):
         self._arrays: PoseArrays = decode_pose_arrays(messages, len(self._axial))
         return self._arrays.stamp, self._arrays.malformed
 
-    def _compare(self, rows: Array, samples: Array) -> Sequence[FieldSamples]:
+    def _compare(self, rows: Array | slice, samples: Window) -> Sequence[FieldSamples]:
         arrays, stamp = self._arrays, samples['stamp']
         for k, frame_id in enumerate(arrays.frame_ids):
             if frame_id != self.label.encode():
                 fault = FindingCause.ANOTHER_FRAME, frame_id.decode(errors='replace')
                 self._faults[fault].add(stamp[arrays.frame[rows] == k])
-        poses = arrays.poses[rows] if len(rows) < len(arrays.poses) else arrays.poses
+        poses = arrays.poses[rows]
         state = self._solver(self._mechanism, samples['angle'], rotor_turns=samples['turns'])
         centres = np.concatenate([state.satellite_centre, state.oldham_centre], axis=1)
         axial = np.broadcast_to(self._axial, (*centres.shape[:2], 1))

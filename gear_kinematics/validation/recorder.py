@@ -61,7 +61,7 @@ class Missing:
         """Judge inputs, (n,), by whether they have their output."""
         end = 0
         if answered.any():
-            end = len(np.trim_zeros(answered, 'b'))
+            end = len(answered) - int(np.argmax(answered[::-1]))
             self._judge_after()
             self.inputs.add(stamp[:end][~answered[:end]])
             self._last_answered = int(received[end - 1])
@@ -118,7 +118,7 @@ class Completeness:
         Args:
             received: when they were, (n,), ns.
             stamp: (n,), ns.
-            answered: whether they have their outputs, (n, topics).
+            answered: whether they have their outputs, (topics, n).
             begun: the times from which topics are recorded, ns, by their names.
         """
         if not len(received):
@@ -127,10 +127,14 @@ class Completeness:
         names = {self._rotor, *self.topics}
         if self._start == _NEVER and begun.keys() >= names:
             self._start = self._settled = max(begun[name] for name in names)
-        self._settle(received[~answered.all(axis=1)])
+        self._settle(received[~answered.all(axis=0)])
         judged = received > self._settled
-        columns = [*zip(self.topics.values(), answered.T, strict=True)]
-        for missing, has_output in (*columns, (self._on_all, answered.any(axis=1))):
+        all_judged = judged.all()
+        rows = [*zip(self.topics.values(), answered, strict=True)]
+        for missing, has_output in (*rows, (self._on_all, answered.any(axis=0))):
+            if all_judged:
+                missing.update(received, stamp, has_output)
+                continue
             missing.leave_out(has_output[~judged], BEFORE)
             missing.update(received[judged], stamp[judged], has_output[judged])
 

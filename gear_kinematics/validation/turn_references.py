@@ -15,7 +15,7 @@ from gear_kinematics.kinematics import RotorPosition, RotorSample
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.turn_reference import ErrorBlock
 from gear_kinematics.validation.causes import FindingCause
-from gear_kinematics.validation.fields import Array
+from gear_kinematics.validation.fields import Window
 from gear_kinematics.validation.report import Finding
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
@@ -40,7 +40,7 @@ class TurnReferences:
             with suppress(RejectedInputError):
                 self._judge(self._encoder.accept(data, partial(int, received)))
 
-    def take_rotor(self, samples: Array) -> None:
+    def take_rotor(self, samples: Window) -> None:
         """Process the next samples, (n,), which are counted as in the outputs."""
         columns = (samples[name].tolist() for name in ('segment', 'stamp', 'turns', 'angle'))
         for segment, stamp, turns, angle in zip(*columns, strict=True):

@@ -23,7 +23,7 @@ from gear_kinematics.validation import input_health
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.corrected_topics import CORRECTED, Unbroken, why_unjudged
 from gear_kinematics.validation.count_changes import CountChanges, first_number
-from gear_kinematics.validation.fields import Array
+from gear_kinematics.validation.fields import Array, Window
 from gear_kinematics.validation.load_topics import LoadTopic
 from gear_kinematics.validation.matching import SAMPLES, WINDOW, Expectation, OutputTopic, Solver
 from gear_kinematics.validation.output_topics import BodyPoses, OutputState
@@ -112,7 +112,7 @@ class Validator:
             output.shared = bool(parameters.actuator)
         if self._loads:
             columns.append(('acceleration', np.float64))
-        self._window = np.zeros(0, columns)
+        self._window = Window({name: np.zeros(0, kind) for name, kind in columns})
         """The latest samples."""
         self._prefix_open = not (parameters.frame_prefix or parameters.actuator)
         self._findings: list[Finding] = []
@@ -228,19 +228,20 @@ class Validator:
         columns['turns_known'] = np.full(len(samples.stamp), not unseen)
         decided = self._state.input.velocity_field.decided
         columns['velocity_open'] = samples.stamp <= (math.inf if decided is None else decided)
-        real = np.logical_or.accumulate(np.nan_to_num(samples.effort) != 0.0) | was_real
-        columns['effort_open'] = ~real & field.zeros
+        effort = samples.effort
+        real = was_real or np.logical_or.accumulate((effort != 0.0) & ~np.isnan(effort))
+        columns['effort_open'] = np.full(len(effort), field.zeros) & np.logical_not(real)
         self._samples += len(samples.stamp)
         segments = self._unbroken.segments(samples.stamp, samples.segment)
         if self._loads:
             found = self._loads.accelerations(samples.stamp, samples.velocity, segments)
             columns['acceleration'] = np.where(np.isnan(samples.effort), np.nan, found)
-        new = np.empty(len(samples.stamp), self._window.dtype)
-        for name, values in columns.items():
-            new[name] = values
+        if self._corrector:  # those that `_correct` fills in
+            columns |= dict.fromkeys(Correction._fields, np.zeros(len(samples.stamp)))
+        new = Window(columns)
         if self._references and self._encoder:
             self._references.take_encoder(batch[self._encoder])
-        self._window = np.concatenate([self._window, new])
+        self._window = self._window.extended(new)
         for output in self.outputs:
             output.matcher.extend(len(new))
         return segments
@@ -248,7 +249,7 @@ class Validator:
     def _correct(self, segments: Array) -> None:
         """Add the correction to the latest samples, whose turns are known from the outputs."""
         if self._corrector and len(segments):
-            latest = self._window[-len(segments) :].copy()
+            latest = self._window.take(slice(-len(segments), None))
             self._changes.move(latest)
             # After a change, the state of play is unknown.
             latest['segment'] = segments + self._changes.count
@@ -261,21 +262,19 @@ class Validator:
 
     def _drop(self, count: int) -> None:
         """Drop the oldest samples, whose outputs are there or count as missing."""
-        oldest = self._window[:count]
+        oldest = self._window.take(slice(count))
         withheld = self._withheld(oldest)
         for group, outputs in self._groups:
-            answered = np.column_stack([output.answered(oldest) for output in outputs])
-            answered |= withheld[:, np.newaxis]
+            answered = np.array([output.answered(oldest) for output in outputs]) | withheld
             group.update(oldest['received'], oldest['stamp'], answered, self._begun)
         if self._references and self._encoder:
-            counted = oldest.copy()
-            self._changes.move(counted)
-            self._references.take_rotor(counted)
+            self._changes.move(oldest)
+            self._references.take_rotor(oldest)
         for output in self.outputs:
             output.matcher.drop(count)
-        self._window = self._window[count:]
+        self._window = self._window.take(slice(count, None))
 
-    def _withheld(self, samples: Array) -> Array:
+    def _withheld(self, samples: Window) -> Array:
         """Whether a node that withholds outputs of unknown turns has given none yet, (n,).
 
         Outputs begin somewhere in a segment, which a recording of the rotor does not show.
