@@ -144,11 +144,12 @@
 
   home.addEventListener('click', () => {
     showAnswer({text: '', done: true});
-    question.returnValue = '';
     asked = revision;
     question.showModal(); // Cancel is focused: a key held down homes nothing
   });
-  question.addEventListener('close', () => question.returnValue && send({do: 'home', revision: asked}));
+  // Browsers tell of a closed dialog only with the next frame, and then of each time that it was closed.
+  question.firstElementChild.addEventListener('submit', ({submitter}) =>
+    submitter.value && send({do: 'home', revision: asked}));
   undo.firstElementChild.addEventListener('click', () => send({do: 'undo'}));
   nodes.addEventListener('change', () => send({do: 'show', node: nodes.value}));
   form.addEventListener('submit', event => {
