@@ -47,9 +47,10 @@ class Window:
 
 def as_slice(rows: Array) -> Array | slice:
     """Return the rows as a slice, which is faster, if they follow each other."""
-    if not len(rows) or (rows[-1] - rows[0] + 1 == len(rows) and (rows[1:] > rows[:-1]).all()):
-        return slice(*((int(rows[0]), int(rows[-1]) + 1) if len(rows) else (0, 0)))
-    return rows
+    if not len(rows):
+        return slice(0)
+    first = int(rows[0])
+    return slice(first, first + len(rows)) if (np.diff(rows) == 1).all() else rows
 
 
 class Occurrences:
