@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from concurrent import futures
 from contextlib import suppress
 from itertools import count
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.node import Node
@@ -64,6 +64,16 @@ class Answer(NamedTuple):
     text: str
     done: bool
 
+    @classmethod
+    def of(cls, response: Trigger.Response) -> Self:
+        """The result of `~/home`."""
+        return cls(f'{response.message}.', response.success)
+
+
+def homing_client(node: Node, name: str, actuator: str) -> Any:
+    """Return a client of `~/home` of the node with a full name, or of an actuator of it."""
+    return node.create_client(Trigger, '/'.join(filter(None, (name, actuator, 'home'))))
+
 
 class GearNode:
     """Follows a gear of the node with a full name, which may end and start again."""
@@ -82,7 +92,7 @@ class GearNode:
         self.earlier: dict[str, Any] = {}  # parameters before their last change that was seen
         self.homed_zero: float | None = None  # rotor_zero after its last change that was seen
         self.statuses: dict[str, Status] = {}  # diagnostics by subject
-        self.homing = self._homing_of(actuator)
+        self.homing = homing_client(node, name, actuator)
         self._topics: dict[str, str] = {}  # of what is shown, by names without remapping
         self._outputs = Listener(node, self._is_own)
         self._diagnostics = Polled(node, topics.DIAGNOSTICS, DiagnosticArray)
@@ -95,9 +105,6 @@ class GearNode:
     def label(self) -> str:
         """The full name of the node, and the name of the actuator if it has several."""
         return f'{self.name} {self.actuator}'.rstrip()
-
-    def _homing_of(self, actuator: str) -> Any:
-        return self._node.create_client(Trigger, f'{self.name}/{actuator}/home'.replace('//', '/'))
 
     def look(self, graph: Graph, *, shown: bool) -> None:
         """Find in the graph whether the node runs, and which topics it has, to be `shown`."""
@@ -171,8 +178,7 @@ class GearNode:
         """Call `~/home`, and answer with its response."""
 
         def take(answered: Future) -> None:
-            response = answered.result()
-            answer.set_result(Answer(f'{response.message}.', response.success))
+            answer.set_result(Answer.of(answered.result()))
             self._due = 0.0
 
         self.homing.call_async(Trigger.Request()).add_done_callback(take)
@@ -220,7 +226,7 @@ class GearNode:
         if actuator != self.actuator:
             self.statuses.clear()  # they were those of all actuators
             self._node.destroy_client(self.homing)
-            self.actuator, self.homing = actuator, self._homing_of(actuator)
+            self.actuator, self.homing = actuator, homing_client(self._node, self.name, actuator)
         if self.parameters:
             now, before = parameters.values(), self.parameters.values()
             changed = {name: value for name, value in before.items() if now.get(name) != value}

@@ -2,13 +2,13 @@
 """Homes a running node by one call of its service."""
 
 import time
-from concurrent.futures import Future
 
 from rclpy.executors import SingleThreadedExecutor
+from std_srvs.srv import Trigger
 
 from gear_kinematics.ros.graph import Graph
 from gear_kinematics.ros.live import replay_node
-from gear_kinematics.watch.gear import Answer, GearNode
+from gear_kinematics.watch.gear import Answer, homing_client
 from gear_kinematics.watch.view import UNANSWERED
 from gear_kinematics.wire.nearest import among, listed
 
@@ -39,21 +39,19 @@ def home(wanted: str, actuator: str) -> Answer:
         if not wanted and len(gears) > 1:
             raise ValueError(f'which node is to be homed? Repeat with --node: {listed(gears)}')
         name = wanted or gears[0]
-        known = {each for each, _ in node.get_service_names_and_types()}  # before its clients
-        gear = GearNode(node, name, actuator)
-        service = gear.homing.srv_name
-        if not gear.homing.wait_for_service(_SEARCH if service in known else _DELAY):
+        # The graph names the service of a client as well, so it is asked first.
+        known = {each for each, _ in node.get_service_names_and_types()}
+        client = homing_client(node, name, actuator)
+        service = client.srv_name
+        if not client.wait_for_service(_SEARCH if service in known else _DELAY):
             homes = sorted(each for each in known if each.startswith(name) and 'home' in each)
             raise ValueError(f'there is no service {service}{among(service, homes)}')
-        answer: Future[Answer] = Future()
-        gear.home(answer)
+        asked = client.call_async(Trigger.Request())
         executor = SingleThreadedExecutor(context=node.context)
         executor.add_node(node)
-        end = time.monotonic() + _PATIENCE
-        while time.monotonic() < end and not answer.done():
-            executor.spin_once(timeout_sec=_PERIOD)
+        executor.spin_until_future_complete(asked, _PATIENCE)
         executor.shutdown()
-        if not answer.done():
+        if not asked.done():
             raise RuntimeError(f'{name}: {UNANSWERED}')
-        text, done = answer.result()
+        text, done = Answer.of(asked.result())
         return Answer(f'{name}: {text}', done)
