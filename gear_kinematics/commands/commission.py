@@ -104,7 +104,7 @@ def _read(options: argparse.Namespace, request: analysis.Request) -> analysis.Co
     for recording, _ in recordings:
         if heard := recording.rotor_messages:
             found = questions(heard.data, heard.received, request.rotor.joint, result.between)
-            asked |= dict.fromkeys(found)
+            asked |= dict.fromkeys(map(str, found))
     return replace(result, questions=tuple(asked))
 
 

@@ -2,7 +2,7 @@
 """The section of a report that compares several recordings at one torque."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from gear_kinematics.measurement.changes import (
 from gear_kinematics.measurement.document import Comparison
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.measured import HYSTERESIS, shown
+from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.wording import ARC_MINUTES
 from gear_kinematics.report.document import (
     PENS,
@@ -35,7 +36,6 @@ from gear_kinematics.report.document import (
 
 _TORQUES = 300
 """Points of half a loop in a plot."""
-_WITHIN = 'Record each state several times, and compare with --group: recordings differ by more'
 
 
 def compared(
@@ -52,17 +52,19 @@ def compared(
     if not changes:
         return None
     repeated, several = any(change.repeated for change in changes), len(named) > 2  # noqa: PLR2004
-    sentence = _changed(changes, named)
-    sentence += '' if several else _play(reports, named[1])
-    sentence += '' if repeated else '; judged by the scatter within single recordings'
-    remarks = [] if repeated else [f'{_WITHIN}.']
+    answer = [_changed(changes, named)]
+    remarks = []
+    if not several:
+        answer += _play(reports, named[1])
+    if not repeated:
+        answer.append(Observation.BY_SCATTER())
+        remarks.append(Observation.REPEAT_RECORDINGS())
     if unlike:
-        others = f'the smallest ramps of {", ".join(unlike)} are smaller than those of the others'
-        remarks.append(f'Hysteresis and friction: not compared where {others}.')
+        remarks.append(Observation.SMALL_RAMPS_DIFFER(names=unlike))
     section = Section(
         'comparison',
         (_table(changes, several=several),),
-        remarks=tuple(map(printable, remarks)),
+        remarks=tuple(printable(str(remark)) for remark in remarks),
         figure=_figure(reports, named),
         leads=True,
     )
@@ -71,43 +73,50 @@ def compared(
         for group in named
     ]
     data = {'groups': members, 'changes': [_data(change) for change in changes]}
-    return Comparison(section, printable(sentence), data)
+    return Comparison(section, printable('; '.join(map(str, answer))), data)
 
 
-def _changed(changes: Sequence[Change], groups: Sequence[Group]) -> str:
-    """Say what has changed: of two groups all that is clear, of several the first figure."""
+def _changed(changes: Sequence[Change], groups: Sequence[Group]) -> Observed:
+    """Choose what has changed: of two groups all that is clear, of several the first figure."""
     first, second, *others = (group.name for group in groups)
     if others:
         same = [change for change in changes if change.quantity == changes[0].quantity]
         clear = sum(change.significant for change in same)
-        return f'against {first}: {_arrow(*same)} ({clear} of {len(same)} significant)'
-    parts = [
-        f'{_arrow(change)} ({change.judgement})'
+        changed = Observation.CHANGED(**_values(*same))
+        return Observation.SEVERAL_COMPARED(
+            first=first, changes=changed, clear=clear, count=len(same)
+        )
+    clearly = [
+        Observation.CHANGED_SURELY(**_values(change), judgement=change.judgement)
         for change in changes
         if change.significant or change.quantity.name == HYSTERESIS
     ]
-    return f'{second} against {first}: {", ".join(parts) or "no significant change"}'
+    return Observation.TWO_COMPARED(
+        second=second, first=first, changes=clearly or Observation.NO_CHANGE()
+    )
 
 
-def _arrow(*changes: Change) -> str:
-    """Say how one figure has changed, in one group or several."""
+def _values(*changes: Change) -> dict[str, str]:
+    """Show a figure before and after its change, in one group or several."""
     first = changes[0]
     before = shown(first.quantity.unit, first.before).text
     after = shown(first.quantity.unit, *(change.after for change in changes)).with_unit()
-    return f'{first.quantity.name} {before} → {after}'
+    return {'figure': first.quantity.name, 'before': before, 'value': after}
 
 
-def _play(reports: Sequence[LostMotion], group: Group) -> str:
-    """Say by intervals what is left of the backlash in a group."""
+def _play(reports: Sequence[LostMotion], group: Group) -> Iterator[Observed]:
+    """Yield what is left of the backlash in a group, by intervals."""
     found = [own.backlash for k in group.members if (own := reports[k].figures)]
     if not found:
-        return ''
-    low = ARC_MINUTES * min(one.low for one in found)
-    high = ARC_MINUTES * max(math.inf if one.high is None else one.high for one in found)
+        return
+    low = min(one.low for one in found)
+    high = max(math.inf if one.high is None else one.high for one in found)
     if low > 0.0:
-        return f'; there is play of at least {number(low)}′'
-    bound = f' (at most {number(high)}′)' if high < math.inf else ''
-    return f'; whether play is left is undetermined{bound}'
+        yield Observation.PLAY_LEFT(low=low)
+    elif high < math.inf:
+        yield Observation.PLAY_AT_MOST(high=high)
+    else:
+        yield Observation.PLAY_UNDETERMINED()
 
 
 def _table(changes: Sequence[Change], *, several: bool) -> Table:

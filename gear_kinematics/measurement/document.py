@@ -9,10 +9,10 @@ from typing import Any
 from gear_kinematics.measurement.answer import LimitCheck, Limits, answer, remarks
 from gear_kinematics.measurement.curves import panels
 from gear_kinematics.measurement.figures import GearFigures
+from gear_kinematics.measurement.json_values import plain
 from gear_kinematics.measurement.loops import Ramps
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.measured import LOST_MOTION, Measured, shown
-from gear_kinematics.measurement.sentences import plain
 from gear_kinematics.report.document import (
     Case,
     Cell,

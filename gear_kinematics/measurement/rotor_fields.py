@@ -9,13 +9,12 @@ import numpy as np
 from gear_kinematics.bag import Bag, DamagedBagError
 from gear_kinematics.measurement.commissioning.encoder_range import find_range
 from gear_kinematics.measurement.encoder_step import Step
-from gear_kinematics.report.document import counted
+from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.state.effort_field import EffortField, questioned
-from gear_kinematics.state.statuses import Condition
+from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.state.velocity_field import VelocityField, VelocityMeaning
 from gear_kinematics.wire.batches import decode_joint_states
 from gear_kinematics.wire.cdr import SECOND
-from gear_kinematics.wire.joint_reader import ARRAY_SIZES
 
 MOST = 500_000
 """Messages that are looked at; they take about 200 bytes each."""
@@ -26,8 +25,8 @@ _EQUAL = 1e-9  # rad, below which positions differ by rounding alone
 
 def questions(
     data: Sequence[bytes], received: Sequence[int], joint: str, ratio: Fraction | None = None
-) -> Iterator[str]:
-    """Yield clauses on fields of n messages that seem to be wrong.
+) -> Iterator[Observed | Fact]:
+    """Yield what seems to be wrong with the fields of n messages.
 
     Args:
         data: serialised sensor_msgs/JointState.
@@ -37,11 +36,11 @@ def questions(
     """
     states = decode_joint_states(data, joint)
     if unfit := int(np.count_nonzero(states.joint_found & ~states.arrays_fit)):
-        yield f'{counted(unfit, "message")} rejected: {ARRAY_SIZES}'
+        yield Observation.SIZES_DIFFER(count=unfit)
     stamp = np.where(states.stamp == 0, np.asarray(received, np.int64), states.stamp)
     repeated = int(np.count_nonzero(np.diff(stamp) == 0))
     if 2 * repeated > len(stamp):
-        yield f'{repeated} of {len(stamp)} stamps repeat the one before'
+        yield Observation.STAMPS_REPEAT(count=repeated, total=len(stamp))
     newest = np.append(np.iinfo(np.int64).min, np.maximum.accumulate(stamp)[:-1])
     usable = states.arrays_fit & np.isfinite(states.values[:, 0])
     rows = np.flatnonzero(usable & (stamp > newest))
@@ -56,13 +55,13 @@ def questions(
     velocities = VelocityField(float(1 / ratio) if ratio else np.nan)
     velocities.believed(stamp, values, float(np.min(steps[steps > _EQUAL], initial=1.0)))
     if len(given) and not given.any() and np.ptp(values[:, 0]) > _MOVED:
-        yield str(Condition.VELOCITIES_ARE(meaning=VelocityMeaning.ZERO))
+        yield Condition.VELOCITIES_ARE(meaning=VelocityMeaning.ZERO)
     elif velocities.meaning:
-        yield str(velocities.meaning)
+        yield velocities.meaning
     field = EffortField()
     field.all_believed(values[:, 0], values[:, 2])
     if field.absent:
-        yield 'the effort is 0 throughout the motion, and taken as none'
+        yield Observation.NO_EFFORT()
     efforts = values[np.isfinite(values[:, 2]), 2]
     if question := questioned(float(np.max(np.abs(efforts), initial=0.0))):
         yield question
@@ -70,7 +69,7 @@ def questions(
 
 def recorded_questions(
     bag: Bag, topic: str, joint: str, ratio: Fraction | None = None
-) -> Iterator[str]:
+) -> Iterator[Observed | Fact]:
     """Yield the questions on a topic of a bag, up to any damage; see `questions`."""
     data, received = list[bytes](), list[int]()
     try:

@@ -8,17 +8,13 @@ or an estimate in a unit of `_UNITS`, and `{x:arcmin.2}` a number to two digits;
 
 import math
 import string
-from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
 from enum import Enum
-from fractions import Fraction
 from typing import Any, NamedTuple
-
-import numpy as np
 
 from gear_kinematics.measurement.wording import ARC_MINUTES, PERCENT, plus_minus
 from gear_kinematics.report.document import number
 from gear_kinematics.statistics.uncertainty import Estimate
+from gear_kinematics.wire.joint_reader import ARRAY_SIZES
 
 NAMED = 3
 """Moments of a kind that are named."""
@@ -268,6 +264,27 @@ class Observation(Enum):
         'output, if each couple acts as two forces at a distance of twice the rolling radius of '
         'the satellite.'
     )
+    # What the messages of a rotor seem to have wrong
+    SIZES_DIFFER = '{count:%d message|%d messages} rejected: ' + ARRAY_SIZES
+    STAMPS_REPEAT = '{count} of {total} stamps repeat the one before'
+    NO_EFFORT = 'the effort is 0 throughout the motion, and taken as none'
+    # What differs between recordings
+    TWO_COMPARED = '{second} against {first}: {changes}'
+    SEVERAL_COMPARED = 'against {first}: {changes} ({clear} of {count} significant)'
+    CHANGED = '{figure} {before} → {value}'
+    CHANGED_SURELY = CHANGED + ' ({judgement})'
+    NO_CHANGE = 'no significant change'
+    PLAY_LEFT = 'there is play of at least {low:arcmin}′'
+    PLAY_UNDETERMINED = 'whether play is left is undetermined'
+    PLAY_AT_MOST = PLAY_UNDETERMINED + ' (at most {high:arcmin}′)'
+    BY_SCATTER = 'judged by the scatter within single recordings'
+    REPEAT_RECORDINGS = (
+        'Record each state several times, and compare with --group: recordings differ by more.'
+    )
+    SMALL_RAMPS_DIFFER = (
+        'Hysteresis and friction: not compared where the smallest ramps of {names} are smaller '
+        'than those of the others.'
+    )
     # Limits
     WITHIN_LIMIT = _VALUE + 'is within ' + _LIMIT
     BEYOND_LIMIT = _VALUE + 'is beyond ' + _LIMIT
@@ -318,26 +335,3 @@ class _Formatter(string.Formatter):
         if isinstance(value, Estimate):
             return plus_minus(value, _UNITS[unit])
         return number(value * _UNITS[unit], int(digits or 3))
-
-
-def plain(value: Any) -> Any:
-    """Convert dataclasses to mappings for JSON, without arrays, and observations to text."""
-    match value:
-        case Estimate():
-            return {
-                'value': value.value,
-                'standard_uncertainty': value.standard,
-                'degrees_of_freedom': value.degrees_of_freedom,
-                'expanded_uncertainty': value.uncertainty,
-                'repeats': value.repeats,
-            }
-        case Fraction() | Observed():
-            return str(value)
-        case Mapping():
-            return {name: plain(item) for name, item in value.items()}
-        case tuple() | list():
-            return [plain(item) for item in value]
-    if is_dataclass(value):
-        members = ((field.name, getattr(value, field.name)) for field in fields(value))
-        return {name: plain(it) for name, it in members if not isinstance(it, np.ndarray)}
-    return value

@@ -6,12 +6,12 @@ import math
 import numpy as np
 
 from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.wire.batches import Array
 
 _MOTION = 0.05  # rad: noise of any encoder; beyond, the rotor has moved
 _MOTOR = 100.0  # N·m: a motor of more is that of a vehicle, of 10 kg and above
 _SHEAR = 5e8  # Pa: where shafts of hardened steel yield
-FACTOR = 'set rotor_effort_factor (N·m per unit) if the messages have another unit, such as mA'
 
 
 class EffortField:
@@ -56,8 +56,8 @@ class EffortField:
         return efforts
 
 
-def questioned(effort: float, mechanism: Mechanism | None = None) -> str:
-    """Say that a torque of the rotor, N·m, is implausibly large; '' if it is not.
+def questioned(effort: float, mechanism: Mechanism | None = None) -> Fact | None:
+    """Question a torque of the rotor, N·m, that is implausibly large.
 
     The output of a mechanism bears no more than a solid shaft of steel as large as a satellite.
     """
@@ -69,8 +69,5 @@ def questioned(effort: float, mechanism: Mechanism | None = None) -> str:
         if (most := 0.5 * math.pi * _SHEAR * radius**3 / ratio) < _MOTOR:
             bearable, whose = most, 'a mechanism of this size bears'
     if not abs(effort) > bearable:
-        return ''
-    return (
-        f'efforts of up to {abs(effort):.4g} N·m at the rotor are more than {whose} '
-        f'({bearable:.3g} N·m): {FACTOR}'
-    )
+        return None
+    return Condition.EFFORT_TOO_LARGE(effort=abs(effort), whose=whose, bearable=bearable)

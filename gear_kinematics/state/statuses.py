@@ -28,6 +28,10 @@ _AT = 'the output, at {angle_deg:.2f}°, '
 _ENDS = 'output_range, {low_deg:.2f}° to {high_deg:.2f}°'
 _MARGIN = '{used_deg:.3g}° of {margin_deg:.3g}° margin'
 _BOTH = '{encoder_deg:.2f}° by the encoder, {rotor_deg:.2f}° by the rotor'
+_EFFORT = (
+    'efforts of up to {effort:.4g} N·m at the rotor are more than {whose} ({bearable:.3g} N·m): '
+    'set rotor_effort_factor (N·m per unit) if the messages have another unit, such as mA'
+)
 _PEAK_TO_PEAK = 'peak to peak {angle:.3g} rad'
 
 
@@ -55,6 +59,7 @@ class Condition(Enum):
     LOSSES_UNKNOWN = OK, 'losses unknown', ''
     VELOCITIES_ARE = WARN, _VELOCITIES, _VELOCITY
     VELOCITIES_UNKNOWN = WARN, _VELOCITIES + ', {factor:.3g} times the slope', _VELOCITY
+    EFFORT_TOO_LARGE = OK, _EFFORT, ''  # said of recordings alone
     BEYOND_LIMITS = (
         WARN,
         '{which}',

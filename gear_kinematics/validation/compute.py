@@ -17,6 +17,7 @@ from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.effort_field import questioned
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.statuses import Fact
 from gear_kinematics.wire.batches import join_joint_states
 from gear_kinematics.wire.topics import (
     BODY_POSES,
@@ -43,7 +44,7 @@ class ComputeResult:
     """Messages written on each output topic."""
     copied: int
     """Messages copied from other topics."""
-    questions: Mapping[str, str]
+    questions: Mapping[str, Fact | None]
     """Says of each actuator if its efforts are hardly torques of a rotor, N·m; else ''."""
     left_out: tuple[str, ...]
     """Topics that were not copied: those not chosen, and those that a rosbag2 cannot hold."""

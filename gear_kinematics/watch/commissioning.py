@@ -74,7 +74,7 @@ class LiveCommissioning:
             result = replace(found, notes=(*found.notes, later))
         data, received = [m[2] for m in self._rotor], [m[1] for m in self._rotor]
         asked = questions(data, received, self.request.rotor.joint, result.between)
-        return replace(result, questions=tuple(asked))
+        return replace(result, questions=tuple(map(str, asked)))
 
     def _analyse(self) -> Commissioning:
         while not self._taken.empty():

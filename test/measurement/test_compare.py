@@ -23,6 +23,7 @@ from gear_kinematics.measurement.compare import _play, compared
 from gear_kinematics.measurement.figures import gear_figures
 from gear_kinematics.measurement.loops import find_ramps
 from gear_kinematics.measurement.lost_motion import LostMotion
+from gear_kinematics.measurement.sentences import Observation
 from gear_kinematics.statistics.uncertainty import Estimate
 
 MINUTE = math.radians(1.0 / 60.0)
@@ -131,12 +132,12 @@ def test_ramps_of_other_amplitudes_are_left_out_and_named(reports):
 @pytest.mark.parametrize(
     ('low', 'high', 'told'),
     [
-        (3, 40, '; there is play of at least 3′'),
-        (0, 39, '; whether play is left is undetermined (at most 39′)'),
-        (0, None, '; whether play is left is undetermined'),
+        (3, 40, Observation.PLAY_LEFT(low=3 * MINUTE)),
+        (0, 39, Observation.PLAY_AT_MOST(high=39 * MINUTE)),
+        (0, None, Observation.PLAY_UNDETERMINED()),
     ],
 )
 def test_backlash_is_compared_by_its_interval(low, high, told):
     bounds = SimpleNamespace(low=low * MINUTE, high=high and high * MINUTE)
     reports = [None, SimpleNamespace(figures=SimpleNamespace(backlash=bounds))]
-    assert _play(reports, Group('b', (1,))) == told
+    assert [*_play(reports, Group('b', (1,)))] == [told]

@@ -12,6 +12,7 @@ from simulated_encoders import stamps
 from gear_kinematics.bag import Bag
 from gear_kinematics.commands.cli import main
 from gear_kinematics.measurement.rotor_fields import recorded_questions
+from gear_kinematics.measurement.sentences import Observation
 
 TIMES = np.arange(0.0, 8.0, 0.01)
 OUTPUT = np.clip(np.abs(TIMES - 4.0) * -2.0 + 8.0, 0.0, 7.5)  # rad: there, a rest, and back
@@ -45,7 +46,7 @@ def test_wrong_fields_are_named(factor, efforts, asked, wrap, tmp_path, capsys, 
     """By the function, by info, which does not know the ratio, and by commission."""
     path = recorded(tmp_path, factor, efforts, wrap)
     with Bag(path) as bag:
-        found = [*recorded_questions(bag, '/rotor_state', 'rotor', Fraction(-19))]
+        found = [*map(str, recorded_questions(bag, '/rotor_state', 'rotor', Fraction(-19)))]
     assert [each[: len(want)] for each, want in zip(found, asked, strict=True)] == asked
     assert main(['info', str(path)]) == 0
     told = capsys.readouterr().out
@@ -69,4 +70,4 @@ def test_stamps_that_repeat_are_named(tmp_path):
     path = write_recording(tmp_path / 'bag', rotor, Samples(stamps(TIMES), OUTPUT))
     with Bag(path) as bag:
         (asked,) = recorded_questions(bag, '/rotor_state', 'rotor')
-    assert asked == '792 of 800 stamps repeat the one before'
+    assert asked == Observation.STAMPS_REPEAT(count=792, total=800)

@@ -84,6 +84,10 @@ VALUES = {
     'duration': 0.25,
     'causes': ['joint missing 12', 'not a JointState 1'],
     'rating': 5000.0,
+    'second': 'with preload',
+    'clear': 2,
+    'judgement': 'significant',
+    'names': ['monday', 'tuesday'],
 }
 
 

@@ -9,8 +9,9 @@ import numpy as np
 from gear_kinematics.measurement.calibration.check import Judgement
 from gear_kinematics.measurement.calibration.fit import LEAST_COVERAGE, Fit
 from gear_kinematics.measurement.envelope import envelope
+from gear_kinematics.measurement.json_values import plain
 from gear_kinematics.measurement.recording import Array
-from gear_kinematics.measurement.sentences import Observation, Observed, plain
+from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.wording import ARC_MINUTES, arc_minutes, plus_minus
 from gear_kinematics.report.document import (
     Cell,

@@ -10,7 +10,8 @@ import numpy as np
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.commissioning.analysis import Commissioning, Value
 from gear_kinematics.measurement.envelope import envelope
-from gear_kinematics.measurement.sentences import Observation, plain
+from gear_kinematics.measurement.json_values import plain
+from gear_kinematics.measurement.sentences import Observation
 from gear_kinematics.measurement.wording import plus_minus, shown
 from gear_kinematics.parameters.arm_file import add_actuators
 from gear_kinematics.parameters.new_config import arm_head, quoted, start_command, write_new

@@ -22,6 +22,7 @@ from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.effort_field import questioned
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.loads import LoadEstimator
+from gear_kinematics.state.statuses import Fact
 from gear_kinematics.wire.batches import encode
 from gear_kinematics.wire.cdr import SECOND, JointStateTemplate
 
@@ -127,8 +128,8 @@ class RecordedLoads:
         return np.asarray(np.abs(np.diff(self.rotor, prepend=self.rotor[:1])))
 
     @property
-    def question(self) -> str:
-        """Why the torque is hardly one; '' if it may be."""
+    def question(self) -> Fact | None:
+        """Why the torque is hardly one; None if it may be."""
         mechanism = self.parameters.mechanism
         greatest = float(np.max(np.abs(self.torque)))
         return questioned(greatest / float(mechanism.gear_ratio), mechanism)
