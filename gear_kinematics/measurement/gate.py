@@ -9,6 +9,7 @@ recording is divided and the longest part is used.
 import math
 from dataclasses import replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +23,7 @@ from gear_kinematics.measurement.ramp_gate import (
     usual,
 )
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RotorMotion
-from gear_kinematics.measurement.sentences import NAMED, Observation
+from gear_kinematics.measurement.sentences import NAMED, Observation, Observed
 from gear_kinematics.measurement.two_encoders import directions
 from gear_kinematics.report.document import number
 
@@ -44,81 +45,128 @@ NO_ENCODER = 2e-6
 """rad, peak to peak, 0.4 arc seconds: no gear with an encoder at its output deviates by less."""
 
 
+class _Compared(NamedTuple):
+    """The error in the rows in which both shafts moved or stood; arrays are (m,), rad."""
+
+    rows: Array
+    """Numbers of these rows among the n of the recording."""
+    frozen: NDArray[np.bool_]
+    """(n,): rows in which one shaft stood still while the other moved."""
+    rotor: Array
+    ideal: Array
+    """Output angle by the rotor."""
+    error: Array
+    """Measured minus ideal output angle, without wraps."""
+    travel: float
+    """rad, of the rotor in all rows."""
+    path: Array
+    """Output angle by each sample of the rotor."""
+    period: float
+    """What wraps of an encoder add to the error."""
+
+
+class _Steps(NamedTuple):
+    """Steps of the error that no gear makes, (m - 1,)."""
+
+    impossible: NDArray[np.bool_]
+    slipped: NDArray[np.bool_]
+    """Those of them that stay, however small they are."""
+    limit: float
+    """rad, of a step."""
+
+
 def gated(recording: Recording) -> Recording:
     """Leave out what cannot be true of both encoders, and say when it was.
 
     Without such readings, or if the output hardly moves, the recording itself is returned.
     """
     both = recording.encoders
-    if both is None or len(both.measured) < _FEWEST:
+    if both is None or len(both.measured) < _FEWEST or not (compared := _compared(both)):
         return recording
+    rows, error, rotor, samples = compared.rows, compared.error, compared.rotor, len(both.measured)
+    line = np.polynomial.Polynomial.fit(rotor, error, 1)
+    if (rest := float(np.ptp(error - line(rotor)))) < NO_ENCODER:
+        fault = Observation.COMPUTED(deviation=rest)
+        return replace(recording, faults=(*recording.faults, fault))
+    if not (steps := _steps(error, compared.ideal)):
+        return recording
+    kept, jumps = _followed(error, rows, steps, compared.period)
+    at = np.array(jumps, int)
+    if np.abs(rotor[at] - rotor[at - 1]).max(initial=0.0) > _RANGE * compared.travel:
+        return recording  # an encoder of another range than a turn
+    sizes = error[at] - error[at - 1]
+    clear = len(at) and np.abs(sizes).min() > _CLEAR * steps.limit
+    least = _FEWEST if clear else _LEAST_SHARE * samples
+    if len(kept) == samples or len(kept) < least:
+        return recording
+    kept = rows[kept]
+    stray = np.setdiff1d(np.arange(kept[0], kept[-1] + 1), kept)
+    time = both.seconds if both.timed else both.seconds + 1.0
+    found = []
+    isolated = stray[~compared.frozen[stray]]
+    if len(isolated):
+        found.append(left_out(time[isolated], timed=both.timed))
+    if len(still := np.flatnonzero(compared.frozen)):
+        found.append(_stood_still(time, still, timed=both.timed))
+    moments = zip(time[rows[at]].tolist(), sizes.tolist(), strict=True)
+    found += jumped([*moments], timed=both.timed)
+    if kept[0] or kept[-1] + 1 < samples:
+        found.append(longest(time[kept], timed=both.timed))
+    encoders = _without(both, compared.path, kept, stray)
+    return replace(recording, encoders=encoders, faults=(*recording.faults, *found))
+
+
+def _compared(both: Encoders) -> _Compared | None:
+    """Compare both encoders by their own ratio; None where it does not show."""
     turned = both.rotor.turned
     wraps = np.ptp(turned) <= TURN  # as of one turn, or not further than that
     turned = np.unwrap(turned) if wraps else turned
-    rotor = both.at_measured(turned)
-    slope = output_by_rotor(rotor, np.unwrap(both.measured))
+    rotor, output = both.at_measured(turned), np.unwrap(both.measured)
+    slope = output_by_rotor(rotor, output)
     if np.array_equal(both.measured, np.round(both.measured)):  # counts, whose unit is not known
-        return recording
+        return None
     if slope is None or abs(slope) * np.ptp(rotor) < _LEAST_TRAVEL:
-        return recording
-    error = both.measured - slope * rotor
-    ideal, turned_output = slope * rotor, np.unwrap(both.measured)
-    frozen = _frozen(both.measured, usual(ideal)) | _frozen(ideal, usual(turned_output))
+        return None
+    ideal = slope * rotor
+    frozen = _frozen(both.measured, usual(ideal)) | _frozen(ideal, usual(output))
     rows = np.flatnonzero(~frozen)
     if len(rows) < _FEWEST:
-        return recording
+        return None
+    error = (both.measured - ideal)[rows]
     periods = (TURN, abs(slope) * TURN) if wraps else (TURN,)
     for period in periods:
-        steps = np.diff(error[rows], prepend=error[rows[0]])
-        error[rows] -= period * np.cumsum(np.round(steps / period))
-    line = np.polynomial.Polynomial.fit(rotor[rows], error[rows], 1)
-    if (rest := float(np.ptp(error[rows] - line(rotor[rows])))) < NO_ENCODER:
-        fault = Observation.COMPUTED(deviation=rest)
-        return replace(recording, faults=(*recording.faults, fault))
-    ideal = ideal[rows]
-    level = usual(error[rows])
-    calm, moved = np.diff(level), np.diff(usual(ideal))
-    fastest = float(np.quantile(np.abs(moved), 0.98))
+        error -= period * np.cumsum(np.round(np.diff(error, prepend=error[0]) / period))
+    travel = float(np.ptp(rotor))
+    return _Compared(
+        rows, frozen, rotor[rows], ideal[rows], error, travel, slope * turned, periods[-1]
+    )
+
+
+def _steps(error: Array, ideal: Array) -> _Steps | None:
+    """Find the steps of the error that no gear makes; None if they are too many to be faults."""
+    level, moved = usual(error), np.diff(ideal)
+    calm = np.diff(level)
+    fastest = float(np.quantile(np.abs(np.diff(usual(ideal))), 0.98))
     usually = float(np.quantile(np.abs(calm), 0.98))
     limit = max(_STEPS * usually, _LEAST_STEP)
-    lost = _lost_motion(calm, np.diff(ideal), fastest)
+    lost = _lost_motion(calm, moved, fastest)
     if np.mean((np.abs(calm) > limit) & ~lost) > _MOST_FAULTS:
-        return recording
-    steps = np.diff(error[rows])
+        return None
+    steps = np.diff(error)
     # Lost motion stays until the next reversal: what comes back at once is a stray reading.
     most = min(1.1 * float(np.max(np.abs(calm), where=lost, initial=0.0)), _MOST_LOST)
-    lost = _lost_motion(steps, np.diff(ideal), fastest) & (np.abs(steps) <= most)
+    lost = _lost_motion(steps, moved, fastest) & (np.abs(steps) <= most)
     slipped = _slipped(level, ideal, usually)
-    impossible = ((np.abs(steps) > limit) & ~lost) | slipped
-    kept, jumps = _followed(error[rows], rows, limit, impossible, slipped, periods[-1])
-    kept = rows[kept]
-    own = [abs(rotor[rows[k]] - rotor[rows[k - 1]]) for k in jumps]
-    if own and max(own) > _RANGE * np.ptp(rotor):  # an encoder of another range than a turn
-        return recording
-    slips = [abs(error[rows[k]] - error[rows[k - 1]]) for k in jumps]
-    least = _FEWEST if min(slips, default=0.0) > _CLEAR * limit else _LEAST_SHARE * len(error)
-    if len(kept) == len(error) or len(kept) < least:
-        return recording
-    first, last = kept[0], kept[-1]
-    stray = np.setdiff1d(np.arange(first, last + 1), kept)
-    time = both.seconds if both.timed else both.seconds + 1.0
-    found = []
-    isolated = stray[~frozen[stray]]
-    if len(isolated):
-        found.append(left_out(time[isolated], timed=both.timed))
-    if len(still := np.flatnonzero(frozen)):
-        times = np.split(time[still], 1 + np.flatnonzero(np.diff(still) > 1))
-        unit = ' s' if both.timed else ''
-        spans = [f'{number(each[0], 6)} to {number(each[-1], 6)}{unit}' for each in times]
-        found.append(
-            Observation.STOOD_STILL(spans=spans[:NAMED], more=len(spans[NAMED:]), count=len(still))
-        )
-    sizes = [(float(time[rows[k]]), float(error[rows[k]] - error[rows[k - 1]])) for k in jumps]
-    found += jumped(sizes, timed=both.timed)
-    if first or last + 1 < len(error):
-        found.append(longest(time[kept], timed=both.timed))
-    encoders = _without(both, slope * turned, kept, stray)
-    return replace(recording, encoders=encoders, faults=(*recording.faults, *found))
+    return _Steps(((np.abs(steps) > limit) & ~lost) | slipped, slipped, limit)
+
+
+def _stood_still(time: Array, still: Array, *, timed: bool) -> Observed:
+    """Name the spans of the rows in which an encoder stood still."""
+    times = np.split(time[still], 1 + np.flatnonzero(np.diff(still) > 1))
+    unit = ' s' if timed else ''
+    spans = [f'{number(each[0], 6)} to {number(each[-1], 6)}{unit}' for each in times]
+    more = len(spans[NAMED:])
+    return Observation.STOOD_STILL(spans=spans[:NAMED], more=more, count=len(still))
 
 
 def output_by_rotor(rotor: Array, measured: Array) -> float | None:
@@ -172,29 +220,20 @@ def _slipped(error: Array, ideal: Array, usually: float) -> NDArray[np.bool_]:
     return found
 
 
-def _followed(
-    error: Array,
-    rows: Array,
-    limit: float,
-    impossible: NDArray[np.bool_],
-    slipped: NDArray[np.bool_],
-    period: float,
-) -> tuple[Array, list[int]]:
+def _followed(error: Array, rows: Array, steps: _Steps, period: float) -> tuple[Array, list[int]]:
     """Follow the error, rad, both ways from its longest part without an impossible step.
 
     Args:
         error: (n,), of rows of the recording.
         rows: (n,), their numbers.
-        limit: rad, of a step; after a longer gap, the error may have changed by its range, too.
-        impossible: (n - 1,), steps that are.
-        slipped: (n - 1,), those of them that stay, however small they are.
+        steps: between them; after a gap, the error may have changed by its range, too.
         period: rad, of the error: what wraps of an encoder add to it.
 
     Returns:
         The indices that are reached with stray readings left out, and those before which it jumps
         for good.
     """
-    edges = [0, *(1 + np.flatnonzero(impossible)).tolist(), len(error)]
+    edges = [0, *(1 + np.flatnonzero(steps.impossible)).tolist(), len(error)]
     parts = list(pairwise(edges))
     longest = max(range(len(parts)), key=lambda k: parts[k][1] - parts[k][0])
     kept, jumps = [np.arange(*parts[longest])], []
@@ -209,9 +248,9 @@ def _followed(
             level = np.median(error[begin:end][::way][:_STAYS])
             before = np.median(reached[::-way][:_STAYS])
             place = begin if way > 0 else end
-            moved = abs(math.remainder(level - before, period)) > limit + spread * gap
-            if moved or slipped[place - 1]:
-                if end - begin < _STAYS and not slipped[place - 1]:
+            moved = abs(math.remainder(level - before, period)) > steps.limit + spread * gap
+            if moved or steps.slipped[place - 1]:
+                if end - begin < _STAYS and not steps.slipped[place - 1]:
                     continue
                 jumps.append(place)
                 beyond = True
