@@ -1,10 +1,12 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Print the output angle and the pose of each body at one rotor angle."""
 
+from argparse import ArgumentParser
 from math import degrees, pi
 
 from gear_kinematics.kinematics import Branch, Mechanism, solve
 
+ArgumentParser(description=__doc__).parse_args()
 actuator = Mechanism(
     ring_teeth=80,
     satellite_teeth=76,

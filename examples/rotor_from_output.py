@@ -1,10 +1,13 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Print the rotor states that a driver has to reach for a swing of the output, and check them."""
 
+from argparse import ArgumentParser
+
 import numpy as np
 
 from gear_kinematics.kinematics import Branch, Mechanism, rotor_state_for, solve
 
+ArgumentParser(description=__doc__).parse_args()
 actuator = Mechanism(80, 76, 0.0011, (Branch('a'), Branch('b', cam_phase=np.pi)))
 direction, zero = -1, 0.25  # rotor_direction and rotor_zero of the node: rad at the output's zero
 time = np.linspace(0.0, 1.0, 5)  # s

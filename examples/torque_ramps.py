@@ -2,12 +2,14 @@
 """Print the figures of a catalogue from torque ramps: hysteresis, backlash and stiffness."""
 
 import math
+from argparse import ArgumentParser
 from pathlib import Path
 
 from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.parameters import NodeParameters
 
+ArgumentParser(description=__doc__).parse_args()
 config = NodeParameters.load()
 ramps = Path(__file__).parents[1] / 'docs/examples/ramps.csv'
 report = measure(read(ramps, config), config, rated_torque=5.0)

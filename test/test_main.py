@@ -273,21 +273,28 @@ def test_an_error_that_cannot_be_said_has_its_exit_code():
 
 # What is not installed.
 
+ROS = ": source a ROS 2 installation, or pip install 'gear_kinematics[ros]'"
+PYTHON = f' for {sys.executable}: install it, or build gear_kinematics with another Python, as by '
+PYTHON += 'python3 -m colcon build'
+
 
 @pytest.mark.parametrize(
-    ('program', 'package'), [('gearkin', 'rclpy'), ('gear_state_publisher', 'visualization_msgs')]
+    ('program', 'package', 'remedy'),
+    [
+        ('gearkin', 'rclpy', ROS),
+        ('gear_state_publisher', 'visualization_msgs', ROS),
+        # colcon starts programs by its own Python, which can lack what the workspace has.
+        ('gearkin', 'numpy', PYTHON),
+    ],
 )
-def test_without_ros_or_its_messages_there_is_one_line_that_names_the_extra(program, package):
+def test_without_a_package_there_is_one_line_that_says_what_to_do(program, package, remedy):
     code = (
         f'import sys; sys.modules[{package!r}] = None\n'
         f'from gear_kinematics.__main__ import {program}; sys.exit({program}())'
     )
     done = gearkin(*(['demo'] if program == 'gearkin' else []), code=code)
     assert (done.returncode, done.stdout) == (2, '')
-    assert done.stderr == (
-        f'{program}: {package} is not installed: source a ROS 2 installation, or '
-        "pip install 'gear_kinematics[ros]'\n"
-    )
+    assert done.stderr == f'{program}: {package} is not installed{remedy}\n'
 
 
 def test_without_middleware_there_is_one_line_that_names_the_extra():

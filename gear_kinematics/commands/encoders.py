@@ -44,17 +44,22 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: boo
         metavar='NAME',
         help='topic of the output encoder (default: found by type and name)',
     )
-    gear = arguments.group(parser, 'gear')  # before the columns, also where the command adds to it
+    arguments.group(parser, 'gear')  # before the columns, also where the command adds to it
     if configured:
         arguments.add_config(parser)
-        gear.add_argument(
-            '--ratio',
-            type=ratio_text,
-            metavar='I',
-            help='exact gear ratio, such as -19 or 1457/26 (default: the parameter gear_ratio, or '
-            'from the teeth; gearkin commission finds it)',
-        )
+        add_ratio(parser)
     add_columns(parser, *roles)
+
+
+def add_ratio(parser: argparse.ArgumentParser) -> None:
+    """Add the option that replaces the parameter `gear_ratio`; `load_config` applies it."""
+    arguments.group(parser, 'gear').add_argument(
+        '--ratio',
+        type=ratio_text,
+        metavar='I',
+        help='exact gear ratio, such as -19 or 1457/26 (default: the parameter gear_ratio, or '
+        'from the teeth; gearkin commission finds it)',
+    )
 
 
 def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:

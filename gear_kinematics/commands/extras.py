@@ -1,6 +1,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Packages that pip installs only with an extra, and the error if one is missing."""
 
+import sys
+
 EXTRAS = {
     'rclpy': 'ros',
     'matplotlib': 'plot',
@@ -32,7 +34,10 @@ def remedy(error: ImportError) -> str:
     if 'librmw_' in str(error):
         wheel = 'ros-jazzy-rclpy[fastrtps]'  # or that of another distribution
         return f"rclpy has no middleware: install it with the extra, as in pip install '{wheel}'"
-    if not (isinstance(error, ModuleNotFoundError) and extra):
+    if not (isinstance(error, ModuleNotFoundError) and package):
         return ' '.join(str(error).split())
+    if not extra:
+        another = 'build gear_kinematics with another Python, as by python3 -m colcon build'
+        return f'{package} is not installed for {sys.executable}: install it, or {another}'
     instead = 'source a ROS 2 installation, or ' if extra == 'ros' else ''
     return f"{package} is not installed: {instead}pip install 'gear_kinematics[{extra}]'"

@@ -83,4 +83,4 @@ def _configs(options: argparse.Namespace, bag: Path) -> list[NodeParameters]:
     if is_table(bag):
         return [arguments.load_config(options, bag)]
     configs = [*arguments.load_configs(options, bag).values()]
-    return [config for config in configs if not config.gear_ratio] or configs
+    return [config for config in configs if not config.gear_ratio] or configs[:1]

@@ -71,8 +71,10 @@ def lines(document: Document, *, brief: bool = False) -> Iterator[str]:
         if brief and section.verdict is None:
             yield from (f'{name}{text}' for text in findings)
         elif brief and section.verdict == Verdict.PASS:
-            parts = filter(None, [OUTCOME[section.verdict], section.answer, *findings])
-            yield f'{name}verdict: {"; ".join(parts)}'
+            verdict = OUTCOME[section.verdict]
+            for text in filter(None, [section.answer, *findings]):
+                verdict = _joined(verdict, text)
+            yield f'{name}verdict: {verdict}'
         else:
             yield from section_lines(section, brief=brief)
 
@@ -88,7 +90,7 @@ def section_lines(section: Section, *, brief: bool = False) -> Iterator[str]:
             if name:  # an error begins with it, on a cluster as an absolute path
                 gravest = gravest.rpartition(name)[2]
             verdict += f': {gravest}'
-        yield f'{verdict}; {answer}' if answer else verdict
+        yield _joined(verdict, answer) if answer else verdict
     for finding in findings:
         yield f'{name}{finding.kind}: {finding.text}'
     if answer and not section.verdict:
@@ -97,6 +99,11 @@ def section_lines(section: Section, *, brief: bool = False) -> Iterator[str]:
         yield from (f'{name}{line}' for line in _table_lines(table))
     for remark in () if brief else section.remarks:
         yield f'{name}remark: {remark}'
+
+
+def _joined(text: str, more: str) -> str:
+    """Join two texts after a semicolon, or after a full stop if the second is a sentence."""
+    return f'{text}{"." if more[0].isupper() else ";"} {more}'
 
 
 def _table_lines(table: Table) -> Iterator[str]:

@@ -107,8 +107,8 @@ class Condition(Enum):
     MEASURED = OK, 'output encoder, ± {uncertainty_deg:.2g}°', ''
     # Where the zero is kept
     ZERO_KEPT = OK, 'kept in {path}', ''
-    ZERO_NOT_KEPT = OK, 'not kept: {path}: {why}', ''
-    ZERO_NOT_SET = OK, 'not kept: not homed yet', ''
+    ZERO_NOT_KEPT = OK, 'lost at restart: {path}: {why}', ''
+    ZERO_NOT_SET = OK, 'not homed yet', ''
     ZERO_IS_LOST = OK, 'lost at restart: set home_file', ''
     # The transmission error
     NO_ENCODER = WARN, 'no output_encoder for {age:.1f} s', _DRIVER

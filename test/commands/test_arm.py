@@ -93,8 +93,11 @@ def test_loads_and_info_report_on_each_actuator(arm, tmp_path):
     lines = done.stdout.splitlines()
     assert {line[: len('states: shoulder: ')] for line in lines} == {'states: shoulder: '}
     assert any('output [N·m]: greatest: 4.75;' in line for line in lines)  # 19 · 0.25 N·m
-    why = refusal('loads', source, '--config', file, '--actuator', 'elbow')
-    assert why.startswith(f'{source}: elbow: gear_ratio is 1457/26: ')
+    ratios = config(tmp_path / 'ratios.yaml', **{'shoulder.gear_ratio': '1457/26'})
+    for given, actuator in (ratios, 'shoulder'), (file, 'elbow'):
+        chosen = [] if given == ratios else ['--actuator', actuator]
+        why = refusal('loads', source, '--config', given, *chosen)  # in one line
+        assert why.startswith(f'{source}: {actuator}: gear_ratio is 1457/26: ')
     two = config(tmp_path / 'two.yaml', **{'shoulder.gear_ratio': '', 'elbow.gear_ratio': ''})
     once = refusal('loads', source, '--config', two, '--rotor-topic', '/motor')
     assert once.startswith(f'{source}: no topic /motor ')

@@ -84,7 +84,7 @@ def test_a_limit_decides_the_exit_code_and_is_a_test_case(recording, tmp_path, c
     report = tmp_path / 'report.xml'
     limits = ['--max-hysteresis', '90', '--min-stiffness', '250', '--junit', str(report)]
     assert main(['lost-motion', str(recording), *limits]) == 0
-    assert capsys.readouterr().out.startswith('gear.csv: verdict: passed; The hysteresis of ')
+    assert capsys.readouterr().out.startswith('gear.csv: verdict: passed. The hysteresis of ')
     assert main(['lost-motion', str(recording), *limits, '--max-backlash', '60']) == 1
     first, second, *_ = capsys.readouterr().out.splitlines()
     assert first.startswith('gear.csv: verdict: failed: The backlash of 68.')

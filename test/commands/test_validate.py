@@ -156,6 +156,8 @@ def test_a_bag_that_is_given_twice_is_validated_once(bags):
         ('good', ['--tolerance-angle', '0', '--tolerance-position', '0'], 0),
         ('shifted', [], 1),
         ('namespaced', [], 0),
+        ('good', ['--ratio', '-19'], 0),
+        ('good', ['--ratio', '-39/2'], 1),
         ('good', ['--rotor-topic', '/rotor_state', '--output-topic', '/output_state'], 0),
         ('good', ['--rotor-topic', '/output_state', '--output-topic', '/rotor_state'], 1),
     ],

@@ -50,7 +50,7 @@ def test_answer_can_be_checked_by_a_person(homing, tmp_path):
     assert (answer.success, answer.message) == (True, words + 'lost at restart: set home_file)')
     path = tmp_path / 'home.yaml'
     node = homing(home_file=str(path))
-    assert values_of(node)['home file'] == 'not kept: not homed yet'
+    assert values_of(node)['home file'] == 'not homed yet'
     drive(node, [TURNED] * 200)
     assert home(node).message == f'{words}kept in {path})'
     again = 'the shaft was at 0.0° and is now 0.0° (rotor_zero -20.394 rad, '
@@ -117,7 +117,7 @@ def test_zero_that_cannot_be_written_holds_and_the_answer_says_why(homing, tmp_p
         patch.setattr('gear_kinematics.parameters.atomic_file.os.fsync', refuse)
         answer = home(node)
         assert answer.success
-        words = f'not kept: {path}: Read-only file system'
+        words = f'lost at restart: {path}: Read-only file system'
         assert answer.message.endswith(f'(rotor_zero -20.394 rad, {words})')
         assert values_of(node)['home file'] == words
     assert not list(tmp_path.iterdir())
