@@ -61,7 +61,8 @@ def run(options: argparse.Namespace) -> ExitCode:
     if options.arm:
         chosen = joints_of_arm(joints, options.topic or '')
     else:
-        chosen = [choose_joint(joints, Channel(options.topic or '', options.joint or ''), 'rotor')]
+        given = Channel(options.topic or '', options.joint or '')
+        chosen = [choose_joint(joints, given, 'rotor', '; gearkin init --arm sets up all')]
     topic = chosen[0].topic
     ratios = _ratios(options, [channel.joint for channel in chosen])
     command = start_command(topic, str(path))

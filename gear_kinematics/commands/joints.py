@@ -28,7 +28,7 @@ def ask(question: str) -> str:
 
 
 def choose_joint(
-    joints: Sequence[Channel], given: Channel, role: Literal['rotor', 'output']
+    joints: Sequence[Channel], given: Channel, role: Literal['rotor', 'output'], hint: str = ''
 ) -> Channel:
     """Return the joint that is given, the only one on its usual topic, or the one the user names.
 
@@ -36,6 +36,7 @@ def choose_joint(
         joints: the joints to choose from.
         given: the given topic and name of the joint, as far as they are known.
         role: role of the joint in the question and in errors.
+        hint: what else to do where there are several joints.
 
     Raises:
         ValueError: if there is none, or there are several and nobody to ask.
@@ -51,11 +52,11 @@ def choose_joint(
         there = groupby(found or joints, key=attrgetter('topic'))
         remedy = '; '.join(f'{listed([j.joint for j in on])} on {topic}' for topic, on in there)
         option = {'rotor': '--joint', 'output': '--encoder-joint'}[role]
-        remedy = f'Repeat with {option}, and its topic if needed: {printable(remedy)}'
+        remedy = f'Repeat with {option}, and its topic if needed: {printable(remedy)}{hint}'
         raise ValueError(f'{question} {remedy if names else "There is none."}')
     for number, (topic, joint) in enumerate(found, 1):
         print(f'{number:3}  {printable(joint)} on {topic}')
-    answer = ask(f'Number of the joint of the {role}: ')
+    answer = ask(f'Number of the joint of the {role}{hint}: ')
     if not (answer.isdecimal() and 1 <= int(answer) <= len(found)):
         raise ValueError(f'{answer!r} is not a number from 1 to {len(found)}')
     return found[int(answer) - 1]

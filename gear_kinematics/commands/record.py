@@ -59,4 +59,6 @@ def run(options: argparse.Namespace) -> ExitCode:
         print('the computer is too busy to record every message')
     if missing:
         print(f'nothing came on {missing}')
+    given = '' if options.config else ' --config FILE, with the parameter file of the node'
+    print(f'prove it: gearkin validate {options.out}{given}')
     return ExitCode.DONE

@@ -35,6 +35,7 @@ def test_what_a_node_hears_and_publishes_is_recorded_as_it_is_named(tmp_path, ca
                 capsys.readouterr()
     assert recording.process.returncode == 0
     assert re.search(rf' {ENCODER}: \d+ messages, [1-9]\d+ Hz\n', recording.text())
+    assert recording.text().endswith('prove it: gearkin validate monday\n')
     with Bag(tmp_path / 'monday') as bag:
         assert bag.topics.keys() >= {
             MOTOR, ENCODER, '/diagnostics',

@@ -115,7 +115,7 @@ def test_init_lists_the_joints_and_asks_in_a_terminal(tmp_path):
     with Person(tmp_path, 'init', '--topic', MOTOR, '-o', 'mine.yaml') as terminal:
         terminal.wait_for(rf'{MOTOR}: brake, m1 at [1-9]\d\d+ Hz')
         choice = terminal.wait_for(rf'\d  m1 on {MOTOR}')
-        terminal.wait_for('Number of the joint of the rotor: ')
+        terminal.wait_for('Number of the joint of the rotor; gearkin init --arm sets up all: ')
         terminal.type(f'{choice[0]}\n')
         terminal.wait_for('Ratio of the gear, .*: ')
         terminal.type('50.5\n')

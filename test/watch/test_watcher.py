@@ -612,6 +612,7 @@ def listening(monkeypatch, tmp_path):
 
 
 JOINTS = 'Repeat with --joint, and its topic if needed: brake, m1 on /motor/joint_states'
+JOINTS += '; gearkin init --arm sets up all'
 ROTOR = f'which joint is the rotor? {JOINTS}'
 
 
