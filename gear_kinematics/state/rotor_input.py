@@ -125,8 +125,8 @@ class RotorInput:
     def why_rejected(self) -> str:
         """The causes with their counts, and which joints there are if that is one of them."""
         causes = ', '.join(f'{cause} {count}' for cause, count in self.rejected.items())
-        remedy = 'give the parameter file of the node with --config, or name it with --joint'
-        return f'{causes}: {self.missing_joint}; {remedy}' if self.missing_joint else causes
+        hint = f': {self.missing_joint}; give the right --config or --joint'
+        return causes + hint * bool(self.missing_joint)
 
     @property
     def segment(self) -> int:

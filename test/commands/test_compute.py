@@ -114,7 +114,7 @@ def test_recorded_outputs_are_replaced_and_the_only_joint_is_taken(others, topic
     messages = [(topic, stamp, rotor_bytes(stamp, ['m1'], [1.0])) for stamp in stamps]
     bag = write_bag(tmp_path / 'monday', messages, kinds)
     words = ('--rotor-topic', topic)
-    assert 'there are: m1; give the parameter file of the node with --config' in refusal(
+    assert 'there are: m1; give the right --config or --joint' in refusal(
         'compute', bag, out, *words, '--joint', 'rotor'
     )
     done = gearkin_here('compute', bag, out, *words)
