@@ -1,9 +1,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Judges by limits of speed and acceleration whether the rotor can have turned so far.
 
-Each reading is judged at once, by the last
-ones that were believed. One that the rotor cannot have reached is doubted. Three doubted ones in
-a row that agree with each other are believed, as a jump or as a motion beyond the limits.
+Each reading is judged at once, by the last ones that were believed. One that the rotor cannot
+have reached is doubted. Three doubted ones in a row that agree with each other are believed: as a
+motion that the last believed reading only hid, or one beyond the limits, or as a jump.
 """
 
 import math
@@ -25,6 +25,9 @@ _MOST_OF = 0.8  # a period: where so much is in reach, nothing is doubted
 _MARGIN = 1.5  # of raised limits above what was seen
 _STALEST_NS = round(STALEST * 1e9)
 _LONGEST_NS = 12_000_000  # between readings for which a look at the step alone may be enough
+_LONGEST_REPEAT = 1.0  # s, for which a driver repeats a reading while the rotor turns on
+_REPEATED = 0.05  # of the way meanwhile: what it may differ by from that at a steady speed
+_STEADY = 0.25  # of the speed: what it may change by meanwhile
 
 
 class Belief(Enum):
@@ -76,6 +79,7 @@ class Plausibility:
         self._doubted: list[tuple[int, float]] = []
         self._last: Reading = _UNKNOWN
         self._former: Reading = _UNKNOWN
+        self._moving: Reading = _UNKNOWN  # the last one before a standstill
         self._stamp = 0  # ns, of the last believed reading with the last position
         self.finest = _COARSEST
         """rad, the resolution of the encoder: the smallest step of all, or difference between two
@@ -158,10 +162,13 @@ class Plausibility:
         sizes = np.abs([steps, steps - step[1:-1]])
         sizes = np.where(sizes > _EQUAL, sizes, _COARSEST).min(axis=0)
         finest = np.minimum.accumulate(np.append(self.finest, np.maximum(sizes, 0.5 * FLOOR)))
+        moving = self._moving
         for k in np.flatnonzero(ended).tolist():
             ends = (0.0, 0, moved[k], took[k]), (0.0, 0, step[k - 1], span[k - 1])
             if self.limits.least_speed(*ends, finest[k - 1]):
                 return False
+            where = float(positions[rows[k - 2]]) if k > 1 else position
+            moving = where, int(changed[k - 1]), float(moved[k]), int(took[k])
         usual = 0.5 * (span[1:-1] + span[:-2])
         regular = usual <= _LONGEST_NS
         for each in (span[1:-1], np.diff(changed)):
@@ -176,7 +183,7 @@ class Plausibility:
             low, high = self.limits.reach(int(when[k]), int(until[k]), *ends, float(finest[k]))
             if not low <= steps[k] <= high:
                 return False
-        position = float(positions[-1])
+        position, self._moving = float(positions[-1]), moving
         if len(rows):
             before = float(positions[rows[-2]]) if len(rows) > 1 else self._last[0]
             self._former = (before, int(changed[-2]), float(step[-2]), int(span[-2]))
@@ -248,6 +255,8 @@ class Plausibility:
                 if way > max(FLOOR, 2.0 * self.finest):
                     return self._doubt(position, stamp)
             if not speed or time > 2.0 * speed / self.limits.acceleration:
+                if self._last[2]:
+                    self._moving = self._last
                 self._last = *self._last[:2], 0.0, 0
                 self._look_always()
         self._stamp = stamp
@@ -299,20 +308,42 @@ class Plausibility:
         if abs(speed) > self.limits.speed:
             self.seen_speed = abs(speed)
             self.limits = self.limits._replace(speed=_MARGIN * abs(speed))
-        if continuous:
+        if self._goes_on(times[0], positions[0], speed):
+            continuous = True
+        elif continuous:
             seen = abs(speed - before) / max(elapsed + stale, 1e-9)
             if within and seen > self.limits.acceleration:
                 self.seen_acceleration = seen
-                self.limits = self.limits._replace(acceleration=_MARGIN * seen)
+                if speed:
+                    self.limits = self.limits._replace(acceleration=_MARGIN * seen)
         else:
             self.jumps += 1
             self.jump = Jump(times[0], self._wrapped(first - before * elapsed))
-        finest = self.finest
+        last, finest = self._last, self.finest
         self._restart(position, stamp)
         self.finest = finest
+        if continuous and not speed:
+            self._moving = last
         if spans[-1]:
             self._last = position, stamp, steps[-1], times[-1] - times[-2]
         return Belief.BELIEVED if continuous else Belief.JUMP
+
+    def _goes_on(self, stamp: int, position: float, speed: float) -> bool:
+        """Whether a motion at this speed continues that before the last believed reading.
+
+        The last one then was wrong itself, or a driver repeated it while the rotor turned on.
+        """
+        moved = self._last[2]
+        before, since, step, span = self._former if moved else self._moving
+        time = (stamp - since) * 1e-9
+        if self.period or not (step and span) or (time > _LONGEST_REPEAT and not moved):
+            return False
+        former = step / (span * 1e-9)
+        change = _STEADY * abs(former) + (self.limits.acceleration * time if moved else 0.0)
+        way, stale = 0.5 * (former + speed) * time, min(STALEST, 1.25e-9 * span)
+        uncertain = max(FLOOR, 2.0 * self.finest) + max(abs(former), abs(speed)) * stale
+        uncertain += _REPEATED * abs(way) + 0.25 * change * time
+        return abs(speed - former) <= change and abs(position - before - way) <= uncertain
 
     def _wrapped(self, step: float) -> float:
         return math.remainder(step, self.period) if self.period else step

@@ -186,6 +186,39 @@ def test_a_rotor_that_stops_at_once_is_named(settings, rate):
     assert rotor.referenced != settings.single_turn
 
 
+@pytest.mark.parametrize(('rate', 'speed', 'repeated', 'offset'), [
+    (100, 100.0, 0.5, 0.0), (200, -60.0, 0.1, 0.0), (500, 300.0, 0.03, 0.0),
+    (500, 300.0, 0.5, 0.0), (1000, 20.0, 0.04, 0.0), (1000, 60.0, 0.9, 0.0),
+    (1000, -200.0, 0.015, 0.0), (1000, 60.0, 0.1, 2.0), (1000, 60.0, 0.1, -2.0),
+    (1000, 60.0, 1.2, 0.0),
+])  # fmt: skip
+def test_a_reading_that_a_driver_repeats_while_the_rotor_turns_on_is_no_jump(
+    rate, speed, repeated, offset
+):
+    times = np.arange(2 * rate + rate // 2) / rate
+    angles = np.round(speed * np.maximum(times, 0.2), 3)
+    first, end = rate // 2, rate // 2 + round(repeated * rate)
+    angles[first:end] = angles[first - 1]
+    angles[end:] += offset
+    rotor, samples = fed(MULTI, messages(times, angles))
+    assert 2 <= rotor.rejected['implausible'] <= 5
+    jumped = offset != 0.0 or repeated > 1.0
+    assert bool(rotor.plausibility.jumped) == (not rotor.referenced) == jumped
+    assert rotor.plausibility.limits == LIMITS
+    after = [TURN * s.position.turns + s.position.angle for s in samples[end + 3 :]]
+    assert after == pytest.approx(angles[end + 3 :].tolist())
+
+
+@pytest.mark.parametrize('speed', [0.5, 60.0, 250.0])
+def test_a_corrupt_reading_of_any_size_is_no_jump(speed):
+    times = np.arange(30) / 1000
+    for size in np.arange(-1.5, 1.5, 0.05):
+        angles = np.round(speed * times, 3)
+        angles[20] += size
+        rotor, _ = fed(MULTI, messages(times, angles))
+        assert (rotor.plausibility.jumped, rotor.referenced) == (None, True)
+
+
 def test_the_first_steps_after_a_standstill_hide_no_jump():
     times = np.arange(500) / 500
     angles = np.where(times < 0.8, 1.0, 1.0 + 1e-4 * np.cumsum(times >= 0.8))
