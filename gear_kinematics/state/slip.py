@@ -50,6 +50,8 @@ class SlipWatch:
         self.slip: Slip | None = None
         self._errors: list[ErrorSample] = []
         self._reference: _Block | None = None
+        self._steady: _Block | None = None
+        """The first block at about the present speed, between which a delay hides little."""
         self._last: _Block | None = None
 
     def add(self, sample: ErrorSample) -> None:
@@ -62,18 +64,23 @@ class SlipWatch:
             statistics.median(each.error for each in errors),
             statistics.median(each.speed for each in errors),
         )
-        reference, last = self._reference, self._last
+        reference, steady, last = self._reference, self._steady, self._last
         self._last = block
-        if not reference or not last:
-            self._reference = block
+        if not reference or not last or not steady:
+            self._reference = self._steady = block
         elif self.slip:
             self.slip = self.slip._replace(angle=block.error - reference.error)
-        elif moved := self._moved(reference, block) or self._moved(last, block):
+        elif moved := (
+            self._moved(reference, block) or self._moved(last, block) or self._moved(steady, block)
+        ):
             before = block.error - moved
             first = next(each for each in errors if abs(each.error - before) >= 0.5 * abs(moved))
             self.slip = Slip(first.stamp, moved)
         elif abs(block.speed) < abs(reference.speed):
             self._reference = block  # in slow motion a delay hides less
+        limit = self._parameters.transmission_error_limit
+        if steady and steady.tolerance(block, self._parameters) > 2.0 * limit:
+            self._steady = block
 
     def _moved(self, before: _Block, block: _Block) -> float:
         """Angle by which the output has moved beyond the tolerance, rad; else 0."""

@@ -220,6 +220,20 @@ def test_slip_stays_a_warning_after_the_window_has_passed(degrees, speed):
         rest(bench, more, 500, math.radians(degrees), speed=speed)
 
 
+@pytest.mark.parametrize('drift', [0.0, 2e-4, -2e-4])
+def test_slow_drift_in_steady_motion_is_a_slip(drift, bench):
+    for k in range(4000):
+        moving = max(0.0, 0.01 * k - 1.0)
+        angle = 5.0 * (0.5 * moving * moving if moving < 1.0 else moving - 0.5)  # up to 5 rad/s
+        late = -0.005 * 5.0 * min(moving, 1.0)  # rad, of an encoder that is 5 ms late
+        bench.measure(START + 10 * k * MS, angle + late + drift * moving)
+        bench.turn(START + 10 * k * MS, -19.0 * angle)
+    slip = bench.encoder.slip_watch.slip
+    assert bool(slip) == bool(drift)
+    if slip:  # beyond the limit of 0.003 rad, since the speed is steady
+        assert 15.0 < (slip.stamp - START) / SECOND - 2.0 < 20.0
+
+
 @pytest.mark.parametrize('sense', [1, -1])
 def test_direction_is_checked_by_a_motion_alone(sense):
     """The wrong way round, the error grows by twice the travel."""
