@@ -700,7 +700,7 @@ def test_init_sets_up_all_motors_of_an_arm(listening, monkeypatch, capsys):
         (
             [DRIVERS[0], DriverTopic('/b', ('m2',), 9.0)],
             ['--ratio', '3'],
-            'which topic has the joints of the arm? Repeat with --topic: /b, /motor/joint_states',
+            'Repeat with --topic, or remap all drivers to one: /b, /motor/joint_states',
         ),
         ([DriverTopic('/b', ('m.2', 'm_2'), 9.0)], ['--ratio', '3'], 'nearly the same name'),
     ],
