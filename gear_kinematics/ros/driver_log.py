@@ -15,6 +15,7 @@ from gear_kinematics.wire.nearest import among, listed
 from gear_kinematics.wire.topics import ROTOR_STATE
 
 _ELSEWHERE = 0.1  # rad, of a rotor that was turned by hand, or counted from another zero
+_SEARCH = 3  # s, in which all publishers are found: they announce themselves as often
 _HOME = 'check whether the drive restarted; then home it (gearkin home or ~/home)'
 
 
@@ -36,7 +37,7 @@ class DriverLog:
         """Messages with the joint of each actuator, and the updates since there was none."""
         self._log, self._node, self._inputs = node.get_logger(), node, inputs
         self._topic = node.resolve_topic_name(ROTOR_STATE)
-        self._looked = False  # whether there was no publisher at the last update either
+        self._missing = 0  # updates since there was a publisher
         self._jumps = self._jumped()
         self._before: dict[str, RotorSample] = {}  # the silence
         self.awaited = False  # whether it was logged that the driver is missing or silent
@@ -65,7 +66,7 @@ class DriverLog:
             if jumps[name] > self._jumps[name]:
                 self._log.warning(labelled(name, f'{each.plausibility.jumped}: {_HOME}'))
         self._jumps = jumps
-        looked, self._looked = self._looked, not publishers
+        self._missing = 0 if publishers else self._missing + 1
         if self.awaited:
             return
         last = {name: each.last for name, each in self._inputs.items() if each.last}
@@ -73,8 +74,7 @@ class DriverLog:
         if last and silence > max(timeouts):
             self._log.warning(f'{self._topic} has stopped: no input for {silence:.1f} s')
             self.awaited, self._before = True, last
-        # At the first update, not all publishers are discovered yet.
-        elif not (publishers or last) and looked and (others := Graph(self._node).drivers()):
+        elif not last and self._missing > _SEARCH and (others := Graph(self._node).drivers()):
             self._log.warning(
                 f'{self._topic} has no publisher; there are: {listed(others)}; choose one with '
                 f'-r {ROTOR_STATE}:=<topic>, or with ros2 launch {ROTOR_STATE}:=<topic>'
