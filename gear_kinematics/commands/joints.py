@@ -72,9 +72,8 @@ def joints_of_arm(joints: Sequence[Channel], topic: str) -> list[Channel]:
     if len(topics := {joint.topic for joint in found}) == 1:
         return found
     there = listed(topics or {joint.topic for joint in joints}) or 'none with joints'
-    raise ValueError(
-        f'which topic has the joints of the arm? Repeat with --topic, or remap all drivers to one: {there}'
-    )
+    remedy = f'Repeat with --topic, or remap all drivers to one: {there}'
+    raise ValueError(f'which topic has the joints of the arm? {remedy}')
 
 
 def _candidates(joints: Sequence[Channel], given: Channel, base: str) -> list[Channel]:
