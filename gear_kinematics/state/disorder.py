@@ -3,6 +3,10 @@
 
 from itertools import pairwise
 
+import numpy as np
+
+from gear_kinematics.wire.batches import Array, once_for_joints
+
 
 class Disorder:
     """Collects the stamps, ns, that are older than that of the last sample."""
@@ -19,3 +23,10 @@ class Disorder:
         stamps, self.stamps = self.stamps, []
         rising = len(stamps) > 1 and all(a < b for a, b in pairwise([*stamps, stamp]))
         return last - stamps[0] if rising else 0
+
+
+@once_for_joints
+def order(stamps: Array) -> tuple[bool, int]:
+    """Return whether stamps never fall and none is 0, and how many repeat the one before."""
+    steps = np.diff(stamps)
+    return bool((steps >= 0).all() and stamps.all()), int(np.count_nonzero(steps == 0))

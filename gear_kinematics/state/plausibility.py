@@ -15,7 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.state.reach import FLOOR, REGULAR, STALEST, Reading, RotorLimits
+from gear_kinematics.state.reach import (
+    FLOOR,
+    LONGEST_NS,
+    REGULAR,
+    STALEST,
+    Reading,
+    RotorLimits,
+    regular_bounds,
+)
 from gear_kinematics.state.statuses import Condition, Fact
 
 _COARSEST = TURN / 6.0  # rad; what a Hall sensor of one pole pair resolves
@@ -24,7 +32,6 @@ _AGREEING = 3  # doubted readings in a row that are believed
 _MOST_OF = 0.8  # a period: where so much is in reach, nothing is doubted
 _MARGIN = 1.5  # of raised limits above what was seen
 _STALEST_NS = round(STALEST * 1e9)
-_LONGEST_NS = 12_000_000  # between readings for which a look at the step alone may be enough
 _LONGEST_REPEAT = 1.0  # s, for which a driver repeats a reading while the rotor turns on
 _REPEATED = 0.05  # of the way meanwhile: what it may differ by from that at a steady speed
 _STEADY = 0.25  # of the speed: what it may change by meanwhile
@@ -133,10 +140,32 @@ class Plausibility:
         fresh = math.isnan(self._last[0])
         if fresh:
             self._restart(float(positions[0]), int(stamps[0]))
+        if not self._doubted and self._moves_evenly(stamps, positions):
+            return True
         if self._doubted or not self._believes(stamps, positions):
             if fresh:
                 self.reset()
             return False
+        return True
+
+    def _moves_evenly(self, stamps: NDArray[np.int64], positions: NDArray[np.float64]) -> bool:
+        """Take readings as `_believes`, if each has moved in a regular time by a regular step."""
+        position, since, last, last_span = self._last
+        if self._stamp - since > _STALEST_NS or self.finest > 0.5 * FLOOR:
+            return False
+        bounds = regular_bounds(stamps, since, last_span, self._former[3], self.limits)
+        steps = np.diff(positions, prepend=position)
+        if bounds is None or len(steps) == 1 or not steps.all():
+            return False
+        evenness, most = bounds
+        changes = np.diff(steps, prepend=last)
+        if not ((np.abs(changes) <= evenness) & (np.abs(steps) <= most)).all():
+            return False
+        earlier, before, now = [since, *stamps[-3:].tolist()][-3:]
+        self._former = (float(positions[-2]), before, float(steps[-2]), before - earlier)
+        self._last = (float(positions[-1]), now, float(steps[-1]), now - before)
+        self._stamp = now
+        self._look_always()
         return True
 
     def _believes(self, stamps: NDArray[np.int64], positions: NDArray[np.float64]) -> bool:
@@ -170,7 +199,7 @@ class Plausibility:
             where = float(positions[rows[k - 2]]) if k > 1 else position
             moving = where, int(changed[k - 1]), float(moved[k]), int(took[k])
         usual = 0.5 * (span[1:-1] + span[:-2])
-        regular = usual <= _LONGEST_NS
+        regular = usual <= LONGEST_NS
         for each in (span[1:-1], np.diff(changed)):
             regular &= np.abs(each - usual) <= REGULAR * usual
         regular &= np.abs(steps - step[1:-1]) <= self.limits.even_step(usual)
@@ -230,7 +259,7 @@ class Plausibility:
         self._stamp = stamp
         self._look_always()
         usual = (span + last_span) // 2
-        if usual <= _LONGEST_NS:
+        if usual <= LONGEST_NS:
             shortest, longest = (1.0 - REGULAR) * usual, (1.0 + REGULAR) * usual
             if shortest <= span <= longest:
                 # A step that differs tells of the resolution, as long as that is coarse.

@@ -12,7 +12,7 @@ import numpy as np
 from gear_kinematics.kinematics import RotorPosition, RotorSample, RotorTurns, split_turns
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.disorder import Disorder
+from gear_kinematics.state.disorder import Disorder, order
 from gear_kinematics.state.effort_field import EffortField
 from gear_kinematics.state.plausibility import BELIEVED, Belief, Plausibility
 from gear_kinematics.state.rotor_samples import RotorSamples
@@ -192,32 +192,34 @@ class RotorInput:
         states = decode_joint_states(messages, self._parameters.rotor_joint)
         position = np.abs(states.values[:, 0])  # NaN if it is missing, or the message malformed
         usable = states.arrays_fit & (position <= LARGEST_ANGLE) & (states.stamp <= LATEST)
-        left = np.full(len(messages), not usable.all())
-        # In the order of the checks in `accept`.
-        for faulty, cause in (
-            (states.malformed, MALFORMED),
-            (states.stamp > LATEST, STAMP_OUT_OF_RANGE),
-            (~states.joint_found, JOINT_MISSING),
-            (~states.arrays_fit, ARRAY_SIZES),
-            (~states.present[:, 0], POSITION_MISSING),
-            (~np.isfinite(position), POSITION_NOT_FINITE),
-            (position > LARGEST_ANGLE, POSITION_TOO_LARGE),
-        ):
-            if count := int(np.count_nonzero(faulty & left)):
-                self.rejected[cause] += count
-            left &= ~faulty
+        stamps, values, clock = states.stamp, states.values, np.asarray(received, np.int64)
+        rows, rejected = np.arange(len(messages)), stamps[:0]
+        if not usable.all():
+            left = np.ones(len(messages), bool)
+            # In the order of the checks in `accept`.
+            for faulty, cause in (
+                (states.malformed, MALFORMED),
+                (states.stamp > LATEST, STAMP_OUT_OF_RANGE),
+                (~states.joint_found, JOINT_MISSING),
+                (~states.arrays_fit, ARRAY_SIZES),
+                (~states.present[:, 0], POSITION_MISSING),
+                (~np.isfinite(position), POSITION_NOT_FINITE),
+                (position > LARGEST_ANGLE, POSITION_TOO_LARGE),
+            ):
+                if count := int(np.count_nonzero(faulty & left)):
+                    self.rejected[cause] += count
+                left &= ~faulty
+            rows, rejected = np.flatnonzero(usable), stamps[states.joint_found & ~usable]
+            stamps, values, clock = stamps[rows], values[rows], clock[rows]
         self.missing_joint = self.missing_joint or states.missing_joint
-        if self.last or usable.any():
+        if self.last or len(rows):
             self._leave_others()
         self.unnormalised_stamps += int(np.count_nonzero(states.unnormalised & usable))
-        rows = np.flatnonzero(usable)
-        at: Any = rows if len(rows) < len(messages) else slice(None)  # which is faster
-        stamps, values = states.stamp[at], states.values[at]
-        clock = np.asarray(received, np.int64)[at]
         values[np.abs(values) > GREATEST] = np.nan
-        rejected = states.stamp[states.joint_found & ~usable]
-        parameters = self._parameters
-        simple = not (parameters.rotor_period or parameters.absolute) and self._in_order(stamps)
+        parameters, last = self._parameters, self.last
+        in_order, _ = order(stamps)
+        in_order &= not (last and len(stamps) and stamps[0] < last.stamp)
+        simple = in_order and not (parameters.rotor_period or parameters.absolute)
         if simple and self.plausibility.believes(stamps, values[:, 0]):
             return self._all_at_once(rows, stamps, values, clock, rejected)
         return self._one_by_one(rows, stamps, values, clock, rejected)
@@ -226,11 +228,6 @@ class RotorInput:
         """Count messages without the joint, which is in others, as no fault."""
         self.of_others += self.rejected.pop(JOINT_MISSING, 0)
         self.missing_joint = ''
-
-    def _in_order(self, stamps: Array) -> bool:
-        in_order = np.all(stamps != 0) and np.all(np.diff(stamps) >= 0)
-        follows = self.last is None or not len(stamps) or stamps[0] >= self.last.stamp
-        return bool(in_order and follows)
 
     def _all_at_once(
         self, rows: Array, stamps: Array, values: Array, received: Array, rejected: Array
@@ -252,8 +249,8 @@ class RotorInput:
             rejected,
         )
         if len(stamps):
-            before = stamps[0] - 1 if self.last is None else self.last.stamp
-            self.duplicates += int(np.count_nonzero(np.diff(stamps, prepend=before) == 0))
+            _, repeats = order(stamps)
+            self.duplicates += repeats + bool(self.last and stamps[0] == self.last.stamp)
             # The last one is also processed singly, to update the state for the next messages.
             self.last = None
             self._take_row(int(stamps[-1]), values[-1].tolist())

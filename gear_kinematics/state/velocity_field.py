@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from gear_kinematics.state.statuses import Condition, Fact
-from gear_kinematics.wire.batches import Array
+from gear_kinematics.wire.batches import Array, once_for_joints
 
 SPAN = 100_000_000
 """ns, between the readings that are compared; four of them decide."""
@@ -89,7 +89,7 @@ class VelocityField:
             The velocities, (n,); NaN where they are found to contradict the positions.
         """
         velocity, start = values[:, 1].copy(), 0
-        times = stamps.tolist()
+        times = _listed(stamps)
         while (row := bisect_left(times, self.due, start)) < len(times):
             if self.contradicts:
                 velocity[start:row] = np.nan
@@ -112,20 +112,23 @@ class VelocityField:
         del readings[: -1 - (_READINGS - 1) * _STRIDES[-1]]
         travel = max(_TRAVEL, _STEPS * finest)
         for stride in _STRIDES:
-            span = 1 + (_READINGS - 1) * stride
-            if len(readings) < span or self._compare(readings[-span:], travel, stride):
+            if self._compare(travel, stride):
                 break
         self.quiet_until = 0 if self.contradicts else self.due
 
-    def _compare(
-        self, readings: list[tuple[int, float, float]], travel: float, stride: int
-    ) -> bool:
-        """Decide on readings of a steady motion; returns whether it is by so much, rad."""
-        (first, start, _), *_, (last, end, _) = readings
-        time, slow = (last - first) * 1e-9, stride > 1
+    def _compare(self, travel: float, stride: int) -> bool:
+        """Decide on the latest readings; False if they moved by less than `travel`, rad."""
+        count = 1 + (_READINGS - 1) * stride
+        if len(self._readings) < count:
+            return True
+        (first, start, _), (last, end, _) = self._readings[-count], self._readings[-1]
+        time, slow, far = (last - first) * 1e-9, stride > 1, abs(end - start) >= travel
+        if slow and not far:
+            return False
+        readings = self._readings[-count:]
         velocities = [velocity for _, _, velocity in readings]
         mean = sum(velocities) / len(velocities)
-        if max(abs(end - start), 0.0 if slow else abs(mean) * time) < travel:
+        if not far and abs(mean) * time < travel:
             return False
         slope = (end - start) / time
         for (s, p, _), (t, q, _) in pairwise(readings[::stride]):
@@ -159,3 +162,8 @@ class VelocityField:
             if not self.contradicts:
                 self.due += _PAUSE
         self._candidate = found
+
+
+@once_for_joints
+def _listed(stamps: Array) -> list[int]:
+    return list(stamps.tolist())

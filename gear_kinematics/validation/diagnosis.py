@@ -52,7 +52,10 @@ class AngleFit:
         self.highest_error = max(self.highest_error, float(error.max()))
         with np.errstate(over='ignore', invalid='ignore'):  # garbage has no slope
             x, y = rotor_angle - self._origin[0], recorded - self._origin[1]
-            self._sums.append(_in_blocks(np.stack([np.ones(len(x)), x, y, x * x, x * y, error])))
+            terms = np.ones((6, len(x)))
+            for row, term in zip(terms[1:], (x, y, x * x, x * y, error), strict=True):
+                row[:] = term
+            self._sums.append(_in_blocks(terms))
 
     def offset(self, tolerance: float) -> float | None:
         """Return the constant offset of all errors, rad, or None if they are not constant."""

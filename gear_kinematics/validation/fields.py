@@ -39,7 +39,9 @@ class Window:
         return Window({name: values[rows] for name, values in self.columns.items()})
 
     def extended(self, new: 'Window') -> 'Window':
-        """Return a copy with other samples behind these."""
+        """Return these samples, if any, with other ones behind them."""
+        if not len(self):
+            return new
         return Window({
             name: np.concatenate([values, new[name]]) for name, values in self.columns.items()
         })  # fmt: skip
@@ -149,6 +151,8 @@ class SeriesRecorder:
         if not len(stamp):
             return
         self._start = int(stamp[0]) if self._start is None else self._start
+        while not self._kept.size and len(stamp) > _MAX_SAMPLES * self._interval:
+            self._interval *= 2
         moment, errors = self._worst([field.error for field in fields], self._interval)
         time = (stamp[moment] - self._start) / SECOND
         new = np.stack([time, rotor_angle[moment], *errors])
@@ -186,6 +190,8 @@ class SeriesRecorder:
 
 def _greatest(size: Array, interval: int) -> Array:
     """Find the indices of the greatest sizes, (n,), of each interval."""
+    if not size.any():
+        return np.arange(0, len(size), interval)
     whole = len(size) - len(size) % interval
     within = size[:whole].reshape(-1, interval).argmax(axis=1)
     found = np.arange(0, whole, interval) + within

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.report import Finding, Gap, InputReport
+from gear_kinematics.wire.batches import once_for_joints
 from gear_kinematics.wire.cdr import SECOND
 
 Array = NDArray[np.float64]
@@ -42,19 +43,16 @@ class InputHealth:
             self._first_stamp = int(stamp[0])
         last_stamp, last_angle = self._last or (stamp[0], rotor_angle[0])
         self._last = int(stamp[-1]), float(rotor_angle[-1])
-        period = np.diff(stamp, prepend=last_stamp) / SECOND
-        turned = np.diff(rotor_angle, prepend=last_angle)
-        forward = period > 0.0  # neither a duplicate nor a restart
-        if not forward.all():
-            period, turned, stamp = period[forward], turned[forward], stamp[forward]
+        forward, period, duration = _periods(stamp, int(last_stamp))
+        turned = np.diff(rotor_angle, prepend=last_angle)[forward]
         if not len(period):
             return
-        self._duration += float(period.sum())
+        self._duration += duration
         speed = np.abs(turned) / period
         self._fastest = max(self._fastest, float(speed.max()))
         self._overspeed += int(np.count_nonzero(speed > self._max_speed))
         self._period = self._period or float(np.median(period))
-        long = np.flatnonzero(period > _MIN_GAP * self._period)
+        stamp, long = stamp[forward], np.flatnonzero(period > _MIN_GAP * self._period)
         self._gaps += len(long)
         gaps = [Gap(int(stamp[k]), float(period[k]), float(turned[k])) for k in long]
         self._longest = sorted(self._longest + gaps, key=lambda gap: -gap.seconds)[:_MAX_LISTED]
@@ -85,6 +83,18 @@ class InputHealth:
             velocity_is=str(rotor_input.velocity_field.meaning or ''),
             beyond_limits=str(rotor_input.plausibility.beyond_limits or ''),
         )
+
+
+@once_for_joints
+def _periods(
+    stamp: NDArray[np.int64], before: int
+) -> tuple[NDArray[np.bool_] | slice, Array, float]:
+    """Return which stamps are later than the one before, by how much, s, and the sum of that."""
+    period = np.diff(stamp, prepend=before) / SECOND
+    forward = period > 0.0  # neither a duplicate nor a restart
+    if forward.all():
+        return slice(None), period, float(period.sum())
+    return forward, period[forward], float(period[forward].sum())
 
 
 def repeats_stamps(rotor: InputReport) -> bool:

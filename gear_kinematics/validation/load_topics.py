@@ -9,7 +9,7 @@ from gear_kinematics.state.loads import NUMBERS, LoadEstimator
 from gear_kinematics.validation.fields import Array, FieldSamples, Window
 from gear_kinematics.validation.matching import Expectation, OutputTopic
 from gear_kinematics.validation.output_topics import finite_or_infinite
-from gear_kinematics.wire.batches import decode_numbers
+from gear_kinematics.wire.batches import JointStateBatch, decode_numbers
 from gear_kinematics.wire.topics import BRANCH_LOADS, JOINT_LOADS
 
 _UNITS = {
@@ -40,6 +40,8 @@ class LoadTopic(OutputTopic):
         return np.asarray(super().answered(samples) | np.isnan(samples['acceleration']))
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
+        if isinstance(messages, JointStateBatch):
+            messages = messages.narrowed(self.joints)
         stamp, malformed, self._numbers = decode_numbers(messages, self._template, self.label)
         return stamp, malformed
 

@@ -27,7 +27,7 @@ from gear_kinematics.validation.fields import (
 from gear_kinematics.validation.recorder import NO_INPUT, Missing, RecordedInputs
 from gear_kinematics.validation.report import Finding, TopicReport
 from gear_kinematics.validation.task import Tolerances
-from gear_kinematics.wire.batches import JointStateBatch
+from gear_kinematics.wire.batches import JointStateBatch, once_for_joints
 from gear_kinematics.wire.cdr import MessageLayout
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
@@ -35,9 +35,6 @@ Solver = Callable[..., MotionState]
 
 WINDOW = 16_384
 """Samples kept for late messages; even later ones count as extra."""
-
-_AHEAD = 1000
-"""Samples that are compared with a message that has no stamp in common with any."""
 
 SAMPLES = [
     ('number', np.int64),
@@ -95,13 +92,16 @@ class Matcher:
         if not len(stamps):
             return
         before = stamps[0] - 1 if self._last_stamp is None else self._last_stamp
-        steps = np.diff(stamps, prepend=before)
-        self.duplicates += int(np.count_nonzero(steps == 0))
-        self.out_of_order.add(stamps[(steps < 0) & (steps >= -CLOCK_RESET)])
+        duplicates, out_of_order = _disorder(stamps, int(before))
+        self.duplicates += duplicates
+        self.out_of_order.add(out_of_order)
         self._last_stamp = int(stamps[-1])
 
-    def match(self, stamps: Array, received: Array, window: Window) -> Array:
-        """Find the sample of each message, (n,), as its index in the window or -1, and mark it."""
+    def match(self, stamps: Array, received: Array, window: Window) -> Array | slice:
+        """Find the sample of each message, (n,), as its index in the window or -1, and mark it.
+
+        The indices are a slice if each message has its sample, in the order of both.
+        """
         index = np.full(len(stamps), -1, np.intp)
         resets = np.flatnonzero(np.diff(window['stamp']) < -CLOCK_RESET) + 1
         k = 0
@@ -113,9 +113,12 @@ class Matcher:
             run = longest if alike.all() else int(np.argmin(alike))
             if run and _of_later_clock(stamps[k], received[k], self._next, window, resets):
                 run = 0
-            index[k : k + run] = np.arange(self._next, self._next + run)
             self.matched[self._next : self._next + run] = True
             self._next += run
+            if run == len(stamps):
+                self.compared += run
+                return slice(self._next - run, self._next)
+            index[k : k + run] = np.arange(self._next - run, self._next)
             k += run
             if k < len(stamps):
                 index[k] = self._look_up(stamps[k], received[k], window, resets)
@@ -142,6 +145,14 @@ class Matcher:
         return index
 
 
+@once_for_joints
+def _disorder(stamps: Array, before: int) -> tuple[int, Array]:
+    """Return how many stamps repeat the one before, and those that are out of order."""
+    steps = np.diff(stamps, prepend=before)
+    disordered = stamps[(steps < 0) & (steps >= -CLOCK_RESET)]
+    return int(np.count_nonzero(steps == 0)), disordered
+
+
 def _alike(
     stamp: Array | int, received: Array | int, window: Window, rows: slice = slice(None)
 ) -> Array:
@@ -161,30 +172,6 @@ def _of_later_clock(stamp: int, received: int, row: int, window: Window, resets:
     nearest = after[0] + np.argmin(np.abs(window['stamp'][after[0] :] - stamp))
     due = window['received'][nearest] - (window['stamp'][nearest] - stamp)
     return bool(abs(received - due) < abs(received - window['received'][row]))
-
-
-def in_order(messages: int, samples: int, fit: Callable[[int, slice], Array]) -> Array:
-    """Pair messages with samples in the order of both; `fit` returns which samples fit a message.
-
-    Messages that fit none are paired by their place between two that do, or all by their place.
-
-    Returns:
-        The indices of the messages and of their samples, (2, n).
-    """
-    found = [(-1, -1)]
-    for message in range(messages):
-        after = found[-1][1] + 1
-        fitting = fit(message, slice(after, after + _AHEAD))
-        if fitting.any():
-            found.append((message, after + int(np.argmax(fitting))))
-    last, at = found[-1]
-    ends = [*found[1:], (last + 1, at + 1) if len(found) > 1 else (messages, samples)]
-    pairs = [
-        (message + k, sample + k)
-        for (message, sample), (end, sample_end) in zip(found, ends, strict=True)
-        for k in range(min(end - message, sample_end - sample))
-    ]
-    return np.array(pairs[1:], np.intp).reshape(-1, 2).T
 
 
 def rotor_angle(samples: Window) -> Array:
@@ -229,7 +216,9 @@ class OutputTopic:
         self._malformed = Occurrences()  # by times of reception, as they have no stamp
         self._faults: defaultdict[tuple[FindingCause, str], Occurrences] = defaultdict(Occurrences)
         """Faults by what is wrong, and the name of the joint or the frame."""
-        self._late: tuple[list[bytes], list[int]] = [], []
+        self.late = list[bytes]()
+        """Messages that wait for their inputs."""
+        self._late_received = np.zeros(0, np.int64)
         self.unstamped = False
         """Whether the node gave its own time to some inputs, which had no stamp."""
         self.shared = False
@@ -238,39 +227,46 @@ class OutputTopic:
     def take(
         self,
         messages: list[bytes],
-        received: list[int],
+        received: Sequence[int],
         window: Window,
         inputs: RecordedInputs,
     ) -> None:
         """Compare new messages, and when they were received, ns, with the latest samples, (n,)."""
-        if late := len(self._late[0]):
-            messages, received = self._late[0] + messages, [*self._late[1], *received]
+        times = np.asarray(received, np.int64)
+        if late := len(self.late):
+            messages = self.late + messages
+            times = np.concatenate([self._late_received, times])
         if self.shared and self.joints:
             if not isinstance(messages, JointStateBatch):
                 messages = JointStateBatch(messages)
-            rows, messages = messages.view(self.joints)
-            if len(rows) < len(received):
-                received = [received[row] for row in rows.tolist()]
+            having, messages = messages.having(self.joints)
+            times = times if having is None else times[having]
         stamps, malformed = self._decode(messages)
-        self.matcher.see(stamps[late:])
-        times = np.array(received, np.int64)
-        self._malformed.add(times[malformed])
+        self.matcher.see(stamps[late:] if late else stamps)
         usable = np.flatnonzero(~malformed)
+        whole = len(usable) == len(stamps)
         if self.unstamped:
             self._adopt_stamps(stamps, usable, window)
-        index = self.matcher.match(stamps[usable], times[usable], window)
-        found = index >= 0
-        # A message can be recorded before its input: it waits for one batch.
-        unmatched = usable[~found]
-        given_up, waiting = unmatched[unmatched < late], unmatched[unmatched >= late].tolist()
-        self._late = [messages[row] for row in waiting], [received[row] for row in waiting]
-        lacking = inputs.lack(times[given_up], stamps[given_up])
-        self._unrecorded += int(np.count_nonzero(lacking))
-        self.matcher.extra.add(stamps[given_up[~lacking]])
-        self._adopt_fields(usable[found], index[found], window)
-        samples = window.take(as_slice(index[found]))
+        given = (stamps, times) if whole else (stamps[usable], times[usable])
+        at, rows = self.matcher.match(*given, window), slice(None) if whole else usable
+        self.late = []
+        if not (whole and isinstance(at, slice)):
+            self._malformed.add(times[malformed])
+            index = np.arange(len(window))[at] if isinstance(at, slice) else at
+            found = index >= 0
+            # A message can be recorded before its input: it waits for one batch.
+            unmatched = usable[~found]
+            given_up, waiting = unmatched[unmatched < late], unmatched[unmatched >= late]
+            self.late = [messages[row] for row in waiting.tolist()]
+            self._late_received = times[waiting]
+            lacking = inputs.lack(times[given_up], stamps[given_up])
+            self._unrecorded += int(np.count_nonzero(lacking))
+            self.matcher.extra.add(stamps[given_up[~lacking]])
+            rows, at = as_slice(usable[found]), as_slice(index[found])
+        self._adopt_fields(rows, at, window)
+        samples = window.take(at)
         self._changes.move(samples)
-        fields = self._compare(as_slice(usable[found]), samples)
+        fields = self._compare(rows, samples)
         angle = rotor_angle(samples)
         wrong = np.zeros(len(samples), bool)
         for errors, field in zip(self.errors, fields, strict=True):
@@ -284,7 +280,7 @@ class OutputTopic:
     def _adopt_stamps(self, stamps: Array, usable: Array, window: Window) -> None:
         """Give samples without a stamp the stamp of their output, if it can be found."""
 
-    def _adopt_fields(self, rows: Array, at: Array, window: Window) -> None:
+    def _adopt_fields(self, rows: Array | slice, at: Array | slice, window: Window) -> None:
         """Decide by messages, (n,), whether open fields of their samples count."""
 
     def answered(self, samples: Window) -> Array:

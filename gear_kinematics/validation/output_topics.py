@@ -1,7 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Compares the fields of each output topic with recomputed ones, sample by sample."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,7 +12,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.diagnosis import AngleFit, FactorFit, diagnose
 from gear_kinematics.validation.fields import FieldSamples, Occurrences, Window, as_slice
-from gear_kinematics.validation.matching import Expectation, OutputTopic, in_order, rotor_angle
+from gear_kinematics.validation.matching import Expectation, OutputTopic, rotor_angle
 from gear_kinematics.validation.report import Finding
 from gear_kinematics.wire.batches import (
     FIELDS,
@@ -27,6 +27,7 @@ from gear_kinematics.wire.nearest import listed
 Array = NDArray[Any]
 Bounds = tuple[Array, Array]
 
+_AHEAD = 1000  # samples that are compared with a message that has no stamp in common with any
 _NEAR = 500_000_000  # ns between the reception of an input and the stamp of its output
 
 STATE_UNITS = dict(zip(FIELDS, ('rad', 'rad/s', 'N·m'), strict=True))
@@ -121,14 +122,16 @@ class OutputState(JointStateTopic):
             near = np.abs(received[ahead] - stamps[rows[message]]) < _NEAR
             return np.asarray(near & (error <= self._tolerances.angle))
 
-        answers, found = in_order(len(rows), len(samples), fit)
+        answers, found = _in_order(len(rows), len(samples), fit)
+        window['stamp'] = window['stamp'].copy()  # other joints have them, too
         window['stamp'][waiting[found]] = stamps[rows[answers]]
         self._adopted = int(samples['number'][found].max(initial=self._adopted))
 
-    def _adopt_fields(self, rows: Array, at: Array, window: Window) -> None:
-        self._without_velocity = np.zeros(len(rows), bool)
+    def _adopt_fields(self, rows: Array | slice, at: Array | slice, window: Window) -> None:
+        self._without_velocity = False
         if not (window['velocity_open'].any() or window['effort_open'].any()):
             return
+        at = np.arange(len(window))[at]
         states, still_open = self._states, window['effort_open'][at]
         none = ~states.present[rows].T
         if self.shared:
@@ -230,3 +233,27 @@ def _orientation_error(quaternions: Array, angle: Array) -> Array:
     tilt = np.maximum(np.abs(x), np.abs(y))
     error: Array = 2.0 * np.maximum(about_z, tilt).max(axis=1)
     return error
+
+
+def _in_order(messages: int, samples: int, fit: Callable[[int, slice], Array]) -> Array:
+    """Pair messages with samples in the order of both; `fit` returns which samples fit a message.
+
+    Messages that fit none are paired by their place between two that do, or all by their place.
+
+    Returns:
+        The indices of the messages and of their samples, (2, n).
+    """
+    found = [(-1, -1)]
+    for message in range(messages):
+        after = found[-1][1] + 1
+        fitting = fit(message, slice(after, after + _AHEAD))
+        if fitting.any():
+            found.append((message, after + int(np.argmax(fitting))))
+    last, at = found[-1]
+    ends = [*found[1:], (last + 1, at + 1) if len(found) > 1 else (messages, samples)]
+    pairs = [
+        (message + k, sample + k)
+        for (message, sample), (end, sample_end) in zip(found, ends, strict=True)
+        for k in range(min(end - message, sample_end - sample))
+    ]
+    return np.array(pairs[1:], np.intp).reshape(-1, 2).T

@@ -6,7 +6,7 @@ for about a tenth of a second. Outputs therefore count as missing only once ever
 and the recorder has settled; an output counts as extra only if its input would have been recorded.
 """
 
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Protocol
 
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.fields import Occurrences
 from gear_kinematics.validation.report import Finding
+from gear_kinematics.wire.batches import once_for_joints
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
 Array = NDArray[np.int64]
@@ -182,24 +183,25 @@ class RecordedInputs:
     def __init__(self, *, strict: bool) -> None:
         """Start with none; `strict` assumes that every input was recorded."""
         self._strict = strict
-        self._ages: list[int] = []
+        self._ages: tuple[int, ...] = ()
         """Time of reception - stamp of the first input since each reset, ns."""
-        self._known = np.zeros(0, np.int64)
+        self._known = deque[Array]()
         """The latest stamps, moved so that those of two clocks are far apart, ns."""
-        self._last = np.zeros(0, np.int64)
+        self._count = 0  # of these
+        self._last: int | None = None
 
     def update(self, received: Array, stamp: Array, rejected: Array) -> None:
         """Add inputs (n,), ns, and the stamps of rejected ones, (m,)."""
         if len(stamp):
-            before = self._last if len(self._last) else stamp[:1] + 2 * CLOCK_RESET
-            begins = np.diff(stamp, prepend=before) < -CLOCK_RESET
-            self._last = stamp[-1:]
-            clock = len(self._ages) + np.cumsum(begins) - 1
-            self._ages += (received - stamp)[begins].tolist()
-            stamp = stamp + np.array(self._ages)[clock] + _APART * clock
+            last, self._last = self._last, int(stamp[-1])
+            stamp, self._ages = _moved(received, stamp, last, self._ages)
         if self._ages:
             rejected = rejected + self._ages[-1] + _APART * (len(self._ages) - 1)
-            self._known = np.concatenate([self._known, stamp, rejected])[-_MAX_STAMPS:]
+            for known in filter(len, (stamp, rejected)):
+                self._known.append(known)
+                self._count += len(known)
+            while self._known and self._count - len(self._known[0]) >= _MAX_STAMPS:
+                self._count -= len(self._known.popleft())
 
     def lack(self, received: Array, stamp: Array) -> Flags:
         """Return whether the inputs of outputs with stamps (n,), ns, were not recorded."""
@@ -211,10 +213,22 @@ class RecordedInputs:
         distance = np.abs(received - stamp - ages[:, np.newaxis])
         clock = np.argmin(distance, axis=0)
         stamp = stamp + ages[clock] + _APART * (len(self._ages) - len(ages) + clock)
-        known = np.unique(self._known)
+        known = np.unique(np.concatenate(self._known)[-_MAX_STAMPS:])
         period = float(np.median(np.diff(known))) if len(known) > 1 else 0.0
         bounds = np.concatenate([[-_NEVER], known, [_NEVER]])
         after = np.searchsorted(known, stamp)
         in_hole = bounds[after + 1] - bounds[after] > HOLE * period
         there = bounds[after + 1] == stamp
         return np.asarray(in_hole & ~there & (distance.min(axis=0) < _MAX_DELAY))
+
+
+@once_for_joints
+def _moved(
+    received: Array, stamp: Array, last: int | None, ages: tuple[int, ...]
+) -> tuple[Array, tuple[int, ...]]:
+    """Return the stamps of inputs as `RecordedInputs` keeps them, and the ages of all clocks."""
+    before = int(stamp[0]) + 2 * CLOCK_RESET if last is None else last
+    begins = np.diff(stamp, prepend=before) < -CLOCK_RESET
+    clock = len(ages) + np.cumsum(begins) - 1
+    ages += tuple((received - stamp)[begins].tolist())
+    return stamp + np.array(ages)[clock] + _APART * clock, ages

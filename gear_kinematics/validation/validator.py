@@ -1,7 +1,6 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Compares the outputs of a node with recomputed ones, in one pass over a recording."""
 
-import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -136,7 +135,7 @@ class Validator:
             error: damage at which reading ended, if any.
             lost: numbers of messages that the recorder says that it lost, by topic.
         """
-        for _ in range(2):  # late messages wait for one more batch
+        if any(output.late for output in self.outputs):  # they wait for one more batch
             self.feed([()])
         self._drop(len(self._window))
         contradict = self._state.input.velocity_field.contradicts
@@ -227,17 +226,22 @@ class Validator:
         unseen = bool(self._parameters.rotor_period) or self._parameters.absolute
         columns['turns_known'] = np.full(len(samples.stamp), not unseen)
         decided = self._state.input.velocity_field.decided
-        columns['velocity_open'] = samples.stamp <= (math.inf if decided is None else decided)
-        effort = samples.effort
-        real = was_real or np.logical_or.accumulate((effort != 0.0) & ~np.isnan(effort))
-        columns['effort_open'] = np.full(len(effort), field.zeros) & np.logical_not(real)
+        columns['velocity_open'] = np.full(len(samples.stamp), decided is None)
+        if decided is not None:
+            columns['velocity_open'] = samples.stamp <= decided
+        columns['effort_open'] = np.full(len(samples.stamp), field.zeros and not was_real)
+        if field.zeros and not was_real:
+            real = (samples.effort != 0.0) & ~np.isnan(samples.effort)
+            columns['effort_open'] = ~np.logical_or.accumulate(real)
         self._samples += len(samples.stamp)
-        segments = self._unbroken.segments(samples.stamp, samples.segment)
+        segments = samples.segment
+        if self._loads or self._corrector:
+            segments = self._unbroken.segments(samples.stamp, samples.segment)
         if self._loads:
             found = self._loads.accelerations(samples.stamp, samples.velocity, segments)
             columns['acceleration'] = np.where(np.isnan(samples.effort), np.nan, found)
         if self._corrector:  # those that `_correct` fills in
-            columns |= dict.fromkeys(Correction._fields, np.zeros(len(samples.stamp)))
+            columns |= {name: np.zeros(len(samples.stamp)) for name in Correction._fields}
         new = Window(columns)
         if self._references and self._encoder:
             self._references.take_encoder(batch[self._encoder])

@@ -7,7 +7,8 @@ bytes. A recording has few layouts per topic; more only cost time.
 
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Self
+from functools import cached_property, wraps
+from typing import Any, ParamSpec, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +29,31 @@ from gear_kinematics.wire.joint_reader import describe_missing
 
 Array = NDArray[Any]
 FIELDS = ('position', 'velocity', 'effort')
+_Given = ParamSpec('_Given')
+_Result = TypeVar('_Result')
+
+
+def once_for_joints(function: Callable[_Given, _Result]) -> Callable[_Given, _Result]:
+    """Keep the latest result of a function for the other joints of the same messages.
+
+    Arrays are the same if they are one object, whose contents must not change.
+    """
+    latest: tuple[Any, Any] = (), None
+
+    @wraps(function)
+    def look_up(*given: _Given.args, **options: _Given.kwargs) -> _Result:
+        nonlocal latest
+        known, result = latest
+        if len(known) != len(given) or not all(map(_is_same, known, given)):
+            result = function(*given, **options)
+            latest = given, result
+        return result  # type: ignore[no-any-return]
+
+    return look_up
+
+
+def _is_same(one: Any, other: Any) -> bool:
+    return one is other or (not isinstance(one, np.ndarray) and bool(one == other))
 
 
 Table = tuple[Array, MessageLayout, Array]
@@ -42,30 +68,51 @@ class JointStateBatch(list[bytes]):
         super().__init__(messages)
         self.tables = [*_tables(messages, joint_state_layout)] if tables is None else tables
 
-    def view(self, joints: Collection[bytes]) -> tuple[Array, Self]:
+    @cached_property
+    def heads(self) -> tuple[Array, Array, Array]:
+        """Stamps, ns, whether they have 10⁹ or more nanoseconds, and what is malformed, (n,)."""
+        count = len(self)
+        stamp, unnormalised = np.zeros(count, np.int64), np.zeros(count, bool)
+        malformed = np.ones(count, bool)
+        for rows, layout, table in self.tables:
+            malformed[rows] = False
+            stamp[rows], nanoseconds = _stamps(table, layout)
+            unnormalised[rows] = nanoseconds >= SECOND
+        stamp.setflags(write=False)
+        return stamp, unnormalised, malformed
+
+    def having(self, joints: Collection[bytes]) -> tuple[Array | None, Self]:
         """Return the rows of messages with any of the joints, or malformed, and these messages.
 
-        Their tables are those of messages that have these joints alone.
+        None stands for all rows.
         """
-        tables, kept = list[Table](), np.ones(len(self), bool)
+        without = [
+            rows for rows, layout, _ in self.tables if not {*joints}.intersection(layout.texts[1:])
+        ]
+        if not without:
+            return None, self
+        kept = np.ones(len(self), bool)
+        kept[np.concatenate(without)] = False
+        chosen, place = np.flatnonzero(kept), np.cumsum(kept) - 1
+        tables = [
+            (place[rows], layout, table) for rows, layout, table in self.tables if kept[rows[0]]
+        ]
+        return chosen, type(self)([self[row] for row in chosen.tolist()], tables)
+
+    def narrowed(self, joints: Collection[bytes]) -> Self:
+        """Return the messages, which have some of the joints, as if they had these alone."""
+        tables = list[Table]()
         for rows, layout, table in self.tables:
             frame, *names = layout.texts
             found = [k for k, name in enumerate(names) if name in joints]
-            kept[rows] = bool(found)
-            if found:
-                own = slice(found[0], found[0] + len(found))
-                arrays = tuple(
-                    (offset + 8 * own.start, max(min(own.stop, size) - own.start, 0))
-                    for offset, size in layout.arrays
-                )
-                part = layout._replace(texts=(frame, *names[own]), arrays=arrays)
-                tables.append((rows, part, table))
-        chosen = np.flatnonzero(kept)
-        if len(chosen) == len(self):
-            return chosen, type(self)(self, tables)
-        place = np.cumsum(kept) - 1
-        moved = [(place[rows], layout, table) for rows, layout, table in tables]
-        return chosen, type(self)([self[row] for row in chosen.tolist()], moved)
+            own = slice(found[0], found[0] + len(found))
+            arrays = tuple(
+                (offset + 8 * own.start, max(min(own.stop, size) - own.start, 0))
+                for offset, size in layout.arrays
+            )
+            part = layout._replace(texts=(frame, *names[own]), arrays=arrays)
+            tables.append((rows, part, table))
+        return type(self)(self, tables)
 
     def contents(self) -> Iterator[tuple[Array, tuple[bytes, ...], Array, list[Array]]]:
         """Yield the rows of each table, their joints, stamps, ns, (rows,), and fields, (rows, m).
@@ -74,7 +121,7 @@ class JointStateBatch(list[bytes]):
         """
         for rows, layout, table in self.tables:
             fields = [_doubles(table, layout, *array) for array in layout.arrays]
-            yield rows, layout.texts[1:], _stamps(table, layout)[0], fields
+            yield rows, layout.texts[1:], self.heads[0][rows], fields
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -118,28 +165,23 @@ class PoseArrays:
 
 def decode_joint_states(messages: Sequence[bytes], joint: str) -> JointStates:
     """Decode the values of one joint, which `joint_index` looks up."""
-    count = len(messages)
-    stamp, unnormalised = np.zeros(count, np.int64), np.zeros(count, bool)
-    malformed, joint_found, fit = np.ones(count, bool), *np.zeros((2, count), bool)
+    batch = messages if isinstance(messages, JointStateBatch) else JointStateBatch(messages)
+    count = len(batch)
+    joint_found, fit = np.zeros((2, count), bool)
     present, values = np.zeros((3, count), bool), np.full((3, count), np.nan)
     without = ''
-    for rows, layout, table in _tables(messages, joint_state_layout):
+    for rows, layout, table in batch.tables:
         at: Any = rows if len(rows) < count else slice(None)  # which is faster
-        malformed[at] = False
-        stamp[at], nanoseconds = _stamps(table, layout)
-        unnormalised[at] = nanoseconds >= SECOND
         index = joint_index(layout, joint.encode())
         if index is None:
-            without = without or describe_missing(joint, messages[rows[0]])
+            without = without or describe_missing(joint, batch[rows[0]])
             continue
         joint_found[at], fit[at] = True, arrays_fit(layout, joint.encode())
         for field, (offset, size) in enumerate(layout.arrays):
             if index < size:
                 present[field, at] = True
                 values[field, at] = _doubles(table, layout, offset + 8 * index, 1)[:, 0]
-    return JointStates(
-        stamp, unnormalised, malformed, joint_found, fit, present.T, values.T, without
-    )
+    return JointStates(*batch.heads, joint_found, fit, present.T, values.T, without)
 
 
 def decode_pose_arrays(messages: Sequence[bytes], count_of_poses: int) -> PoseArrays:
@@ -254,11 +296,12 @@ def _tables(
     if isinstance(messages, JointStateBatch):
         yield from messages.tables
         return
-    sizes = [*map(len, messages)]
-    for size in sorted({*sizes} - {0}):
-        all_alike = sizes.count(size) == len(sizes)
-        rows = np.arange(len(sizes)) if all_alike else np.flatnonzero(np.array(sizes) == size)
-        chosen = messages if all_alike else [messages[row] for row in rows.tolist()]
+    sizes = {*map(len, messages)}
+    for size in sorted(sizes - {0}):
+        rows, chosen = np.arange(len(messages)), messages
+        if len(sizes) > 1:
+            rows = np.flatnonzero(np.array([*map(len, messages)]) == size)
+            chosen = [messages[row] for row in rows.tolist()]
         table = np.frombuffer(b''.join(chosen), np.uint8).reshape(len(rows), size)
         while len(rows):
             try:
