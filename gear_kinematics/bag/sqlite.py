@@ -68,20 +68,25 @@ class Sqlite(Storage):
 
     def pieces(self, topics: Collection[str]) -> Iterator[list[Message]]:
         """Read messages in the order of reception."""
-        wanted = {key: topic for key, topic in self._topics().items() if topic.name in topics}
+        known = self._topics()
+        wanted = {key: topic for key, topic in known.items() if topic.name in topics}
         for topic in wanted.values():
             self.check_encoding(topic)
-        return self._messages({key: topic.name for key, topic in wanted.items()})
+        names = {key: topic.name for key, topic in wanted.items()}
+        return self._messages(names, chosen=[] if len(names) == len(known) else list(names))
 
-    def _messages(self, names: dict[int, str]) -> Iterator[list[Message]]:
-        places, left = ','.join('?' * len(names)), self._size
-        piece, size = list[Message](), 0
+    def _messages(self, names: dict[int, str], chosen: list[int]) -> Iterator[list[Message]]:
+        # Without a condition, which is evaluated for each message, reading takes less time.
+        condition = f'WHERE topic_id IN ({",".join("?" * len(chosen))})' if chosen else ''
+        left, piece, size = self._size, list[Message](), 0
         try:
             for key, received, data in self._database.execute(
                 'SELECT topic_id, timestamp, data FROM messages'  # noqa: S608, placeholders
-                f' WHERE topic_id IN ({places}) ORDER BY timestamp',
-                tuple(names),
+                f' {condition} ORDER BY timestamp',
+                chosen,
             ):
+                if key not in names:
+                    continue
                 if type(data) is not bytes or type(received) is not int:
                     raise ValueError('a message without a time or data')
                 size += len(data)

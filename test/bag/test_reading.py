@@ -129,11 +129,14 @@ def test_real_recordings_are_read(shared_path, name, topic, count):
     assert messages == original
 
 
-def test_sqlite_that_a_killed_recorder_left_with_its_journal_is_read(recorded, tmp_path):
+def test_sqlite_of_a_killed_recorder_is_read_with_its_journal_without_messages_of_no_topic(
+    recorded, tmp_path
+):
     file = single_file(tmp_path / 'bag', recorded, 'sqlite3')
     with closing(sqlite3.connect(file)) as database:
         database.execute('PRAGMA journal_mode=WAL')
         database.execute("INSERT INTO messages SELECT 5000, 1, 2000000000000000000, x'00010000'")
+        database.execute("INSERT INTO messages SELECT 5001, 99, 2000000000000000001, x'00'")
         database.commit()
         (tmp_path / 'killed').mkdir()
         for part in (file, file.with_name(f'{file.name}-wal')):
