@@ -121,11 +121,17 @@ class VelocityField:
         count = 1 + (_READINGS - 1) * stride
         if len(self._readings) < count:
             return True
-        (first, start, _), (last, end, _) = self._readings[-count], self._readings[-1]
+        readings = self._readings[-count:]
+        if not self._moved:  # 0 throughout a motion, however unsteady, which is not one jump
+            positions = [position for _, position, _ in readings]
+            steps = [abs(q - p) for p, q in pairwise(positions)]
+            if min(max(positions) - min(positions), sum(steps) - max(steps)) >= travel:
+                self._decide(0.0)
+                return True
+        (first, start, _), *_, (last, end, _) = readings
         time, slow, far = (last - first) * 1e-9, stride > 1, abs(end - start) >= travel
         if slow and not far:
             return False
-        readings = self._readings[-count:]
         velocities = [velocity for _, _, velocity in readings]
         mean = sum(velocities) / len(velocities)
         if not far and abs(mean) * time < travel:

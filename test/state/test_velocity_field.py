@@ -2,6 +2,7 @@
 """Velocities that contradict the positions, as drivers send them."""
 
 import math
+from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from live import SECOND, rotor_bytes
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition
+from gear_kinematics.wire.joint_reader import RejectedInputError
 
 SETTINGS = NodeParameters.load()
 
@@ -61,6 +63,20 @@ def test_wrong_velocities_of_a_slow_rotor_are_named(factor, speed, meaning):
     rotor = RotorInput(SETTINGS)
     for data in messages(factor, speed, rate=25, duration=8.0):
         rotor.accept(data, int)
+    found = rotor.velocity_field.meaning
+    assert (found and found.values['meaning']) == meaning
+
+
+@pytest.mark.parametrize(('motion', 'meaning'), [
+    (lambda t: 4.0 * math.sin(t), '0'),
+    (lambda t: 100.0 * (t > 4.0) + 0.1 * math.sin(t), None),  # a jump of the encoder near rest
+])  # fmt: skip
+def test_velocities_of_0_throughout_an_unsteady_slow_motion_are_named(motion, meaning):
+    rotor = RotorInput(SETTINGS)
+    for k in range(800):
+        data = rotor_bytes(k * SECOND // 100 + 1, position=[motion(k / 100)], velocity=[0.0])
+        with suppress(RejectedInputError):
+            rotor.accept(data, int)
     found = rotor.velocity_field.meaning
     assert (found and found.values['meaning']) == meaning
 
