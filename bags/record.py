@@ -10,8 +10,8 @@ moment of sampling, so that no two recordings are alike.
 
 import math
 import random
-import sys
 import time
+from argparse import ArgumentParser, RawDescriptionHelpFormatter
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -183,5 +183,8 @@ def record(path: Path, scenario: Scenario) -> None:
 
 
 if __name__ == '__main__':
+    parser = ArgumentParser(description=__doc__, formatter_class=RawDescriptionHelpFormatter)
+    parser.add_argument('folder', type=Path, metavar='DIRECTORY', help='folder to create')
+    given = parser.parse_args()
     for name, scenario in SCENARIOS.items():
-        record(Path(sys.argv[1]) / name, scenario)
+        record(given.folder / name, scenario)
