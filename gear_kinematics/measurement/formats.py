@@ -113,13 +113,14 @@ def _tdms(path: Path) -> TableFile:
 
 
 def _mf4(path: Path) -> TableFile:
-    """Channels of ASAM MDF, with their units and times."""
+    """Channels of ASAM MDF, with their units and times, without samples marked as invalid."""
     from asammdf import MDF  # noqa: PLC0415, of an extra
 
     with MDF(path) as file:
+        valid = (one.validate(copy=False) for one in file.iter_channels(skip_master=True))
         return _of_channels(
             (one.group_index, one.name, one.samples, one.unit, one.timestamps)
-            for one in file.iter_channels(skip_master=True)
+            for one in valid
             if one.samples.dtype.kind in 'iuf' and one.samples.ndim == 1
         )
 

@@ -443,10 +443,16 @@ def tdms(path, time, rotor, output):
 
 
 def mf4(path, time, rotor, output):
+    """One in a hundred readings of each encoder is wrong, and marked as invalid."""
     asammdf = pytest.importorskip('asammdf')
     file = asammdf.MDF()
+    invalid = np.arange(len(time)) % 100 == 3
     for name, values, late in (('RotorAngle', rotor, 0.0), ('OutputAngle', output, 4e-4)):
-        file.append([asammdf.Signal(DEG * values, time + late, name=name, unit='deg')])
+        angles = DEG * np.where(invalid, 99.0, values)
+        signal = asammdf.Signal(
+            angles, time + late, name=name, unit='deg', invalidation_bits=invalid
+        )
+        file.append([signal])
     file.save(path)
     return Sources()
 
