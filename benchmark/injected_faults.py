@@ -470,19 +470,19 @@ class Node:
             if encoder:
                 gear.encoder(each.data, lambda: each.received)
                 return
-            answer = gear.rotor(each.data, lambda: each.received)
+            position = gear.rotor(each.data, lambda: each.received).position
         except RejectedInputError:
             return
         if not self.outputs and gear.parameters.single_turn:
             gear.input.home(each.true)
-        position, referenced = answer.sample.position, gear.input.referenced
-        gear.monitor.unreferenced += not referenced
+            gear.monitor.unreferenced = 0
+        referenced = gear.input.referenced
         error = TURN * position.turns + position.angle - each.true
         self.outputs.append((
             each.received,
             abs(error) if referenced and len(self.outputs) else 0.0,
             each.bound,
-            gear.encode(answer)[0][1] if encoded else b'',
+            gear.encode()[0][1] if encoded else b'',
         ))  # fmt: skip
 
     def report(self) -> None:

@@ -8,7 +8,6 @@ the positions of the bodies are periodic in the turns of the rotor.
 
 import math
 from fractions import Fraction
-from functools import partial
 from types import ModuleType
 from typing import Any, NamedTuple, overload
 
@@ -46,8 +45,7 @@ class RotorPosition(NamedTuple):
         return TURN * (self.turns - before.turns) + (self.angle - before.angle)
 
 
-# For what each message takes: faster than RotorPosition(...).
-_position = partial(tuple.__new__, RotorPosition)
+_new = tuple.__new__  # for what each message takes: faster than RotorPosition(...)
 
 
 class RotorSample(NamedTuple):
@@ -87,13 +85,8 @@ def split_turns(angle: Any) -> Any:
     Raises:
         ValueError: if a float angle is not finite or too large.
     """
-    # The node calls this for every message.
     if isinstance(angle, float) and -_MANY_TURNS < angle < _MANY_TURNS:
-        turns = math.floor(angle / TURN + 0.5)
-        rest = angle - turns * _TURN_HIGH - turns * _TURN_LOW
-        if not -BELOW_HALF < rest < BELOW_HALF:
-            turns, rest = nearest_turn(turns, rest, math)
-        return _position((turns, rest - turns * TURN_TAIL))
+        return _new(RotorPosition, _split_few(angle))
     angle = lists_as_arrays(angle)
     xp = np if isinstance(angle, np.ndarray) else math
     size = abs(angle) if xp is math else largest(angle)
@@ -110,7 +103,16 @@ def split_turns(angle: Any) -> Any:
     turns, rest = nearest_turn(turns, rest - turns * _TURN_HIGH - turns * _TURN_LOW, xp)
     if not few:
         turns = many + turns
-    return _position((turns, rest - turns * TURN_TAIL))
+    return _new(RotorPosition, (turns, rest - turns * TURN_TAIL))
+
+
+def _split_few(angle: float) -> tuple[int, float]:
+    """Split an angle of less than `_MANY_TURNS` as `split_turns` does, faster."""
+    turns = math.floor(angle / TURN + 0.5)
+    rest = angle - turns * _TURN_HIGH - turns * _TURN_LOW
+    if not -BELOW_HALF < rest < BELOW_HALF:
+        turns, rest = nearest_turn(turns, rest, math)
+    return turns, rest - turns * TURN_TAIL
 
 
 def nearest_turn(turns: Any, rest: Any, xp: ModuleType) -> tuple[Any, Any]:
@@ -193,9 +195,14 @@ class RotorTurns:
         """Number of gaps in which the rotor could have turned half a period or more unseen."""
         self.reset()
 
+    @property
+    def position(self) -> RotorPosition | None:
+        """The position at the last update; None before the first one."""
+        return self._position and RotorPosition(*self._position)
+
     def reset(self) -> None:
         """Forget the position and the turns; the next update counts as the first."""
-        self.position: RotorPosition | None = None
+        self._position: tuple[int, float] | None = None
         self.forget_turns()
         self.periods = 0
         """Number of periods that are added to the readings."""
@@ -226,8 +233,10 @@ class RotorTurns:
             stamp: ns, not earlier than the last.
             velocity: rad/s, or None if unknown.
         """
-        split, period = split_turns(position), self.period
-        if period and self.position is not None:
+        period = self.period
+        few = -_MANY_TURNS < position < _MANY_TURNS
+        split: tuple[int, float] = _split_few(position) if few else split_turns(position)
+        if period and self._position is not None:
             elapsed = (stamp - self._stamp) * 1e-9
             low, high = self._possible_turn(elapsed, velocity)
             apparent, expected = position - self._reading, 0.5 * (low + high)
@@ -244,13 +253,13 @@ class RotorTurns:
             if self.periods != self._offset[0]:
                 self._offset = (self.periods, *repeated(self.periods, period))
             _, turns, angle = self._offset
-            split = RotorPosition(split.turns + turns, split.angle)
+            split = split[0] + turns, split[1]
             if angle:
-                split = RotorPosition(*nearest_turn(split.turns, split.angle + angle, math))
-        elif self.longest_silence and self.position and stamp - self._stamp > self.longest_silence:
+                split = nearest_turn(split[0], split[1] + angle, math)
+        elif self._position and 0.0 < self.longest_silence < stamp - self._stamp:
             self.referenced = False
             self.unknown_gaps += 1
-        self.position = split
+        self._position = split
         self._reading, self._stamp, self._velocity = position, stamp, velocity
 
     def _possible_turn(self, elapsed: float, velocity: float | None) -> tuple[float, float]:
@@ -278,9 +287,10 @@ class RotorTurns:
         Raises:
             RuntimeError: before the first update.
         """
-        turns, angle = self.position or self._known_position()
+        turns, angle = self._position or self._known_position()
         zero_turns, zero_angle = zero
-        return _position((direction * (turns - zero_turns), direction * (angle - zero_angle)))
+        relative = direction * (turns - zero_turns), direction * (angle - zero_angle)
+        return _new(RotorPosition, relative)
 
     def home(self, rotor_angle: float, direction: int) -> float:
         """Declare that the rotor angle φ2 is `rotor_angle` now; the turns are known from now on.
@@ -294,7 +304,7 @@ class RotorTurns:
         zero = self.zero_for(rotor_angle, direction)
         # Drop the periods counted so far.
         self.periods, self._offset = 0, (0, 0, 0.0)
-        self.position = split_turns(self._reading)
+        self._position = split_turns(self._reading)
         self.refer()
         return zero
 
@@ -311,7 +321,7 @@ class RotorTurns:
         self._known_position()
         return self._reading - direction * rotor_angle
 
-    def _known_position(self) -> RotorPosition:
-        if self.position is None:
+    def _known_position(self) -> tuple[int, float]:
+        if self._position is None:
             raise RuntimeError('the rotor has no position before the first update')
-        return self.position
+        return self._position

@@ -8,7 +8,7 @@ from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.gear_state import GearState, RotorAnswer
+from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.loads import PreloadMonitor
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.cdr import SECOND
@@ -25,6 +25,8 @@ class RefusedError(RuntimeError):
 class Actuator:
     """The state of an actuator, and the motion of its shaft."""
 
+    _before: RotorSample  # where `_speed` was measured last
+
     def __init__(self, parameters: NodeParameters, calibration: Calibration | None) -> None:
         """Start without messages."""
         self.state = GearState(parameters, calibration)
@@ -33,27 +35,24 @@ class Actuator:
         self.referenced: bool | None = None
         """Whether the turns are known, as it was published last."""
         self._seen = 0.0  # time of the last valid input; s of a steady clock
-        self._before: RotorSample | None = None  # where `_speed` was measured
-        self._segment, self._due = -1, 0  # of that, and the stamp of the next measurement, ns
-        self._speed = 0.0  # of the rotor, rad/s
+        self._speed = 0.0  # of the rotor, rad/s, by its positions
+        self._segment, self._due = -1, 0  # of these, and the stamp of the next measurement, ns
 
-    def note(self, answer: RotorAnswer, now: float) -> None:
+    def note(self, now: float) -> None:
         """Take note of a valid message of the rotor, which came now.
 
-        Without a velocity the speed is the mean over `_SPEED_SPAN`; 0 until there is one.
+        The speed is the mean over `_SPEED_SPAN`; 0 until there is one.
         """
-        self.state.monitor.last_input = self._seen = now
-        sample, segment, *_ = answer
-        stamp, position, velocity, _ = sample
-        if not (before := self._before) or self._segment != segment:  # other turns or zero
-            self._segment, self._speed = segment, 0.0
-            self._before, self._due = sample, stamp + _SPEED_SPAN
-        elif stamp >= self._due:
-            elapsed = (stamp - before.stamp) / SECOND
-            self._speed = position.since(before.position) / elapsed
-            self._before, self._due = sample, stamp + _SPEED_SPAN
-        if velocity is not None:
-            self._speed = velocity
+        state = self.state
+        state.monitor.last_input = self._seen = now
+        if state.segment != self._segment:  # other turns or zero
+            self._segment, self._speed = state.segment, 0.0
+        elif state.sample[0] < self._due:  # its stamp, by the fastest way
+            return
+        else:
+            elapsed = (state.sample.stamp - self._before.stamp) / SECOND
+            self._speed = state.sample.position.since(self._before.position) / elapsed
+        self._before, self._due = state.sample, state.sample.stamp + _SPEED_SPAN
 
     @property
     def rotor_angle(self) -> float:
@@ -78,7 +77,8 @@ class Actuator:
         if (age := time.monotonic() - self._seen) > parameters.input_timeout:
             last = f'the last valid {topics.ROTOR_STATE} came {age:.1f} s ago'
             raise RefusedError(f'{last}; check that the driver is running')
-        if (speed := abs(ratio.output_rate(self._speed))) > limit:
+        given = self.state.sample.velocity
+        if (speed := abs(ratio.output_rate(self._speed if given is None else given))) > limit:
             too_fast = f'the shaft turns at {speed:.3g} rad/s, faster than home_max_speed'
             raise RefusedError(f'{too_fast}, {limit:g} rad/s; stop it and home it again')
         whole, rest = ratio.output_angle(*before, math)

@@ -34,7 +34,6 @@ from gear_kinematics.ros.node_parameters import declared_actuators, fault_of
 from gear_kinematics.ros.other_gears import OtherGears
 from gear_kinematics.ros.outputs import Outputs, PublishingNode, latched
 from gear_kinematics.state.arm_state import ArmState
-from gear_kinematics.state.gear_state import RotorAnswer
 from gear_kinematics.state.monitors import Connections
 from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.wire import topics
@@ -197,28 +196,24 @@ class GearStatePublisher(PublishingNode):
             self._homing.keep(homed)
 
     def _on_rotor_state(self, data: bytes) -> None:
-        now = time.monotonic()
-        answers: list[tuple[str, RotorAnswer]] = []  # list[...]() would be slow
-        changed: dict[str, bool] = {}
-        for name, answer in self._arm.rotor(data, self._now):
-            if isinstance(answer, RejectedInputError):
-                self._warn_of(topics.ROTOR_STATE, name, answer)
-                continue
-            actuator = self._actuators[name]
-            actuator.note(answer, now)
-            if answer.referenced is not actuator.referenced:
-                changed[name] = answer.referenced
-            answers.append((name, answer))
-        if not answers:
+        answered, rejections = self._arm.rotor(data, self._now)
+        for name, rejection in rejections:
+            self._warn_of(topics.ROTOR_STATE, name, rejection)
+        if not answered:
             return
+        now = time.monotonic()
+        changed: dict[str, bool] = {}
+        for name, state in answered:
+            actuator = self._actuators[name]
+            actuator.note(now)
+            if state.referenced is not actuator.referenced:
+                changed[name] = state.referenced
         if self._driver_log.awaited:
-            self._driver_log.heard({name: answer.sample for name, answer in answers})
+            self._driver_log.heard({name: state.sample for name, state in answered})
         if changed:
             self._publish_referenced(changed)
-        self._outputs.send(self._arm.encode(answers))
-        for name, answer in answers:
-            self._actuators[name].state.note_published(answer)
-        if found := self._found_turns(answers):  # by the output's encoder
+        self._outputs.send(self._arm.encode(answered))
+        if self._arm.finds_turns and (found := self._found_turns(answered)):
             self._publish_referenced(found)
 
     def _found_turns(self, taken: Iterable[tuple[str, object]]) -> dict[str, bool]:
@@ -248,13 +243,12 @@ class GearStatePublisher(PublishingNode):
             self._publish_diagnostics()
 
     def _on_output_encoder(self, data: bytes) -> None:
-        now, errors = time.monotonic(), []
-        for name, answer in self._arm.encoder(data, self._now):
+        errors, rejections = self._arm.encoder(data, self._now)
+        now = time.monotonic()
+        for name, _ in (*errors, *rejections):
             self._actuators[name].state.encoder_monitor.last_input = now
-            if isinstance(answer, RejectedInputError):
-                self._warn_of(topics.OUTPUT_ENCODER, name, answer)
-            else:
-                errors.append((name, answer))
+        for name, rejection in rejections:
+            self._warn_of(topics.OUTPUT_ENCODER, name, rejection)
         self._outputs.send(self._arm.encode_errors(errors))
         if found := self._found_turns(errors):
             self._publish_referenced(found)

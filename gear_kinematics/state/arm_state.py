@@ -5,13 +5,13 @@ import math
 from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import lru_cache, partial
-from typing import TypeVar
+from operator import itemgetter
 
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.arm import labelled
-from gear_kinematics.state.gear_state import GearState, RotorAnswer
+from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.monitors import Connections
 from gear_kinematics.state.statuses import GearReport
 from gear_kinematics.wire.cdr import STAMP_BYTES, JointStateTemplate
@@ -19,11 +19,14 @@ from gear_kinematics.wire.joint_reader import JointMessage, JointsReader, Reject
 from gear_kinematics.wire.topics import TRANSMISSION_ERROR, topic_of
 
 _NO_STAMP = bytes(8)
-_Answer = TypeVar('_Answer')
-_Row = tuple[JointStateTemplate, Sequence[float]]
-_Take = Callable[[GearState, JointMessage, Callable[[], int]], _Answer]
-_Taken = list[tuple[str, _Answer | RejectedInputError]]
-"""What came of a message, by actuator, for those whose joint was in it."""
+_Answered = list[tuple[str, GearState]]
+"""Actuators whose joint in a message is valid, and their states, which have the results."""
+_Errors = list[tuple[str, Sequence[ErrorSample]]]
+"""Transmission errors that have become known, by actuator."""
+_Rejections = list[tuple[str, RejectedInputError]]
+"""Why other joints in a message are not, by actuator."""
+_Parts = tuple[list[JointStateTemplate], list[float]]
+"""The templates of the parts of a message, and the numbers of all."""
 
 
 class ArmState:
@@ -35,6 +38,7 @@ class ArmState:
     def __init__(self, actuators: Mapping[str, GearState]) -> None:
         """Take the actuators by name, in the order of the joints in messages."""
         self.actuators = dict(actuators)
+        self._in_order = list(self.actuators.items())
         self._single = self.actuators.get('')
         self._learn_joints()
 
@@ -49,6 +53,8 @@ class ArmState:
         parameters = [state.parameters for state in self.actuators.values()]
         self._rotors = JointsReader(each.rotor_joint for each in parameters)
         self._encoders = JointsReader(each.output_encoder_joint for each in parameters)
+        self.finds_turns = any(each.absolute for each in parameters)
+        """Whether encoders at the outputs may find the turns of rotors."""
 
     @property
     def joints(self) -> Collection[str]:
@@ -78,94 +84,106 @@ class ArmState:
             for subject, report in state.report(now, connections).items()
         }
 
-    def rotor(self, data: bytes, now: Callable[[], int]) -> _Taken[RotorAnswer]:
+    def rotor(self, data: bytes, now: Callable[[], int]) -> tuple[_Answered, _Rejections]:
         """Process the next message of the rotors; all have the same clock."""
-        return self._take(data, now, self._rotors, GearState.rotor)
-
-    def encoder(self, data: bytes, now: Callable[[], int]) -> _Taken[Sequence[ErrorSample]]:
-        """Process the next message of the outputs' encoders."""
-        return self._take(data, now, self._encoders, GearState.encoder)
-
-    def _take(
-        self, data: bytes, now: Callable[[], int], joints: JointsReader, take: _Take[_Answer]
-    ) -> _Taken[_Answer]:
-        if self._single:
-            try:
-                return [('', take(self._single, data, now))]
-            except RejectedInputError as rejection:
-                return [('', rejection)]
-        if data[STAMP_BYTES] == _NO_STAMP:
-            now = partial(int, now())  # all joints get the same
-        found: Sequence[JointMessage | None]
-        try:
-            found = joints.read(data)
-        except RejectedInputError as rejection:
-            found = [rejection] * len(self.actuators)
-        taken: _Taken[_Answer] = []
-        for (name, state), values in zip(self.actuators.items(), found, strict=True):
-            if values is not None:
-                try:
-                    taken.append((name, take(state, values, now)))
-                except RejectedInputError as rejection:
-                    taken.append((name, rejection))
-            elif joints is self._rotors:
+        found, now = self._read(self._rotors, data, now)
+        answered: _Answered = []
+        rejections: _Rejections = []
+        for actuator, message in zip(self._in_order, found, strict=True):
+            name, state = actuator
+            if message is None:
                 state.input.received += 1
                 state.input.of_others += 1
-        return taken
+                continue
+            try:
+                state.rotor(message, now)
+                answered.append(actuator)
+            except RejectedInputError as rejection:
+                rejections.append((name, rejection))
+        return answered, rejections
 
-    def encode(self, answers: Sequence[tuple[str, RotorAnswer]]) -> list[tuple[str, bytes]]:
+    def encoder(self, data: bytes, now: Callable[[], int]) -> tuple[_Errors, _Rejections]:
+        """Process the next message of the outputs' encoders."""
+        found, now = self._read(self._encoders, data, now)
+        errors: _Errors = []
+        rejections: _Rejections = []
+        for (name, state), message in zip(self._in_order, found, strict=True):
+            if message is not None:
+                try:
+                    errors.append((name, state.encoder(message, now)))
+                except RejectedInputError as rejection:
+                    rejections.append((name, rejection))
+        return errors, rejections
+
+    def _read(
+        self, joints: JointsReader, data: bytes, now: Callable[[], int]
+    ) -> tuple[Sequence[JointMessage | None], Callable[[], int]]:
+        """Read a message for all actuators; returns what each takes, and their common clock."""
+        if self._single:
+            return [data], now
+        if data[STAMP_BYTES] == _NO_STAMP:
+            now = partial(int, now())
+        try:
+            return joints.read(data), now
+        except RejectedInputError as rejection:
+            return [rejection] * len(self._in_order), now
+
+    def encode(self, answered: _Answered) -> list[tuple[str, bytes]]:
         """Return topic and message of what is published for a message, on the chosen topics.
 
-        A JointState has the joints of all answers: a field that none has is empty, and NaN where
-        one lacks it.
+        A JointState has the joints of all that are answered: a field that none has is empty, and
+        NaN where one lacks it.
         """
         if self._single:
-            return self._single.encode(answers[0][1])
-        joined: dict[str, list[_Row]] = defaultdict(list)
+            return self._single.encode()
+        stamp = answered[0][1].sample.stamp
+        joined: dict[str, _Parts] = defaultdict(_no_parts)
         encoded: list[tuple[str, bytes]] = []
-        for name, answer in answers:
-            for topic, template, numbers in self.actuators[name].rows(answer):
+        for name, state in answered:
+            for topic, template, numbers in state.rows():
                 if isinstance(template, JointStateTemplate):
-                    joined[topic].append((template, numbers))
+                    templates, given = joined[topic]
+                    templates.append(template)
+                    given += numbers
                 else:
-                    message = template.encode(answer.sample.stamp, numbers)
-                    encoded.append((topic_of(name, topic), message))
-        for topic, rows in joined.items():
-            encoded.append((topic, _joined(answers[0][1].sample.stamp, rows)))
-        errors = [(name, answer.errors) for name, answer in answers if answer.errors]
+                    encoded.append((topic_of(name, topic), template.encode(stamp, numbers)))
+        for topic, parts in joined.items():
+            encoded.append((topic, _joined(stamp, parts)))
+        errors = [(name, state.errors) for name, state in answered if state.errors]
         return encoded + self.encode_errors(errors) if errors else encoded
 
-    def encode_errors(
-        self, errors: Iterable[tuple[str, Sequence[ErrorSample]]]
-    ) -> list[tuple[str, bytes]]:
+    def encode_errors(self, errors: _Errors) -> list[tuple[str, bytes]]:
         """Return topic and message of transmission errors by actuator, one for each stamp."""
-        by_stamp: dict[int, list[_Row]] = defaultdict(list)
+        by_stamp: dict[int, _Parts] = defaultdict(_no_parts)
         for name, samples in errors:
             state = self.actuators[name]
             for error in samples if state.errors_chosen else ():
-                by_stamp[error.stamp].append((state.messages.angle, [error.error]))
+                templates, given = by_stamp[error.stamp]
+                templates.append(state.messages.angle)
+                given.append(error.error)
         return [
             (TRANSMISSION_ERROR, _joined(stamp, by_stamp[stamp])) for stamp in sorted(by_stamp)
         ]
 
 
-def _joined(stamp: int, rows: Sequence[_Row]) -> bytes:
+def _no_parts() -> _Parts:
+    return [], []
+
+
+def _joined(stamp: int, parts: _Parts) -> bytes:
     """Encode a JointState with the joints of several."""
-    template, places = _joined_template(tuple([template for template, _ in rows]))
-    given: list[float] = []
-    for _, numbers in rows:
-        given += numbers
-    given.append(math.nan)
-    return template.encode(stamp, [given[place] for place in places])
+    templates, given = parts
+    template, pick = _joined_template(tuple(templates))
+    return template.encode(stamp, pick((*given, math.nan)))
 
 
 @lru_cache(maxsize=1024)
 def _joined_template(
     templates: tuple[JointStateTemplate, ...],
-) -> tuple[JointStateTemplate, list[int]]:
-    """Return the template of the joined message, and the places of its numbers.
+) -> tuple[JointStateTemplate, Callable[[Sequence[float]], Sequence[float]]]:
+    """Return the template of the joined message, and what takes its numbers, in their order.
 
-    A place is an index in the numbers of all templates; NaN, for what one lacks, follows them.
+    It takes them out of the numbers of all templates, which NaN follows, for what one lacks.
     """
     names = [name for template in templates for name in template.names]
     velocity = any(template.velocity for template in templates)
@@ -181,5 +199,7 @@ def _joined_template(
         ):
             field.extend(range(start, start + count) if given else [total] * count)
             start += count if given else 0
-    places = positions + velocity * velocities + effort * efforts
-    return JointStateTemplate(names, velocity=velocity, effort=effort), places
+    template = JointStateTemplate(names, velocity=velocity, effort=effort)
+    if total == 1:  # of which an itemgetter would give no sequence
+        return template, itemgetter(slice(1))
+    return template, itemgetter(*positions, *velocity * velocities, *effort * efforts)

@@ -31,26 +31,12 @@ from gear_kinematics.wire.topics import (
 )
 
 
-class RotorAnswer(NamedTuple):
-    """The results of a valid message of the rotor."""
-
-    sample: RotorSample
-    segment: int  # as in `RotorSamples`
-    referenced: bool  # whether the rotor's turns were known when it came
-    withheld: bool  # whether they were not, and the parameters withhold outputs of unknown turns
-    correction: Correction | None  # None without a calibration
-    errors: Sequence[ErrorSample]  # the transmission errors that have become known, in order
-
-
 class RotorAnswers(NamedTuple):
-    """The results of many messages: the fields of n `RotorAnswer`s as arrays (n,)."""
+    """The results of many messages, of which n are valid, as arrays (n,)."""
 
     samples: RotorSamples
     correction: Correction | None
     errors: Sequence[ErrorSample]  # those that became known with a message of either encoder
-
-
-_answer = partial(tuple.__new__, RotorAnswer)
 
 
 class GearState:
@@ -61,6 +47,14 @@ class GearState:
     """
 
     messages: OutputMessages  # encodes the states, once topics are chosen
+
+    # The results of the latest valid message of the rotor. A tuple of them would take longer.
+    sample: RotorSample
+    segment = -1  # as in `RotorSamples`
+    referenced = False  # whether the rotor's turns were known when it came
+    withheld = False  # whether they were not, and the parameters withhold outputs of unknown turns
+    correction: Correction | None = None  # None without a calibration
+    errors: Sequence[ErrorSample] = ()  # the transmission errors that have become known, in order
 
     def __init__(self, parameters: NodeParameters, calibration: Calibration | None = None) -> None:
         """Start without messages; no topics are chosen."""
@@ -92,6 +86,7 @@ class GearState:
         self.corrector = (
             Corrector(calibration, parameters.max_rotor_acceleration) if calibration else None
         )
+        self.correction = None
         self._loads: LoadEstimator | None = None
         self._withholding = parameters.unreferenced_outputs == 'withhold'
 
@@ -118,62 +113,61 @@ class GearState:
         if self._load_topics and not self._loads:
             self._loads = LoadEstimator(self.parameters)
 
-    def rotor(self, data: JointMessage, now: Callable[[], int]) -> RotorAnswer:
+    def rotor(self, data: JointMessage, now: Callable[[], int]) -> RotorSample:
         """Process the next message of the rotor; see `RotorInput.accept`."""
         rotor = self.input
-        sample = rotor.accept(data, now)
-        segment, referenced = rotor.segment, rotor.referenced
-        correction: Correction | None = None
-        errors: Sequence[ErrorSample] = ()
+        self.sample = sample = rotor.accept(data, now)
+        self.segment = segment = rotor.segment
+        self.referenced = referenced = rotor.turns.referenced
+        if referenced:
+            self.withheld = False
+        else:
+            self.withheld = self._withholding
+            self.monitor.unreferenced += 1
+            self.monitor.withheld += self.withheld
         if self.corrector:  # also without a listener, to follow the motion
-            correction = self.corrector.correct(sample, segment=segment, referenced=referenced)
-        if self.output_encoder.received and (referenced or self.parameters.absolute):
-            errors = self.output_encoder.follow(sample, correction)
-        withheld = self._withholding and not referenced
-        return _answer((sample, segment, referenced, withheld, correction, errors))
+            self.correction = self.corrector.correct(
+                sample, segment=segment, referenced=referenced
+            )
+        encoder = self.output_encoder
+        compared = encoder.received and (referenced or self.parameters.absolute)
+        self.errors = encoder.follow(sample, self.correction) if compared else ()
+        if self.preload_monitor:
+            self.preload_monitor.follow(sample, segment)
+        return sample
 
     def encoder(self, data: JointMessage, now: Callable[[], int]) -> Sequence[ErrorSample]:
         """Process the next message of the output's encoder; see `OutputEncoder.accept`."""
         return self.output_encoder.accept(data, now)
 
-    def encode(self, answer: RotorAnswer) -> list[tuple[str, bytes]]:
-        """Return topic and message of what is published on the chosen topics."""
-        stamp = answer[0].stamp
+    def encode(self) -> list[tuple[str, bytes]]:
+        """Return topic and message of what is published on the chosen topics for a message."""
+        stamp = self.sample.stamp
         encoded = [
-            (topic, template.encode(stamp, numbers))
-            for topic, template, numbers in self.rows(answer)
+            (topic, template.encode(stamp, numbers)) for topic, template, numbers in self.rows()
         ]
-        if answer.errors:
-            encoded += self.encode_errors(answer.errors)
-        return encoded
+        return encoded + self.encode_errors(self.errors) if self.errors else encoded
 
-    def rows(self, answer: RotorAnswer) -> list[Row]:
+    def rows(self) -> list[Row]:
         """Return what the messages on the chosen topics are encoded of, without errors.
 
-        Answers are taken in order, as accelerations, of which loads depend, follow the motion.
+        This is to be called for each message, as accelerations, of which loads depend, follow the
+        motion.
         """
-        sample, segment, _, withheld, correction, _ = answer
-        if withheld:
+        if self.withheld:
             return []
+        sample = self.sample
         rows = self.messages.rows(sample, self._states)
-        if correction:
-            rows += self.messages.corrected_rows(sample, correction, self._corrections)
+        if self.correction:
+            rows += self.messages.corrected_rows(sample, self.correction, self._corrections)
         if self._loads and self._load_topics:
-            rows += self._loads.rows(self._loads.follow(sample, segment), self._load_topics)
+            rows += self._loads.rows(self._loads.follow(sample, self.segment), self._load_topics)
         return rows
 
     def encode_errors(self, errors: Iterable[ErrorSample]) -> list[tuple[str, bytes]]:
         """Return topic and message of transmission errors, if their topic is chosen."""
         encode, chosen = self.messages.angle.encode, self.errors_chosen
         return [(TRANSMISSION_ERROR, encode(e.stamp, [e.error])) for e in errors if chosen]
-
-    def note_published(self, answer: RotorAnswer) -> None:
-        """Take note, for the next report, that a message of the rotor was answered."""
-        sample, segment, referenced, withheld, *_ = answer
-        self.monitor.published += not withheld
-        self.monitor.unreferenced += not referenced
-        if self.preload_monitor:
-            self.preload_monitor.follow(sample, segment)
 
     def report(self, now: float, connections: Connections) -> dict[str, GearReport]:
         """Report facts by subject on the time since the last report, until now.
@@ -213,11 +207,12 @@ class GearState:
                         errors += self.encoder(data, partial(int, received))
                     if topic != rotor:
                         continue
-                    sample, *state, _, found, new = self.rotor(data, partial(int, received))
+                    sample = self.rotor(data, partial(int, received))
                     motion = *sample.position, sample.velocity, sample.effort
-                    rows.append((sample.stamp, *motion, row, received, *state))
-                    corrections += [found] if found else []
-                    errors += new
+                    state = row, received, self.segment, self.referenced
+                    rows.append((sample.stamp, *motion, *state))
+                    corrections += [self.correction] if self.correction else []
+                    errors += self.errors
             samples = RotorSamples.of(rows, np.zeros(0, np.int64))
             if self.corrector:
                 columns = np.array(corrections, float).reshape(-1, len(Correction._fields)).T

@@ -76,8 +76,8 @@ class InputMonitor(DriverMonitor):
         """Monitor an input, whose turns the encoder at the output may find."""
         super().__init__()
         self._input, self._encoder = rotor_input, encoder
-        self.published = 0
         self.unreferenced = 0  # valid inputs while the turns were not known
+        self.withheld = 0  # those of them without outputs
         self.zero_kept: Fact | None = None
         """Where `rotor_zero` is kept until the next start, or why it is not."""
         self._reported, self._rate, self._received = 0.0, 0.0, 0
@@ -96,7 +96,7 @@ class InputMonitor(DriverMonitor):
         values = {
             'rate (Hz)': self._rate,
             'received': rotor_input.received,
-            'published': self.published,
+            'published': count - rotor_input.rejected.total() - self.withheld,
             'of others': rotor_input.of_others,
             **_by_cause('rejected', rotor_input.rejected),
             'lost messages': driver.lost if driver.losses_known else 'unknown',

@@ -43,7 +43,7 @@ from gear_kinematics.wire.joint_reader import (
     RejectedInputError,
 )
 
-_sample = partial(tuple.__new__, RotorSample)
+_new = tuple.__new__  # faster than RotorSample(...)
 
 
 class RotorInput:
@@ -309,7 +309,7 @@ class RotorInput:
         if effort is not None and not self.effort_field.real:
             effort = self.effort_field.believed(self._unwrapped(position), effort)
         direction = self._parameters.rotor_direction
-        self.last = sample = _sample((
+        self.last = sample = _new(RotorSample, (
             stamp,
             self.turns.relative_to(self.zero, direction),
             None if velocity is None else direction * velocity,
@@ -330,8 +330,8 @@ class RotorInput:
 
     def _unwrapped(self, position: float) -> float:
         """The latest position, rad, without the wraps of an encoder that repeats."""
-        if self.turns.position and self.turns.period:
-            return TURN * self.turns.position.turns + self.turns.position.angle
+        if self.turns.period and (unwrapped := self.turns.position):
+            return TURN * unwrapped.turns + unwrapped.angle
         return position
 
     def _check_order(self, stamp: int, last: int) -> None:

@@ -153,7 +153,8 @@ class StateMessages(OutputMessages):
         rows: list[Row] = []
         for topic in topics:
             if topic == OUTPUT_STATE:
-                rows.append((topic, *self._output_state(output_angle, velocity, effort)))
+                state, numbers = self._output_state(output_angle, velocity, effort)
+                rows.append((topic, state, numbers))
                 continue
             branches = branches or self._form.branches(angle, output_rest, math)
             if topic == BODY_POSES:

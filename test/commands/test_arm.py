@@ -41,7 +41,7 @@ def test_the_outputs_of_an_arm_are_those_of_the_node_and_validate_to_the_last_bi
     node, published = ArmState(gears), defaultdict(list)
     node.choose(node.topics)
     for _, _, data in read_bag(source):
-        for topic, message in node.encode(node.rotor(data, int)):
+        for topic, message in node.encode(node.rotor(data, int)[0]):
             published[f'/{topic}'].append(message)
     computed = defaultdict(list)
     for topic, _, data in read_bag(out):

@@ -292,7 +292,7 @@ def test_home_sets_the_rotor_angle(direction, single_turn, turns, rotor_angle):
     start = 2.0 if single_turn else float(2.0 + TAU * turns)
     tracker.update(start, 0)
     if single_turn:
-        tracker.position = RotorPosition(turns, tracker.position.angle)
+        tracker._position = RotorPosition(turns, tracker.position.angle)
     zero = tracker.home(rotor_angle, direction)
     assert tracker.referenced
     rounding = 4e-15 + math.ulp(rotor_angle) + math.ulp(start)
@@ -309,7 +309,7 @@ def test_home_sets_the_rotor_angle(direction, single_turn, turns, rotor_angle):
 def test_home_counts_from_the_present_turn_of_a_single_turn_encoder():
     """Its zero is a position of the encoder, within a turn of the reading for small angles."""
     tracker = homed(0.0)
-    tracker.position = RotorPosition(12, 0.0)
+    tracker._position = RotorPosition(12, 0.0)
     tracker.update(2.0, 1_000_000)
     zero = tracker.home(0.5, -1)
     assert zero == 2.5

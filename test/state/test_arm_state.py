@@ -16,7 +16,6 @@ from gear_kinematics.state.arm_state import ArmState
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.monitors import Connections, DriverFacts
 from gear_kinematics.state.statuses import Condition
-from gear_kinematics.wire.joint_reader import RejectedInputError
 
 START, PERIOD = 100 * SECOND, SECOND // 100
 GIVEN = {
@@ -49,10 +48,9 @@ def arm():
 
 def answer(arm, data, now=lambda: 7 * SECOND):
     """Return the messages of a rotor message by topic, and the causes by actuator."""
-    taken = arm.rotor(data, now)
-    faults = {name: str(each) for name, each in taken if isinstance(each, RejectedInputError)}
-    valid = [(name, each) for name, each in taken if name not in faults]
-    encoded = arm.encode(valid) if valid else []
+    answered, rejections = arm.rotor(data, now)
+    faults = {name: str(rejection) for name, rejection in rejections}
+    encoded = arm.encode(answered) if answered else []
     topics = [topic for topic, _ in encoded]
     assert len(topics) == len(set(topics))
     return dict(encoded), faults
@@ -109,7 +107,8 @@ def test_each_joint_has_to_the_last_bit_what_its_gear_alone_gives(arm):
         assert 'output_state' in encoded
         wanted = {}
         for name, gear in alone.items():
-            for topic, message in gear.encode(gear.rotor(data, int)):
+            gear.rotor(data, int)
+            for topic, message in gear.encode():
                 wanted.setdefault(topic, []).append((name, message))
         for topic, parts in wanted.items():
             if topic in ('body_poses', 'joint_loads'):
@@ -173,9 +172,9 @@ def test_errors_of_the_outputs_come_in_one_message_for_each_stamp(arm):
         stamp = START + k * PERIOD
         arm.rotor(rotor_bytes(stamp, ['m1', 'm2', 'm3'], [0.19 * k, 0.5, 1.0]), int)
         measured = rotor_bytes(stamp, ['elbow', 'shoulder'], [ahead, ahead - 0.01 * k])
-        taken = arm.encoder(measured, int)
-    assert [name for name, _ in taken] == ['shoulder', 'elbow']
-    [(topic, data)] = arm.encode_errors(taken)
+        errors, rejections = arm.encoder(measured, int)
+    assert ([name for name, _ in errors], rejections) == (['shoulder', 'elbow'], [])
+    [(topic, data)] = arm.encode_errors(errors)
     error = state(data)
     assert (topic, error.name) == ('transmission_error', ['shoulder', 'elbow'])
     assert stamp_of(error) == START + 2 * PERIOD

@@ -24,6 +24,7 @@ MULTI = NodeParameters.load()
 SINGLE = replace(MULTI, rotor_encoder='single_turn', max_rotor_speed=100.0)
 START, PERIOD, COUNT = 100 * SECOND, SECOND // 100, 120
 SPEED, STEP = 20.0, 1e-3  # rad/s, and rad: the resolution of the encoder
+UNKNOWN_AT_FIRST = Condition.WERE_UNKNOWN(count=1)  # until homed after the first message
 APART = 'offset', 'nanoseconds'  # of the position, and s and ns of the stamp
 
 
@@ -102,14 +103,14 @@ ROWS = {
     'no stamp, and a reading that repeats': Row(
         part({'stamp': 0}),
         {'zero_stamps': 1},
-        (Condition.ZERO_STAMPS(count=1),),
+        (Condition.ZERO_STAMPS(count=1), UNKNOWN_AT_FIRST),
         FindingCause.ZERO_STAMPS,
         replace(MULTI, rotor_encoder_range=1000.0),
     ),
     'constant stamp, and a reading that repeats': Row(
         [{'stamp': START} for _ in range(COUNT)],
         {'duplicates': COUNT - 1},
-        (Condition.REPEATED_STAMPS(count=COUNT - 1),),
+        (Condition.REPEATED_STAMPS(count=COUNT - 1), UNKNOWN_AT_FIRST),
         FindingCause.REPEATED_STAMPS,
         replace(MULTI, rotor_encoder_range=1000.0),
     ),

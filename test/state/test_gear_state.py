@@ -128,14 +128,14 @@ def one_by_one(gear, part, read=bytes):
             if topic == ENCODER:
                 errors += gear.encoder(data, partial(int, received))
             elif topic == ROTOR:
-                answer = gear.rotor(read(data), partial(int, received))
-                stamp, position, *both = answer.sample
+                sample = gear.rotor(read(data), partial(int, received))
+                stamp, position, *both = sample
                 numbers = [math.nan if each is None else each for each in both]
-                state = row, received, answer.segment, answer.referenced
+                state = row, received, gear.segment, gear.referenced
                 samples.append((stamp, *map(float, position), *numbers, *state))
-                corrections.append(answer.correction)
-                errors += answer.errors
-                encoded.append(dict(gear.encode(answer)))
+                corrections.append(gear.correction)
+                errors += gear.errors
+                encoded.append(dict(gear.encode()))
     return samples, corrections, errors, encoded
 
 

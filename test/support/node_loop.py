@@ -39,8 +39,8 @@ def answered(
             if topic == ENCODER:
                 gear.encoder(data, now)
             elif topic == ROTOR:
-                encoded = gear.encode(gear.rotor(data, now))
-                recorded += [(f'/{name}', received, message) for name, message in encoded]
+                gear.rotor(data, now)
+                recorded += [(f'/{name}', received, message) for name, message in gear.encode()]
                 if gear.input.received == home_after:
                     angle = parameters.gear.gear_ratio.rotor_angle(parameters.home_angle)
                     homed = replace(parameters, rotor_zero=gear.input.zero_for(angle))

@@ -45,7 +45,7 @@ def miscounted(monkeypatch) -> None:
         right(self, *arguments)
         self.updates = getattr(self, 'updates', 0) + 1
         if self.updates == 500:
-            self.position = RotorPosition(self.position.turns + 1, self.position.angle)
+            self._position = RotorPosition(self.position.turns + 1, self.position.angle)
 
     monkeypatch.setattr(RotorTurns, 'update', wrong)
 
