@@ -13,6 +13,7 @@ import sqlite3
 import sys
 import xml.etree.ElementTree as ET
 from contextlib import closing
+from fnmatch import fnmatch
 from pathlib import Path
 
 import pytest
@@ -74,21 +75,36 @@ def endpoints(live) -> tuple[set[str], set[str]]:
     return set(dict(written)), set(dict(read))
 
 
+def of_one(namespace: str) -> tuple[set[str], set[str]]:
+    """Give those topics that a node without `actuators` has."""
+    written, read = ({name for name in names if '*' not in name} for names in policy(namespace))
+    return written, read
+
+
 @pytest.mark.live
 def test_policy_lists_exactly_what_the_node_offers_and_uses(live):
-    written, read = policy(live.peer.namespace)
+    expected = of_one(live.peer.namespace)
+    live.peer.wait_until(lambda: endpoints(live) == expected, f'{expected}')
 
-    def all_there():
-        found = endpoints(live)
-        return written <= found[0] and read <= found[1]
 
-    live.peer.wait_until(all_there, f'{sorted(written | read)}')
-    assert endpoints(live) == (written, read)
+@pytest.mark.live
+def test_policy_allows_what_each_actuator_of_an_arm_has_and_nothing_else(tmp_path):
+    """Topics and services as the contract has them; DDS matches names as fnmatch does."""
+    with live_node(tmp_path, '-p', 'actuators:=[shoulder, elbow]') as live:
+        namespace = live.peer.namespace
+        allowed = policy(namespace)
+        topics = 'body_poses', 'markers', 'joint_loads', 'referenced'
+        home = f'{namespace}/gear_state_publisher/elbow/home'
+        written = {f'rt{namespace}/elbow/{topic}' for topic in topics} | {f'rr{home}Reply'}
+        live.peer.wait_until(lambda: written <= endpoints(live)[0], f'{sorted(written)}')
+        live.peer.wait_until(lambda: f'rq{home}Request' in endpoints(live)[1], 'homing')
+        for found, patterns in zip(endpoints(live), allowed, strict=True):
+            assert not [name for name in found if not any(fnmatch(name, p) for p in patterns)]
 
 
 @pytest.mark.live
 def test_simulated_time_needs_the_clock_besides(live):
-    before, after = policy(live.peer.namespace)
+    before, after = of_one(live.peer.namespace)
     assert live.peer.set(use_sim_time=True).successful
     expected = before, after | {'rt/clock'}
     live.peer.wait_until(lambda: endpoints(live) == expected, '/clock')
