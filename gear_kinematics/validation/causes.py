@@ -116,6 +116,7 @@ class FindingCause(Enum):
     # What is compared
     PREFIX_TAKEN = 'frame_prefix {prefix!r} is taken from the outputs'
     NO_POSES = 'no poses are recorded: {output} alone is compared'
+    POSES_UNJUDGED = '{poses} is not judged: only the ratio of the gear is known'
     CORRECTION_UNJUDGED = 'the corrected output is not judged: {why}'
     INDEPENDENT = '{independent.text}'
 

@@ -140,12 +140,16 @@ def _judged(
         batches = in_batches(messages, _BATCH)
         further = in_namespace(CORRECTED_TOPICS) if task.calibration else {}
         live = replace(task, strict=True)  # nothing is lost by a recorder here
-        validator = Validator(live, further=further, encoder=encoder and f'/{OUTPUT_ENCODER}')
+        own = Topics() if known else Topics(poses='')
+        validator = Validator(live, own, further, encoder=encoder and f'/{OUTPUT_ENCODER}')
     else:
         judged = *CORRECTED_TOPICS, *(LOAD_TOPICS if known else ())
         further = find_in_namespace(bag, judged, topics.output)
         names = (*topics, *further.values(), *filter(None, [encoder]))
         batches = bag.batches(names, progress)
+        if not known:  # poses are not judged, which is said
+            poses = find_in_namespace(bag, [BODY_POSES], topics.output)
+            topics = topics._replace(poses=poses.get(BODY_POSES, ''))
         validator = Validator(task, topics, further, encoder=encoder)
     proof = independent_of(task, Topics() if play else topics) if task.independent else None
     damage = None

@@ -314,7 +314,9 @@ class Validator:
     def _found(self) -> Iterator[Finding]:
         """Yield with what the outputs are compared, what explains their faults, and the rest."""
         rotor = self._topics.rotor
-        if isinstance(self._gear, Mechanism) and not self.poses:
+        if self._topics.poses and not self.poses:
+            yield Finding(FindingCause.POSES_UNJUDGED, values={'poses': self._topics.poses})
+        elif isinstance(self._gear, Mechanism) and not self.poses:
             yield Finding(FindingCause.NO_POSES, values={'output': self.output.name})
         yield from self._findings
         yield from self._changes.notes()

@@ -30,6 +30,7 @@ VALUES = {
     'causes': 'joint missing 3000',
     'topic': '/rotor_state',
     'output': '/output_state',
+    'poses': '/body_poses',
     'detail': 'no joint in it',
     'name': 'left',
     'expected': '-19',

@@ -400,7 +400,7 @@ def test_what_is_wrong_with_one_message_is_named(recorded, config, topic, edit, 
 def test_what_does_not_fit_the_parameters_is_named(recorded, config, changes, verdict, words):
     report = validate(recorded, replace(config, **changes))
     assert report.verdict == verdict
-    assert {words in text for text in texts(report)} == {True}
+    assert {words in text for text in texts(report) if 'is not judged' not in text} == {True}
 
 
 def scale(field: str, factor: float):
@@ -463,7 +463,9 @@ def test_the_offset_that_homing_leaves_passes_and_is_said(recorded, config, chan
     homed = replace(config, rotor_zero=0.75, rotor_direction=1, **changes)
     report = validate(recorded, homed)
     assert report.verdict == Verdict.PASS
-    [said] = texts(report)
+    *unjudged, said = texts(report)
+    poses = f'{POSES} is not judged: only the ratio of the gear is known'
+    assert unjudged == [poses] * bool(changes)
     assert said.startswith(f'all output angles are moved by {-0.75 / 19:.9g}')
     assert said.endswith(' rad, as after homing')
     failed = validate(recorded, homed, strict=True)
