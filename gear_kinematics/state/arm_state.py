@@ -137,7 +137,7 @@ class ArmState:
         if self._single:
             return self._single.encode()
         stamp = answered[0][1].sample.stamp
-        joined: dict[str, _Parts] = defaultdict(_no_parts)
+        joined: dict[str, _Parts] = defaultdict(lambda: ([], []))
         encoded: list[tuple[str, bytes]] = []
         for name, state in answered:
             for topic, template, numbers in state.rows():
@@ -154,7 +154,7 @@ class ArmState:
 
     def encode_errors(self, errors: _Errors) -> list[tuple[str, bytes]]:
         """Return topic and message of transmission errors by actuator, one for each stamp."""
-        by_stamp: dict[int, _Parts] = defaultdict(_no_parts)
+        by_stamp: dict[int, _Parts] = defaultdict(lambda: ([], []))
         for name, samples in errors:
             state = self.actuators[name]
             for error in samples if state.errors_chosen else ():
@@ -164,10 +164,6 @@ class ArmState:
         return [
             (TRANSMISSION_ERROR, _joined(stamp, by_stamp[stamp])) for stamp in sorted(by_stamp)
         ]
-
-
-def _no_parts() -> _Parts:
-    return [], []
 
 
 def _joined(stamp: int, parts: _Parts) -> bytes:
