@@ -8,13 +8,13 @@ motion that the last believed reading only hid, or one beyond the limits, or as 
 
 import math
 from enum import Enum
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.state.doubted import AGREEING, agreement, goes_on
 from gear_kinematics.state.reach import (
     FLOOR,
     LONGEST_NS,
@@ -28,13 +28,9 @@ from gear_kinematics.state.statuses import Condition, Fact
 
 _COARSEST = TURN / 6.0  # rad; what a Hall sensor of one pole pair resolves
 _EQUAL = 1e-9  # rad, below which steps differ by rounding alone
-_AGREEING = 3  # doubted readings in a row that are believed
 _MOST_OF = 0.8  # a period: where so much is in reach, nothing is doubted
 _MARGIN = 1.5  # of raised limits above what was seen
 _STALEST_NS = round(STALEST * 1e9)
-_LONGEST_REPEAT = 1.0  # s, for which a driver repeats a reading while the rotor turns on
-_REPEATED = 0.05  # of the way meanwhile: what it may differ by from that at a steady speed
-_STEADY = 0.25  # of the speed: what it may change by meanwhile
 
 
 class Belief(Enum):
@@ -309,35 +305,27 @@ class Plausibility:
 
     def _doubt(self, position: float, stamp: int) -> Belief:
         """Note a reading that is out of reach, and see whether it agrees with those before."""
-        self._doubted = [*self._doubted[1 - _AGREEING :], (stamp, position)]
-        if len(self._doubted) < _AGREEING:
+        self._doubted = [*self._doubted[1 - AGREEING :], (stamp, position)]
+        if len(self._doubted) < AGREEING:
             return Belief.IMPLAUSIBLE
-        times, positions = zip(*self._doubted, strict=True)
-        spans = [(b - a) * 1e-9 for a, b in pairwise(times)]
-        steps = [self._wrapped(b - a) for a, b in pairwise(positions)]
-        stale = min(STALEST, max(spans))
-        noise = max(FLOOR, 2.0 * self.finest)
-        total = sum(spans)
-        if total < 0.0:
+        found = agreement(self._doubted, self.limits, self.finest, self.period)
+        if not found:
             return Belief.IMPLAUSIBLE
-        speed = sum(steps) / total if total else 0.0
-        slack = noise + self.limits.acceleration * total * total
-        uneven = max(abs(s - speed * t) for s, t in zip(steps, spans, strict=True))
-        within = all(
-            abs(s) <= self.limits.speed * (t + stale) + noise
-            for s, t in zip(steps, spans, strict=True)
-        )
-        if uneven > slack + abs(speed) * stale or not (within or total):
-            return Belief.IMPLAUSIBLE
-        first = self._wrapped(positions[0] - self._last[0])
-        elapsed = (times[0] - (self._stamp if first else self._last[1])) * 1e-9
+        speed, step, span, stale, within = found
+        began, where = self._doubted[0]
+        first = self._wrapped(where - self._last[0])
+        elapsed = (began - (self._stamp if first else self._last[1])) * 1e-9
         before = self._speed()
-        way = abs(speed) * (elapsed + stale) + noise
+        way = abs(speed) * (elapsed + stale) + max(FLOOR, 2.0 * self.finest)
         continuous = first * speed >= 0.0 and abs(first) <= way and not self.period
         if abs(speed) > self.limits.speed:
             self.seen_speed = abs(speed)
             self.limits = self.limits._replace(speed=_MARGIN * abs(speed))
-        if self._goes_on(times[0], positions[0], speed):
+        moved = self._last[2] != 0.0
+        motion = self._former if moved else self._moving
+        if not self.period and goes_on(
+            motion, began, where, speed, self.limits, self.finest, stood=not moved
+        ):
             continuous = True
         elif continuous:
             seen = abs(speed - before) / max(elapsed + stale, 1e-9)
@@ -347,32 +335,15 @@ class Plausibility:
                     self.limits = self.limits._replace(acceleration=_MARGIN * seen)
         else:
             self.jumps += 1
-            self.jump = Jump(times[0], self._wrapped(first - before * elapsed))
+            self.jump = Jump(began, self._wrapped(first - before * elapsed))
         last, finest = self._last, self.finest
         self._restart(position, stamp)
         self.finest = finest
         if continuous and not speed:
             self._moving = last
-        if spans[-1]:
-            self._last = position, stamp, steps[-1], times[-1] - times[-2]
+        if span:
+            self._last = position, stamp, step, span
         return Belief.BELIEVED if continuous else Belief.JUMP
-
-    def _goes_on(self, stamp: int, position: float, speed: float) -> bool:
-        """Whether a motion at this speed continues that before the last believed reading.
-
-        The last one then was wrong itself, or a driver repeated it while the rotor turned on.
-        """
-        moved = self._last[2]
-        before, since, step, span = self._former if moved else self._moving
-        time = (stamp - since) * 1e-9
-        if self.period or not (step and span) or (time > _LONGEST_REPEAT and not moved):
-            return False
-        former = step / (span * 1e-9)
-        change = _STEADY * abs(former) + (self.limits.acceleration * time if moved else 0.0)
-        way, stale = 0.5 * (former + speed) * time, min(STALEST, 1.25e-9 * span)
-        uncertain = max(FLOOR, 2.0 * self.finest) + max(abs(former), abs(speed)) * stale
-        uncertain += _REPEATED * abs(way) + 0.25 * change * time
-        return abs(speed - former) <= change and abs(position - before - way) <= uncertain
 
     def _wrapped(self, step: float) -> float:
         return math.remainder(step, self.period) if self.period else step
