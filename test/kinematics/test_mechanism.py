@@ -147,8 +147,3 @@ def test_satellite_rolls_on_the_ring_gear_without_slip(mechanism, angle, velocit
     assert_close(np.hypot(*arm), radius, 1e-12 * mechanism.ring_rolling_radius)
     turning = state.output_velocity * np.array([-arm[1], arm[0]])
     assert_close(state.satellite_velocity[0] + turning, np.zeros(2), 1e-12 * e * abs(velocity))
-
-
-def test_rolling_radii_of_the_default_actuator(actuator):
-    assert actuator.ring_rolling_radius == pytest.approx(0.022, rel=1e-15)
-    assert actuator.satellite_rolling_radius == pytest.approx(0.0209, rel=1e-15)

@@ -124,13 +124,6 @@ def test_stiffness_is_the_slope_within_and_beyond_the_thresholds(stiffness, inte
         assert expected == pytest.approx(float(slope), rel=1e-12)
 
 
-def test_equal_paths_stay_in_mesh_up_to_twice_the_preload():
-    """kAe = kB, the case that the specification gives in numbers."""
-    preload = Preload.from_torque(Stiffness(2000.0, 1000.0, 2000.0), 1.5)
-    assert preload.torque == pytest.approx(1.5, rel=1e-15)
-    assert preload.limit == pytest.approx(3.0, rel=1e-15)
-
-
 def test_numbers_of_the_paper(actuator):
     """Its shaft, and the preload of one step of its vernier on rigid branches."""
     shaft = shaft_stiffness(0.012, 0.151)

@@ -100,18 +100,6 @@ def test_messages_hold_the_motion(mechanism, rotor_angle, velocity):
     assert_joint_states(joints, derivatives, numbers, velocity=True)
 
 
-def test_default_order_of_the_poses(actuator):
-    # By hand at φ2 = 0: cams at (0, ±e), and there the couplings too, as sin β is 0.
-    _, message, _ = encode(actuator, sample_at(0.0))
-    places = [(pose.position.x, pose.position.y, pose.position.z) for pose in message.poses]
-    for place, expected in zip(
-        places,
-        [(0, 0.0011, 0.04), (0, -0.0011, -0.04), (0, 0.0011, 0.04), (0, -0.0011, -0.04)],
-        strict=True,
-    ):
-        assert place == pytest.approx(expected, abs=1e-15)
-
-
 @pytest.mark.parametrize('velocity', [None, 3.8])
 @pytest.mark.parametrize('effort', [None, 0.5])
 def test_fields_that_the_input_lacks_stay_empty(actuator, velocity, effort):
