@@ -4,6 +4,7 @@
 import ast
 import importlib.util
 import sys
+from itertools import chain
 from pathlib import Path
 
 import pytest
@@ -15,13 +16,13 @@ PACKAGE = ROOT / 'gear_kinematics'
 ROS = ('ament_index_python', 'builtin_interfaces', 'launch', 'launch_ros', 'rclpy', 'rosidl')
 
 
-def imported_modules(source: str) -> set[str]:
+def imported_modules(nodes: list[ast.AST]) -> set[str]:
     """Return the full names of all modules that a source imports anywhere in it.
 
     `from a import b` gives a and a.b, of which b may be a module.
     """
     names: set[str] = set()
-    for node in ast.walk(ast.parse(source)):
+    for node in nodes:
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -40,12 +41,17 @@ def is_ros(name: str) -> bool:
 
 
 @pytest.fixture(scope='module')
-def imports() -> dict[str, set[str]]:
-    """Return for each source, by its path in the package, what it imports."""
+def sources() -> dict[str, list[ast.AST]]:
+    """Return for each source, by its path in the package, its syntax."""
     return {
-        path.relative_to(PACKAGE).as_posix(): imported_modules(path.read_text('utf-8'))
+        path.relative_to(PACKAGE).as_posix(): [*ast.walk(ast.parse(path.read_text('utf-8')))]
         for path in sorted(PACKAGE.rglob('*.py'))
     }
+
+
+@pytest.fixture(scope='module')
+def imports(sources) -> dict[str, set[str]]:
+    return {path: imported_modules(nodes) for path, nodes in sources.items()}
 
 
 def test_core_imports_numpy_the_standard_library_and_itself(imports):
@@ -133,9 +139,9 @@ def test_no_file_is_longer_than_350_lines():
     assert not {path: count for path, count in lines.items() if count > 350}
 
 
-def test_no_two_classes_share_a_name():
-    trees = [ast.parse(path.read_text('utf-8')) for path in PACKAGE.rglob('*.py')]
-    names = [n.name for tree in trees for n in ast.walk(tree) if isinstance(n, ast.ClassDef)]
+def test_no_two_classes_share_a_name(sources):
+    nodes = chain.from_iterable(sources.values())
+    names = [node.name for node in nodes if isinstance(node, ast.ClassDef)]
     assert not {name for name in names if names.count(name) > 1}
 
 
@@ -174,13 +180,13 @@ def test_messages_and_ros_are_imported_in_one_room(imports):
     assert users == {'ros', 'watch'}
 
 
-def test_topics_are_named_in_one_module():
+def test_topics_are_named_in_one_module(sources):
     # Plotly has markers too.
     names = {name for name in TOPICS if '_' in name}
     found = {
-        path.relative_to(PACKAGE).as_posix()
-        for path in PACKAGE.rglob('*.py')
-        for node in ast.walk(ast.parse(path.read_text(encoding='utf-8')))
+        path
+        for path, nodes in sources.items()
+        for node in nodes
         if isinstance(node, ast.Constant) and str(node.value).removeprefix('/') in names
     }
     assert found == {'wire/topics.py'}
