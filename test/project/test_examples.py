@@ -3,6 +3,7 @@
 
 import os
 import re
+import runpy
 import shutil
 import subprocess
 import sys
@@ -53,10 +54,14 @@ def test_example_says_what_it_should(name, tmp_path):
 
 
 @pytest.mark.parametrize('name', ['bench', '../bags/record', *TOLD])
-def test_an_example_answers_help(name, tmp_path):
-    done = run(name, '--help', cwd=tmp_path)
-    assert (done.returncode, done.stderr) == (0, '')
-    assert done.stdout.startswith(f'usage: {Path(name).name}.py')
+def test_an_example_answers_help(name, monkeypatch, capsys):
+    program = str(EXAMPLES / f'{name}.py')
+    monkeypatch.setattr('sys.argv', [program, '--help'])
+    with pytest.raises(SystemExit) as left:
+        runpy.run_path(program, run_name='__main__')
+    said = capsys.readouterr()
+    assert (left.value.code, said.err) == (0, '')
+    assert said.out.startswith(f'usage: {Path(name).name}.py')
 
 
 def test_the_documented_test_of_a_package_holds_its_recording_to_its_parameters(tmp_path):
