@@ -8,29 +8,29 @@ motion that the last believed reading only hid, or one beyond the limits, or as 
 
 import math
 from enum import Enum
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.state.doubted import AGREEING, agreement, goes_on
-from gear_kinematics.state.reach import (
-    FLOOR,
+from gear_kinematics.state.motion import (
+    COARSEST,
+    EQUAL,
     LONGEST_NS,
-    REGULAR,
-    STALEST,
-    Reading,
-    RotorLimits,
-    regular_bounds,
+    STALEST_NS,
+    Motion,
+    all_in_reach,
 )
+from gear_kinematics.state.reach import FLOOR, REGULAR, STALEST, Reading, RotorLimits
 from gear_kinematics.state.statuses import Condition, Fact
 
-_COARSEST = TURN / 6.0  # rad; what a Hall sensor of one pole pair resolves
-_EQUAL = 1e-9  # rad, below which steps differ by rounding alone
+_AGREEING = 3  # doubted readings in a row that are believed
 _MOST_OF = 0.8  # a period: where so much is in reach, nothing is doubted
 _MARGIN = 1.5  # of raised limits above what was seen
-_STALEST_NS = round(STALEST * 1e9)
+_LONGEST_REPEAT = 1.0  # s, for which a driver repeats a reading while the rotor turns on
+_REPEATED = 0.05  # of the way meanwhile: what it may differ by from that at a steady speed
+_STEADY = 0.25  # of the speed: what it may change by meanwhile
 
 
 class Belief(Enum):
@@ -84,7 +84,7 @@ class Plausibility:
         self._former: Reading = _UNKNOWN
         self._moving: Reading = _UNKNOWN  # the last one before a standstill
         self._stamp = 0  # ns, of the last believed reading with the last position
-        self.finest = _COARSEST
+        self.finest = COARSEST
         """rad, the resolution of the encoder: the smallest step of all, or difference between two
         in a row; not less than matters, which is half of `FLOOR`."""
         self._look_always()
@@ -136,86 +136,16 @@ class Plausibility:
         fresh = math.isnan(self._last[0])
         if fresh:
             self._restart(float(positions[0]), int(stamps[0]))
-        if not self._doubted and self._moves_evenly(stamps, positions):
-            return True
-        if self._doubted or not self._believes(stamps, positions):
-            if fresh:
-                self.reset()
-            return False
-        return True
-
-    def _moves_evenly(self, stamps: NDArray[np.int64], positions: NDArray[np.float64]) -> bool:
-        """Take readings as `_believes`, if each has moved in a regular time by a regular step."""
-        position, since, last, last_span = self._last
-        if self._stamp - since > _STALEST_NS or self.finest > 0.5 * FLOOR:
-            return False
-        bounds = regular_bounds(stamps, since, last_span, self._former[3], self.limits)
-        steps = np.diff(positions, prepend=position)
-        if bounds is None or len(steps) == 1 or not steps.all():
-            return False
-        evenness, most = bounds
-        changes = np.diff(steps, prepend=last)
-        if not ((np.abs(changes) <= evenness) & (np.abs(steps) <= most)).all():
-            return False
-        earlier, before, now = [since, *stamps[-3:].tolist()][-3:]
-        self._former = (float(positions[-2]), before, float(steps[-2]), before - earlier)
-        self._last = (float(positions[-1]), now, float(steps[-1]), now - before)
-        self._stamp = now
-        self._look_always()
-        return True
-
-    def _believes(self, stamps: NDArray[np.int64], positions: NDArray[np.float64]) -> bool:
-        position, since, *last = self._last
-        *_, former_step, former_span = self._former
-        steps = np.diff(positions, prepend=position)
-        rows = np.flatnonzero(steps)
-        when, steps = stamps[rows], steps[rows]
-        changed = np.concatenate([[since], when])
-        until = np.append(np.concatenate([[self._stamp], stamps[:-1]])[rows], stamps[-1])
-        stood = np.append(False, until - changed > _STALEST_NS)
-        # The step and the span up to each position; none after a standstill.
-        moved = np.concatenate([[former_step, last[0]], steps])
-        spans = np.diff(changed)
-        started = stood[1:-1] & (when > until[:-1])
-        spans[started] = (when - until[:-1])[started]
-        took = np.concatenate([[former_span, last[1]], spans])
-        ended = stood & (moved != 0.0)
-        step, span = np.where(ended, 0.0, moved), np.where(ended, 0, took)
-        # Steps of the same stamp, which are added up, and abrupt stops are left to `judge`.
-        if np.any(when == changed[:-1]):
-            return False
-        sizes = np.abs([steps, steps - step[1:-1]])
-        sizes = np.where(sizes > _EQUAL, sizes, _COARSEST).min(axis=0)
-        finest = np.minimum.accumulate(np.append(self.finest, np.maximum(sizes, 0.5 * FLOOR)))
-        moving = self._moving
-        for k in np.flatnonzero(ended).tolist():
-            ends = (0.0, 0, moved[k], took[k]), (0.0, 0, step[k - 1], span[k - 1])
-            if self.limits.least_speed(*ends, finest[k - 1]):
-                return False
-            where = float(positions[rows[k - 2]]) if k > 1 else position
-            moving = where, int(changed[k - 1]), float(moved[k]), int(took[k])
-        usual = 0.5 * (span[1:-1] + span[:-2])
-        regular = usual <= LONGEST_NS
-        for each in (span[1:-1], np.diff(changed)):
-            regular &= np.abs(each - usual) <= REGULAR * usual
-        regular &= np.abs(steps - step[1:-1]) <= self.limits.even_step(usual)
-        regular &= np.abs(steps) <= self.limits.speed * 1e-9 * np.diff(changed)
-        for k in np.flatnonzero(~regular).tolist():
-            ends = (
-                (0.0, int(changed[k]), float(step[k + 1]), int(span[k + 1])),
-                (0.0, 0, float(step[k]), int(span[k])),
-            )
-            low, high = self.limits.reach(int(when[k]), int(until[k]), *ends, float(finest[k]))
-            if not low <= steps[k] <= high:
-                return False
-        position, self._moving = float(positions[-1]), moving
-        if len(rows):
-            before = float(positions[rows[-2]]) if len(rows) > 1 else self._last[0]
-            self._former = (before, int(changed[-2]), float(step[-2]), int(span[-2]))
-        self._last = (position, int(changed[-1]), float(step[-1]), int(span[-1]))
-        self._stamp, self.finest = int(stamps[-1]), float(finest[-1])
-        self._look_always()
-        return True
+        found = None
+        if not self._doubted:
+            known = self._last, self._former, self._moving, self._stamp, self.finest
+            found = all_in_reach(Motion(*known), self.limits, stamps, positions)
+        if found:
+            self._last, self._former, self._moving, self._stamp, self.finest = found
+            self._look_always()
+        elif fresh:
+            self.reset()
+        return bool(found)
 
     def _look_always(self) -> None:
         self._even = -1.0, 0.0, 0, 0
@@ -243,10 +173,10 @@ class Plausibility:
             return self._doubt(position, stamp)
         self._doubted.clear()
         for size in (abs(step), abs(step - last_step)):
-            if _EQUAL < size < self.finest:
+            if EQUAL < size < self.finest:
                 self.finest = max(size, 0.5 * FLOOR)
         span = stamp - changed
-        if self._stamp - changed > _STALEST_NS:  # it stood until then
+        if self._stamp - changed > STALEST_NS:  # it stood until then
             span = stamp - self._stamp or span
         if not span:
             self._last = position, changed, last_step + step, last_span
@@ -260,7 +190,7 @@ class Plausibility:
             if shortest <= span <= longest:
                 # A step that differs tells of the resolution, as long as that is coarse.
                 known = self.finest == 0.5 * FLOOR
-                even = self.limits.even_step(usual) if known else _EQUAL
+                even = self.limits.even_step(usual) if known else EQUAL
                 if self.period:
                     even = min(even, 0.25 * self.period)
                 most = self.limits.speed * shortest * 1e-9
@@ -273,7 +203,7 @@ class Plausibility:
         A rotor that has turned fast cannot stand at once.
         """
         held = stamp - self._last[1]
-        if held > _STALEST_NS:
+        if held > STALEST_NS:
             time = held * 1e-9 - STALEST
             if speed := self.limits.least_speed(self._last, self._former, self.finest):
                 way = speed * time - 0.5 * self.limits.acceleration * time * time
@@ -305,27 +235,35 @@ class Plausibility:
 
     def _doubt(self, position: float, stamp: int) -> Belief:
         """Note a reading that is out of reach, and see whether it agrees with those before."""
-        self._doubted = [*self._doubted[1 - AGREEING :], (stamp, position)]
-        if len(self._doubted) < AGREEING:
+        self._doubted = [*self._doubted[1 - _AGREEING :], (stamp, position)]
+        if len(self._doubted) < _AGREEING:
             return Belief.IMPLAUSIBLE
-        found = agreement(self._doubted, self.limits, self.finest, self.period)
-        if not found:
+        times, positions = zip(*self._doubted, strict=True)
+        spans = [(b - a) * 1e-9 for a, b in pairwise(times)]
+        steps = [self._wrapped(b - a) for a, b in pairwise(positions)]
+        stale = min(STALEST, max(spans))
+        noise = max(FLOOR, 2.0 * self.finest)
+        total = sum(spans)
+        if total < 0.0:
             return Belief.IMPLAUSIBLE
-        speed, step, span, stale, within = found
-        began, where = self._doubted[0]
-        first = self._wrapped(where - self._last[0])
-        elapsed = (began - (self._stamp if first else self._last[1])) * 1e-9
+        speed = sum(steps) / total if total else 0.0
+        slack = noise + self.limits.acceleration * total * total
+        uneven = max(abs(s - speed * t) for s, t in zip(steps, spans, strict=True))
+        within = all(
+            abs(s) <= self.limits.speed * (t + stale) + noise
+            for s, t in zip(steps, spans, strict=True)
+        )
+        if uneven > slack + abs(speed) * stale or not (within or total):
+            return Belief.IMPLAUSIBLE
+        first = self._wrapped(positions[0] - self._last[0])
+        elapsed = (times[0] - (self._stamp if first else self._last[1])) * 1e-9
         before = self._speed()
-        way = abs(speed) * (elapsed + stale) + max(FLOOR, 2.0 * self.finest)
+        way = abs(speed) * (elapsed + stale) + noise
         continuous = first * speed >= 0.0 and abs(first) <= way and not self.period
         if abs(speed) > self.limits.speed:
             self.seen_speed = abs(speed)
             self.limits = self.limits._replace(speed=_MARGIN * abs(speed))
-        moved = self._last[2] != 0.0
-        motion = self._former if moved else self._moving
-        if not self.period and goes_on(
-            motion, began, where, speed, self.limits, self.finest, stood=not moved
-        ):
+        if self._goes_on(times[0], positions[0], speed):
             continuous = True
         elif continuous:
             seen = abs(speed - before) / max(elapsed + stale, 1e-9)
@@ -335,15 +273,32 @@ class Plausibility:
                     self.limits = self.limits._replace(acceleration=_MARGIN * seen)
         else:
             self.jumps += 1
-            self.jump = Jump(began, self._wrapped(first - before * elapsed))
+            self.jump = Jump(times[0], self._wrapped(first - before * elapsed))
         last, finest = self._last, self.finest
         self._restart(position, stamp)
         self.finest = finest
         if continuous and not speed:
             self._moving = last
-        if span:
-            self._last = position, stamp, step, span
+        if spans[-1]:
+            self._last = position, stamp, steps[-1], times[-1] - times[-2]
         return Belief.BELIEVED if continuous else Belief.JUMP
+
+    def _goes_on(self, stamp: int, position: float, speed: float) -> bool:
+        """Whether a motion at this speed continues that before the last believed reading.
+
+        The last one then was wrong itself, or a driver repeated it while the rotor turned on.
+        """
+        moved = self._last[2]
+        before, since, step, span = self._former if moved else self._moving
+        time = (stamp - since) * 1e-9
+        if self.period or not (step and span) or (time > _LONGEST_REPEAT and not moved):
+            return False
+        former = step / (span * 1e-9)
+        change = _STEADY * abs(former) + (self.limits.acceleration * time if moved else 0.0)
+        way, stale = 0.5 * (former + speed) * time, min(STALEST, 1.25e-9 * span)
+        uncertain = max(FLOOR, 2.0 * self.finest) + max(abs(former), abs(speed)) * stale
+        uncertain += _REPEATED * abs(way) + 0.25 * change * time
+        return abs(speed - former) <= change and abs(position - before - way) <= uncertain
 
     def _wrapped(self, step: float) -> float:
         return math.remainder(step, self.period) if self.period else step

@@ -7,18 +7,12 @@ or early, and drivers repeat a reading until the next.
 
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from gear_kinematics.wire.batches import Array, once_for_joints
-
 STALEST = 0.01
 """s; a reading is at most so much, or an interval if that is less, older than its stamp says."""
 FLOOR = 0.05
 """rad: noise of any encoder, and what two successive steps may always differ by."""
 REGULAR = 1.0 / 3.0
 """Share of the usual time between readings by which it may vary in `RotorLimits.even_step`."""
-LONGEST_NS = 12_000_000
-"""Between readings for which a look at the step alone may be enough."""
 _UNEVEN = 0.25  # of a speed: what it may differ by, as readings are older than their stamps
 
 Reading = tuple[float, int, float, int]
@@ -88,30 +82,3 @@ class RotorLimits(NamedTuple):
         high = min(way, max(0.0, min(self.speed, fast) * time + gained))
         low = max(-way, min(0.0, max(-self.speed, slow) * time - gained))
         return low - noise, high + noise
-
-
-@once_for_joints
-def regular_bounds(
-    stamps: Array, since: int, last_span: int, former_span: int, limits: RotorLimits
-) -> tuple[Array, Array] | None:
-    """Return by how much each step may differ from the last one, and its most, rad, each (n,).
-
-    Args:
-        stamps: of the readings, (n,), ns.
-        since: stamp of the reading before, ns.
-        last_span: the time from one reading to the next until then, ns.
-        former_span: the one before that, ns.
-        limits: those of the rotor.
-
-    Returns:
-        None if the times between the readings are not regular.
-    """
-    spans = np.diff(stamps, prepend=since)
-    former = np.concatenate([[former_span, last_span], spans])
-    usual = 0.5 * (former[1:-1] + former[:-2])
-    regular = (usual <= LONGEST_NS) & (spans > 0)
-    for each in (former[1:-1], spans):
-        regular &= np.abs(each - usual) <= REGULAR * usual
-    if not regular.all():
-        return None
-    return limits.even_step(usual), limits.speed * 1e-9 * spans

@@ -1,0 +1,140 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Follows the motion of a rotor over many readings at once, as far as each is in its reach."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.state.reach import FLOOR, REGULAR, STALEST, Reading, RotorLimits
+from gear_kinematics.wire.batches import Array, once_for_joints
+
+COARSEST = TURN / 6.0
+"""rad; what a Hall sensor of one pole pair resolves."""
+EQUAL = 1e-9
+"""rad, below which steps differ by rounding alone."""
+STALEST_NS = round(STALEST * 1e9)
+LONGEST_NS = 12_000_000
+"""Between readings for which a look at the step alone may be enough."""
+
+
+class Motion(NamedTuple):
+    """The latest believed readings; see `Plausibility`."""
+
+    last: Reading
+    former: Reading
+    moving: Reading
+    stamp: int  # ns, of the last one with the last position
+    finest: float  # rad
+
+
+def all_in_reach(
+    known: Motion, limits: RotorLimits, stamps: Array, positions: Array
+) -> Motion | None:
+    """Take further readings in order of time, as `Plausibility.judge` takes them one by one.
+
+    Args:
+        known: the motion before.
+        limits: those of the rotor.
+        stamps: of the readings, (n,), ns, n > 0.
+        positions: (n,), rad.
+
+    Returns:
+        The motion with them; None if not each of them would be believed at once.
+    """
+    if found := _even(known, limits, stamps, positions):
+        return found
+    position, since, *last = known.last
+    *_, former_step, former_span = known.former
+    former, moving = known.former, known.moving
+    steps = np.diff(positions, prepend=position)
+    rows = np.flatnonzero(steps)
+    when, steps = stamps[rows], steps[rows]
+    changed = np.concatenate([[since], when])
+    until = np.append(np.concatenate([[known.stamp], stamps[:-1]])[rows], stamps[-1])
+    stood = np.append(False, until - changed > STALEST_NS)
+    # The step and the span up to each position; none after a standstill.
+    moved = np.concatenate([[former_step, last[0]], steps])
+    spans = np.diff(changed)
+    started = stood[1:-1] & (when > until[:-1])
+    spans[started] = (when - until[:-1])[started]
+    took = np.concatenate([[former_span, last[1]], spans])
+    ended = stood & (moved != 0.0)
+    step, span = np.where(ended, 0.0, moved), np.where(ended, 0, took)
+    # Steps of the same stamp, which are added up, and abrupt stops are left to `judge`.
+    if np.any(when == changed[:-1]):
+        return None
+    sizes = np.abs([steps, steps - step[1:-1]])
+    sizes = np.where(sizes > EQUAL, sizes, COARSEST).min(axis=0)
+    finest = np.minimum.accumulate(np.append(known.finest, np.maximum(sizes, 0.5 * FLOOR)))
+    for k in np.flatnonzero(ended).tolist():
+        ends = (0.0, 0, moved[k], took[k]), (0.0, 0, step[k - 1], span[k - 1])
+        if limits.least_speed(*ends, finest[k - 1]):
+            return None
+        where = float(positions[rows[k - 2]]) if k > 1 else position
+        moving = where, int(changed[k - 1]), float(moved[k]), int(took[k])
+    usual = 0.5 * (span[1:-1] + span[:-2])
+    regular = usual <= LONGEST_NS
+    for each in (span[1:-1], np.diff(changed)):
+        regular &= np.abs(each - usual) <= REGULAR * usual
+    regular &= np.abs(steps - step[1:-1]) <= limits.even_step(usual)
+    regular &= np.abs(steps) <= limits.speed * 1e-9 * np.diff(changed)
+    for k in np.flatnonzero(~regular).tolist():
+        ends = (
+            (0.0, int(changed[k]), float(step[k + 1]), int(span[k + 1])),
+            (0.0, 0, float(step[k]), int(span[k])),
+        )
+        low, high = limits.reach(int(when[k]), int(until[k]), *ends, float(finest[k]))
+        if not low <= steps[k] <= high:
+            return None
+    if len(rows):
+        before = float(positions[rows[-2]]) if len(rows) > 1 else position
+        former = before, int(changed[-2]), float(step[-2]), int(span[-2])
+    latest = float(positions[-1]), int(changed[-1]), float(step[-1]), int(span[-1])
+    return Motion(latest, former, moving, int(stamps[-1]), float(finest[-1]))
+
+
+def _even(known: Motion, limits: RotorLimits, stamps: Array, positions: Array) -> Motion | None:
+    """Take readings as `all_in_reach`, if the rotor moved on in even steps and regular times."""
+    position, since, last, last_span = known.last
+    if known.stamp - since > STALEST_NS or known.finest > 0.5 * FLOOR or len(stamps) == 1:
+        return None
+    bounds = _bounds(stamps, since, last_span, known.former[3], limits)
+    steps = np.diff(positions, prepend=position)
+    if not bounds or not steps.all():
+        return None
+    evenness, most = bounds
+    changes = np.diff(steps, prepend=last)
+    if not ((np.abs(changes) <= evenness) & (np.abs(steps) <= most)).all():
+        return None
+    earlier, before, now = [since, *stamps[-3:].tolist()][-3:]
+    former = float(positions[-2]), before, float(steps[-2]), before - earlier
+    latest = float(positions[-1]), now, float(steps[-1]), now - before
+    return Motion(latest, former, known.moving, now, known.finest)
+
+
+@once_for_joints
+def _bounds(
+    stamps: Array, since: int, last_span: int, former_span: int, limits: RotorLimits
+) -> tuple[Array, Array] | None:
+    """Return by how much each step may differ from the last one, and its most, rad, each (n,).
+
+    Args:
+        stamps: of the readings, (n,), ns.
+        since: stamp of the reading before, ns.
+        last_span: the time from one reading to the next until then, ns.
+        former_span: the one before that, ns.
+        limits: those of the rotor.
+
+    Returns:
+        None if the times between the readings are not regular.
+    """
+    spans = np.diff(stamps, prepend=since)
+    former = np.concatenate([[former_span, last_span], spans])
+    usual = 0.5 * (former[1:-1] + former[:-2])
+    regular = (usual <= LONGEST_NS) & (spans > 0)
+    for each in (former[1:-1], spans):
+        regular &= np.abs(each - usual) <= REGULAR * usual
+    if not regular.all():
+        return None
+    return limits.even_step(usual), limits.speed * 1e-9 * spans
