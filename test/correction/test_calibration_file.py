@@ -111,6 +111,11 @@ def test_file_says_what_its_numbers_are():
         ({'gear_ratio': '1/0'}, "gear_ratio must be an exact ratio such as '-19' or '1457/26'"),
         ({'gear_ratio': '0'}, 'gear_ratio must be an exact ratio'),
         ({'orders': [3]}, 'orders[0] must have named values, not 3'),
+        ({'orders': 3}, 'orders must be a list of any length, not 3'),
+        (
+            {'spans': {'speed': [1.0], 'torque': None, 'angle': [0.0, 1.0], 'time': 1.0}},
+            'spans.speed must be a list of 2 numbers, not [1.0]',
+        ),
         ({'orders': [order(cycles='1/99999989')]}, 'must repeat within 67108864 rotor turns'),
         ({'orders': [order(cos=3.0, sin=-1.0)]}, "an error of 3.16 rad is no gear's"),
         ({'hysteresis': [{'radius': 0.0, 'coefficient': 1.0}]}, 'a radius of the hysteresis must'),

@@ -25,6 +25,7 @@ GOOD = {'ring_teeth': 80, 'satellite_teeth': 76, 'eccentricity': 1e-3, 'branches
         ({'ring_teeth': -80}, ['ring_teeth must be at least 1, not -80']),
         ({'ring_teeth': 80.0}, ['ring_teeth must be an integer, not 80.0']),
         ({'satellite_teeth': '76'}, ["satellite_teeth must be an integer, not '76'"]),
+        ({'satellite_teeth': True}, ['satellite_teeth must be an integer, not True']),
         ({'satellite_teeth': 81}, ['satellite_teeth (81) must be less than ring_teeth (80)']),
         ({'eccentricity': 0.0}, ['eccentricity must be greater than 0, not 0.0']),
         ({'eccentricity': math.nan}, ['eccentricity must be finite, not nan']),

@@ -58,6 +58,8 @@ def test_a_new_file_begins_with_its_head(tmp_path):
     add_actuators(path, ELBOW, ['# An arm.'])
     assert path.read_text('utf-8').startswith('# An arm.\n/**:\n')
     assert [*load_actuators(path)] == ['elbow']
+    with pytest.raises(ConfigError, match=r'none/arm\.yaml: No such file or directory'):
+        add_actuators(tmp_path / 'none/arm.yaml', ELBOW, [])
 
 
 @pytest.mark.parametrize(

@@ -142,6 +142,7 @@ REFUSED = [
     ('preload', 5e-324, ('0', '1e-06')),
     ('shaft_stiffness', 1e-300, ('0', '0.001')),
     ('branch_stiffness', [3000.0, 1e-300], ('0', '0.001')),
+    ('branch_stiffness', [1.0, 2.0, 3.0], ('one or two values of at least 0',)),
     ('a.cam_phase', 7.0, ('-6.28', '6.28')),
     ('b.axial_position', math.nan, ('-10.0', '10.0')),
 ]
@@ -303,6 +304,7 @@ def test_every_way_to_write_a_number_in_a_node_file_is_read(tmp_path, number):
         (b'a: &x 1\nb: *x', 'aliases are not supported in line 2'),
         (b'a: !!float 10', "'tag:yaml.org,2002:float' has no effect before ROS Lyrical"),
         (b'a: !!set {}', "'tag:yaml.org,2002:set' has no effect before ROS Lyrical"),
+        (b'%TAG ! tag:x,2000:\n---\na: 1', '%TAG is not supported'),
         (b'[1, 2]', 'no ros__parameters in it'),
         (b'/**: {ros__parameters: 5}', 'no ros__parameters in it'),
         (b'a b: {ros__parameters: {ring_teeth: 80}}', '/a b is not a valid node name'),
