@@ -7,7 +7,8 @@ from itertools import count, islice, product
 
 import numpy as np
 import pytest
-from gear_recordings import Gear, creep, quantised, ramps
+from gear_recordings import Gear, creep, ramps
+from simulated_encoders import stepped
 
 from gear_kinematics.measurement.figures import GearFigures, gear_figures
 from gear_kinematics.measurement.loops import RampError, find_ramps
@@ -62,7 +63,7 @@ def recorded(angle, noise: float, seed: int):
     """Add noise to the torque and quantise the angle, from a zero of the encoder that differs."""
     generator = np.random.default_rng(seed)
     torque = TORQUE + noise * generator.standard_normal(len(TORQUE))
-    return torque, quantised(angle + generator.uniform(0.0, STEP), STEP)
+    return torque, stepped(angle + generator.uniform(0.0, STEP), STEP)
 
 
 @pytest.mark.parametrize('name', GEARS)

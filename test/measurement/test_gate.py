@@ -8,6 +8,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from gear_recordings import Gear, creep, ramps, write_csv
+from simulated_joint import with_play
 
 from gear_kinematics.measurement.answer import Limits, answer
 from gear_kinematics.measurement.calibration import fit
@@ -68,10 +69,8 @@ def test_output_that_is_computed_from_the_rotor_is_named(clean, gate, decimals, 
 def test_a_gear_whose_only_error_is_its_play_is_not_taken_for_computed(gate):
     time = np.arange(3000) * 0.01
     ideal = 4.0 * np.sin(0.4 * time)
-    output, play = np.zeros(3000), math.radians(0.1)
-    for k, angle in enumerate(ideal):
-        output[k] = min(max(output[k - 1], angle - play / 2), angle + play / 2)
-    _, found = gate(np.column_stack([time, -19.0 * ideal, output]))
+    play = math.radians(0.1)
+    _, found = gate(np.column_stack([time, -19.0 * ideal, with_play(ideal, play)]))
     report = measure(found, NodeParameters.load())
     assert answer(report).what is not Observation.COMPUTED
     (check,) = Limits(lost_motion=play / 2).judge(report)

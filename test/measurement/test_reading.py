@@ -7,8 +7,9 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from gear_recordings import Gear, Samples, creep, quantised, ramps, write_csv, write_recording
+from gear_recordings import Gear, Samples, creep, ramps, write_csv, write_recording
 from live import rotor_bytes
+from simulated_encoders import stepped
 
 from gear_kinematics.bag import BagError, TopicMessages
 from gear_kinematics.measurement import dialects, reading
@@ -239,7 +240,7 @@ def test_steps_can_be_given(tmp_path, config, angle):
 
 def ramps_on_rotor(path, angle, **changes):
     stamps = START + np.arange(len(angle)) * 2 * MS
-    rotor = Samples(stamps, quantised(-19.0 * angle, TURN / 2**14), TORQUE / -19.0)
+    rotor = Samples(stamps, stepped(-19.0 * angle, TURN / 2**14), TORQUE / -19.0)
     return write_recording(path, rotor._replace(**changes))
 
 

@@ -3,8 +3,8 @@
 
 import numpy as np
 import pytest
-from gear_recordings import Samples, quantised, write_csv, write_recording
-from simulated_encoders import START, TURN, Drive, even_strokes
+from gear_recordings import Samples, write_csv, write_recording
+from simulated_encoders import START, TURN, Drive, even_strokes, stepped
 
 from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.reading import read
@@ -31,9 +31,9 @@ def output_of(ideal: np.ndarray) -> np.ndarray:
 def bag_of(path, ideal, *, rotor_counts=2**16, output_counts=2**20, efforts=None, offset=1.0):
     """Record the rotor at 1 kHz, and a single-turn output encoder a third of a sample later."""
     stamps = START + np.arange(len(ideal)) * MS
-    rotor = Samples(stamps, quantised(-19.0 * ideal, TURN / rotor_counts), efforts)
+    rotor = Samples(stamps, stepped(-19.0 * ideal, TURN / rotor_counts), efforts)
     later = ideal[:-1] + np.diff(ideal) / 3.0
-    measured = quantised((output_of(later) + offset) % TURN, TURN / output_counts)
+    measured = stepped((output_of(later) + offset) % TURN, TURN / output_counts)
     return write_recording(path, rotor, Samples(stamps[:-1] + MS // 3, measured))
 
 

@@ -56,10 +56,6 @@ def ramps(*tests: tuple[float, int]) -> np.ndarray:
     return np.concatenate([*parts, [0.0]])
 
 
-def quantised(values: np.ndarray, step: float) -> np.ndarray:
-    return np.round(values / step) * step
-
-
 def write_csv(path: Path, **columns: Sequence[float]) -> Path:
     with path.open('w', newline='', encoding='utf-8') as file:
         writer = csv.writer(file)

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from gear_recordings import Samples, quantised, write_csv, write_recording
-from simulated_encoders import START, TURN
+from gear_recordings import Samples, write_csv, write_recording
+from simulated_encoders import START, TURN, stepped
 from twins import PutIn
 
 from gear_kinematics.commands.cli import main
@@ -124,7 +124,7 @@ def ramps(put_in: PutIn, simulate: Simulate, folder: Path) -> list[Figure]:
     noise = NOISE * np.random.default_rng(1).standard_normal(len(bench.torque))
     file = write_csv(
         folder / 'ramps.csv',
-        angle_rad=quantised(np.array(bench.angle), STEP),
+        angle_rad=stepped(np.array(bench.angle), STEP),
         torque_Nm=bench.torque + noise,
     )
     [found] = report('lost-motion', file)['recordings']
