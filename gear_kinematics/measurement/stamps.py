@@ -27,10 +27,6 @@ class ClockStep(NamedTuple):
     stamp: int
     """The last one of the old time, ns."""
 
-    def __str__(self) -> str:
-        """Say what happened, and when."""
-        return f'set back by {self.size / SECOND:.3f} s at {self.stamp}'
-
 
 class RestoredClock:
     """Gives the messages of a topic the stamps of a clock that is never set back.
