@@ -15,7 +15,7 @@ trap 'rm -rf "$folder"' EXIT
 python3 -m venv "$folder/venv"
 "$folder/venv/bin/pip" install --quiet --disable-pip-version-check urdf-usd-converter==0.3.4 mujoco-usd-converter==0.8.0
 python3 -m venv "$folder/newton"
-"$folder/newton/bin/pip" install --quiet --disable-pip-version-check newton==1.8.0 newton-usd-schemas==0.6.0 usd-core warp-lang==1.19.0
+"$folder/newton/bin/pip" install --quiet --disable-pip-version-check newton==1.8.0 newton-usd-schemas==0.6.0 usd-core==26.11 warp-lang==1.19.0
 cd "$folder"
 cat > gear.urdf <<'URDF'
 <robot name="gear">

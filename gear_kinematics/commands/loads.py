@@ -17,6 +17,7 @@ from gear_kinematics.measurement.loads.document import WORK, document
 from gear_kinematics.measurement.loads.recorded import LoadTask
 from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.report.document import Verdict, printable
+from gear_kinematics.wire.nearest import listed
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -83,4 +84,7 @@ def _configs(options: argparse.Namespace, bag: Path) -> list[NodeParameters]:
     if is_table(bag):
         return [arguments.load_config(options, bag)]
     configs = [*arguments.load_configs(options, bag).values()]
-    return [config for config in configs if not config.gear_ratio] or configs[:1]
+    known = [config for config in configs if not config.gear_ratio]
+    if known and (others := [each.actuator for each in configs if each.gear_ratio]):
+        complain(f'{bag}: no loads of {listed(others)}, of which only the ratio is known')
+    return known or configs[:1]
