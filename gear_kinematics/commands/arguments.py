@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from gear_kinematics.kinematics.gear_ratio import GearRatio
 from gear_kinematics.parameters import NODE, PARAMETERS, NodeParameters, default_config
 from gear_kinematics.parameters.arm import chosen, load_actuators
 
@@ -198,3 +199,22 @@ def in_bag_folder(bag: Path, name: str) -> Path | None:
     """Find the file with a name in the folder of a bag, if there is one."""
     path = (bag if bag.is_dir() else bag.parent) / name
     return path if path.is_file() else None
+
+
+def add_ratio(parser: argparse.ArgumentParser) -> None:
+    """Add the option that replaces the parameter `gear_ratio`; `load_config` applies it."""
+    group(parser, 'gear').add_argument(
+        '--ratio',
+        type=ratio_text,
+        metavar='I',
+        help='exact gear ratio, such as -19 or 1457/26 (default: the parameter gear_ratio, or '
+        'from the teeth; gearkin commission finds it)',
+    )
+
+
+def ratio_text(text: str) -> str:
+    """Check a gear ratio, and write it as the parameter `gear_ratio`."""
+    try:
+        return str(GearRatio.parse(text))
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error

@@ -8,7 +8,6 @@ from pathlib import Path
 from gear_kinematics.bag import Bag
 from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, only_joint, outputs_of
 from gear_kinematics.commands import ExitCode, arguments, bags
-from gear_kinematics.commands.encoders import add_ratio
 from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.parameters.arm import labelled
 from gear_kinematics.report.document import printable
@@ -21,7 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('out', type=Path, metavar='OUT', help='folder to create')
     bags.add_rotor(parser)
     arguments.add_config(parser, actuator=arguments.ALL)
-    add_ratio(parser)
+    arguments.add_ratio(parser)
     bags.add_calibration(parser)
     output = arguments.group(parser, 'output')
     output.add_argument(

@@ -47,19 +47,8 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: boo
     arguments.group(parser, 'gear')  # before the columns, also where the command adds to it
     if configured:
         arguments.add_config(parser)
-        add_ratio(parser)
+        arguments.add_ratio(parser)
     add_columns(parser, *roles)
-
-
-def add_ratio(parser: argparse.ArgumentParser) -> None:
-    """Add the option that replaces the parameter `gear_ratio`; `load_config` applies it."""
-    arguments.group(parser, 'gear').add_argument(
-        '--ratio',
-        type=ratio_text,
-        metavar='I',
-        help='exact gear ratio, such as -19 or 1457/26 (default: the parameter gear_ratio, or '
-        'from the teeth; gearkin commission finds it)',
-    )
 
 
 def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
@@ -101,7 +90,7 @@ def add_known_ratio(
     if several:
         known.add_argument('--ratio', nargs='+', type=_named_ratio, metavar='I', help=purpose)
     else:
-        known.add_argument('--ratio', type=ratio_text, metavar='I', help=purpose)
+        known.add_argument('--ratio', type=arguments.ratio_text, metavar='I', help=purpose)
     known.add_argument(
         '--teeth',
         type=teeth,
@@ -176,12 +165,4 @@ def say_columns(recording: Recording, options: argparse.Namespace) -> None:
 def _named_ratio(text: str) -> tuple[str, GearRatio]:
     """Parse a ratio, perhaps with the name of a joint before it: `shoulder=-101`."""
     name, _, ratio = text.rpartition('=')
-    return name, GearRatio.parse(ratio_text(ratio))
-
-
-def ratio_text(text: str) -> str:
-    """Check a gear ratio, and write it as the parameter `gear_ratio`."""
-    try:
-        return str(GearRatio.parse(text))
-    except ValueError as error:
-        raise argparse.ArgumentTypeError(str(error)) from error
+    return name, GearRatio.parse(arguments.ratio_text(ratio))

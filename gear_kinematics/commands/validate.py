@@ -9,7 +9,6 @@ from pathlib import Path
 
 from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.commands import ExitCode, arguments, bags
-from gear_kinematics.commands.encoders import add_ratio
 from gear_kinematics.commands.output import complain, warn_of_shared_memory
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.parameters import NODE
@@ -36,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         f'recording of several, such as /left/{NODE} (default: %(default)s)',
         actuator=arguments.ALL,
     )
-    add_ratio(parser)
+    arguments.add_ratio(parser)
     bags.add_calibration(parser)
     limits = arguments.group(parser, 'limits')
     for unit, quantity in QUANTITIES.items():
