@@ -47,8 +47,8 @@ _LAG = 6e-5
 """Standard deviation, s², of the lag by the acceleration: inertia over stiffness of the output, or
 1/ω² of one that oscillates at 20 Hz on the springs of its gear, as arms of robots do."""
 _SLOPE, _WAY, _LATE = 0, 2, 3  # columns of the fit; 1 is the offset
-_LEAST_NOISE = 1e-9
-"""rad: less than the step of any encoder."""
+_LEAST_NOISE = 1e-7
+"""rad: the step of an encoder of 26 bits. With less, rounding alone makes ratios wrong."""
 _ROUNDS = 5
 """Estimates of the noise, each by what the one before left; with 3, ± is 50 % off."""
 
@@ -77,6 +77,10 @@ class EncoderFit:
         kept = kept[:: -(-len(kept) // _MOST) or 1]
         if len(kept) < 2 * _BLOCKS:
             raise RecordingError(f'{len(kept)} samples in motion are too few')
+        step = float(np.median(np.diff(time)))
+        share = late / step % 1.0 if step else 0.0
+        self._between = 0.5 * share * (1.0 - share) * step**2
+        """s², by which times the acceleration the angle between two samples is not their mean."""
         around = (time[kept] - late + k * STEP for k in (-2, -1, 0, 1, 2))
         first, early, at, after, last = (np.interp(when, time, rotor) for when in around)
         speed = slope * (after - early) / (2.0 * STEP)
@@ -120,7 +124,8 @@ class EncoderFit:
         curvature = NormalEquations(self._products[:, :-1, :-1])
         curvature.noise = self._equations.noise
         # Between samples the rotor is taken to move evenly: twice where there is a delay, too.
-        curved = period**2 / 4.0 / _LAG * curvature.solve(self._model, slice(1))
+        apart = max(period**2 / 4.0, self._between)
+        curved = apart / _LAG * curvature.solve(self._model, slice(1))
         parts = (
             self._equations.spreads(self._model)[_SLOPE],
             _ACCURACY,

@@ -177,3 +177,32 @@ def test_lost_motion_is_not_told_where_its_uncertainty_says_nothing(shared_path,
     report = measure(read(path, config, Sources(rotor_counts=4)), config)
     assert (report.transmission.lost_motion, report.transmission.reversals) == (None, None)
     assert answer(report).what is Observation.LOSS_NOT_TOLD
+
+
+@pytest.mark.parametrize(('drift', 'differ'), [(0.0, False), (0.01, True)])
+def test_loops_that_differ_by_more_than_their_width_tell_nothing(report_of, drift, differ):
+    """An angle that steps at random, as where it slips: 34′ beside a hysteresis of 2.3′."""
+    torque = ramps(*[(4.0, 200)] * 5)
+    angle = creep(Gear(play=0.0, stiffness=300.0, friction=0.1), torque)
+    steps = np.repeat(np.random.default_rng(1).normal(size=50), len(angle) // 50 + 1)
+    report = report_of(angle=angle + drift * steps[: len(angle)], torque=torque)
+    assert (answer(report).what is Observation.LOOPS_DIFFER) == differ
+
+
+@pytest.mark.parametrize(
+    ('amplitude', 'late', 'what', 'said'),
+    [
+        (2.0, 0.0, Observation.LOSES, []),
+        (2.0, 0.004, Observation.LOSES, [Observation.DELAY_TAKEN_OUT]),
+        (1e-3, 0.0, Observation.HARDLY_MOVES, []),  # rad, less than a reversal needs
+    ],
+)
+def test_delay_is_said_and_too_small_a_motion_tells_nothing(
+    report_of, amplitude, late, what, said
+):
+    time = np.arange(4000) * 0.005
+    rotor, output = (amplitude * np.sin(t) for t in (time, time - late))
+    error = 5e-5 * np.sin(19.0 * output)  # rad, once per turn of the rotor
+    report = report_of(time=time, rotor=-19.0 * rotor, output=output + error)
+    assert answer(report).what is what
+    assert [found.what for found in remarks(report)] == [*said, Observation.PLUS_MINUS]

@@ -46,6 +46,18 @@ def test_ratio_is_found_exactly(ratio, turns):
     assert not found.advice
 
 
+@pytest.mark.parametrize(
+    ('amplitude', 'period', 'late'),
+    [(0.5, 0.001, 0.004), (2.0, 0.005, 0.001), (6.0, 0.005, 0.002)],  # rad, s, s
+)
+def test_a_delay_of_encoders_without_noise_makes_no_ratio_wrong(amplitude, period, late):
+    """As from a simulation: the rotor is interpolated to the times before the delay."""
+    time = period * np.arange(4000)
+    rotor, output = (amplitude * np.sin(t) for t in (time, time - late))
+    found = estimate_ratio(-19.0 * rotor, output + 1e-4 * np.sin(5.0 * output), time)
+    assert abs(found.measured.value + 19.0) <= found.measured.expanded
+
+
 TRAVELS = 20, 60, 298, 450, 1800  # deg
 RATIOS = Fraction(-19), Fraction(36, 5), Fraction(101), Fraction(1457, 26)
 
