@@ -162,7 +162,7 @@ def find_contents(path: Path) -> Contents:
 
 
 class _Loader(Loader):
-    """Reads what recorders write of ten thousand topics or files."""
+    """Reads metadata that list ten thousand topics or files."""
 
     max_bytes = 2**22
     max_events = 400_000

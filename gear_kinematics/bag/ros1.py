@@ -30,7 +30,7 @@ _CONVERTED = {JOINT_STATE, POSE_ARRAY}
 
 
 class Ros1(Storage):
-    """A ROS 1 bag, of which joint states and poses are converted to CDR."""
+    """A ROS 1 bag, whose joint states and poses are converted to CDR."""
 
     def __init__(self, path: Path, limits: ReadLimits) -> None:
         super().__init__(limits)

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What is in a recording: its topics, their rates and gaps, and which part each plays."""
+"""The contents of a recording: its topics, with their rates, gaps and roles."""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple

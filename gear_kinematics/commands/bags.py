@@ -85,7 +85,7 @@ def load_calibration(
 def files_of(
     options: argparse.Namespace, configs: Mapping[str, NodeParameters], bag: Path | None
 ) -> dict[str, bytes]:
-    """Return parameters and calibrations as files that are found beside a new recording."""
+    """Return parameters and calibrations as files to keep beside a new recording."""
     files, used = dict[str, bytes](), list[NodeParameters]()
     for actuator, config in configs.items():
         name = f'{actuator}_{CALIBRATION}' if actuator else CALIBRATION

@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--output',
         default='calibration.yaml',
         metavar='FILE',
-        help='calibration to write (default: %(default)s); it replaces nothing but a calibration',
+        help='calibration to write (default: %(default)s); it replaces only a calibration',
     )
     output.add_argument(
         '--check',

@@ -61,7 +61,7 @@ def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
     group.add_argument(
         '--angle-unit',
         choices=ANGLE_UNITS,
-        help='unit of all angles (default: by name, or rad where nothing speaks against it)',
+        help='unit of all angles (default: by name, or rad unless the values contradict it)',
     )
     if 'torque' in roles:
         group.add_argument(
@@ -82,7 +82,7 @@ def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
 def add_known_ratio(
     parser: argparse.ArgumentParser, purpose: str, *, several: bool = False
 ) -> argparse._MutuallyExclusiveGroup:
-    """Add the options `--ratio` and `--teeth`, of which `known_ratio` returns the ratio.
+    """Add the options `--ratio` and `--teeth`; `known_ratio` returns their ratio.
 
     With `several`, the ratio is a list of ratios with the names of joints, '' for all.
     """

@@ -21,7 +21,7 @@ _REPLACEABLE = {'-o': ('calibration', is_calibration)}
 
 
 def add_force(parser: argparse.ArgumentParser) -> None:
-    """Add the option to replace files that are not reports."""
+    """Add the option to replace files other than reports."""
     group(parser, 'output').add_argument(
         '--force',
         action='store_true',

@@ -58,7 +58,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 def _questions(bag: Bag, summary: Summary, joints: Sequence[str]) -> Iterator[str]:
     """Yield what seems to be wrong with the messages of the rotors whose joints are known.
 
-    Of joints that are not given, the only one of a topic is known.
+    Without a given joint, the only joint of a topic is taken.
     """
     for topic in summary.topics:
         if topic.part != 'rotor':

@@ -77,7 +77,7 @@ def joints_of_arm(joints: Sequence[Channel], topic: str) -> list[Channel]:
 
 
 def _candidates(joints: Sequence[Channel], given: Channel, base: str) -> list[Channel]:
-    """Find the joints that are given, on their usual topic or else on those of other packages.
+    """Find the given joints, on their usual topic or else on those of other packages.
 
     Topics of this package count only if something is given.
     """

@@ -86,5 +86,5 @@ def _configs(options: argparse.Namespace, bag: Path) -> list[NodeParameters]:
     configs = [*arguments.load_configs(options, bag).values()]
     known = [config for config in configs if not config.gear_ratio]
     if known and (others := [each.actuator for each in configs if each.gear_ratio]):
-        complain(f'{bag}: no loads of {listed(others)}, of which only the ratio is known')
+        complain(f'{bag}: no loads of {listed(others)}, for which only the ratio is known')
     return known or configs[:1]

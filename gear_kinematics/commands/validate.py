@@ -65,7 +65,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     bags.add_jobs(sources)
     add_report_forms(parser, junit=True)
-    arguments.add_verbose(parser, 'print all counts and errors, not only what was found')
+    arguments.add_verbose(parser, 'print all counts and errors, not only findings')
 
 
 def run(options: argparse.Namespace) -> ExitCode:

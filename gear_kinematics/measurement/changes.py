@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What differs between states of a gear, by recordings at one torque, and how surely.
+"""Differences between states of a gear, by recordings at one torque, and their certainty.
 
 Figures are positive and scatter in proportion to their values, so that logarithms are compared:
 Student's test, with one scatter for all groups.

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What the columns of a table mean: quantities and units by their names, or as they are given."""
+"""The meaning of a table's columns: quantities and units by their names, or as given."""
 
 import re
 import shlex

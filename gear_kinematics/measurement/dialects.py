@@ -61,7 +61,7 @@ def loaded(
 
 
 class _Layout(NamedTuple):
-    """What is where in a text."""
+    """The positions of names, units and numbers in a text."""
 
     separator: str
     point: str
@@ -75,7 +75,7 @@ class _Layout(NamedTuple):
 
 
 class _Rows(io.TextIOBase):
-    """One row of so many of a text, of which pandas need not parse the others."""
+    """One row in so many of a text, so that pandas need not parse the others."""
 
     def __init__(self, file: IO[str], every: int) -> None:
         self._file, self._every, self._skip = file, every, 0

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The formats of tables, and the libraries that read those that are no text.
+"""The formats of tables, and the libraries that read those that are not text.
 
 A table becomes a recording in steps, each of which has a file: `open_table` here finds what reads
 the format; `dialects` finds names, units and numbers in a text, whose `cells` are numbers, times

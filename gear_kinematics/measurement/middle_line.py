@@ -185,7 +185,7 @@ def backlash_of(
     a side agree, the spring is straight, and the angle between the lines is the backlash. Where
     they differ, it lies between what they give and what they extrapolate to. It has a lower bound
     only if the load hardly changes over it, and is never wider than the hysteresis. Ramps to which
-    the gear yields much more than to larger ones have not left a soft middle, all of which may be
+    the gear yields much more than to larger ones have not left a soft middle, which may all be
     backlash: that is bounded by the angle between small loads alone.
 
     Args:

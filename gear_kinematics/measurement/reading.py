@@ -198,7 +198,7 @@ def _measured(
 
 
 class _Columns:
-    """What the states of a topic say, batch by batch: of too many, one of every so many."""
+    """The values in a topic's states, batch by batch; too many are thinned out evenly."""
 
     def __init__(self, most: int) -> None:
         self._most, self._seen, self.every = most, 0, 1

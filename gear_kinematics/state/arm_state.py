@@ -30,7 +30,7 @@ _Parts = tuple[list[JointStateTemplate], list[float]]
 
 
 class ArmState:
-    """Distributes messages among the actuators of an arm, and joins what they publish.
+    """Distributes messages among the actuators of an arm, and joins their outputs.
 
     A node without `actuators` has one actuator, ''; it publishes what a `GearState` does.
     """

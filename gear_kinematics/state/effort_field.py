@@ -15,7 +15,7 @@ _SHEAR = 5e8  # Pa: where shafts of hardened steel yield
 
 
 class EffortField:
-    """Finds efforts of 0 that mean nothing: an effort that is 0 throughout a motion is none."""
+    """Finds meaningless efforts: an effort of 0 throughout a motion was not measured."""
 
     def __init__(self) -> None:
         self.real = False  # whether there was any but 0: from then on, a 0 is one

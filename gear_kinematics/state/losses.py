@@ -3,7 +3,7 @@
 
 
 class Losses:
-    """Counts the messages that are missing between those of a publisher that came.
+    """Counts the messages missing between those received from a publisher.
 
     Each publisher counts from 1: a lower number than the last is that of a new publisher.
     """

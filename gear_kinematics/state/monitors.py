@@ -25,7 +25,7 @@ _SOON = 0.1
 
 @dataclass(slots=True)
 class DriverFacts:
-    """What is known of the drivers on a topic, by all actuators alike."""
+    """Facts about the drivers on a topic, shared by all actuators."""
 
     since: float = field(default_factory=time.monotonic)  # from when on messages are awaited
     publishers: int = 0
@@ -35,7 +35,7 @@ class DriverFacts:
 
 @dataclass(slots=True)
 class Connections:
-    """What is known of a node's connections with others."""
+    """Facts about a node's connections with others."""
 
     rotor: DriverFacts = field(default_factory=DriverFacts)
     encoder: DriverFacts = field(default_factory=DriverFacts)

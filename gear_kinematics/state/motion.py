@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Follows the motion of a rotor over many readings at once, as far as each is in its reach."""
+"""Follows the motion of a rotor over many readings at once, while each is within its reach."""
 
 from typing import NamedTuple
 

@@ -26,7 +26,7 @@ _STEPS = 20  # of the encoder, at least, in a comparison
 
 
 class VelocityMeaning(StrEnum):
-    """What a field with velocities has."""
+    """The content of a field with velocities."""
 
     UNDECIDED = ''
     RIGHT = 'rad/s'

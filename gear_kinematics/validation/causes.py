@@ -12,7 +12,7 @@ _REMEDY = 'give the parameter file of the recorded node with --config'
 
 
 class FindingCause(Enum):
-    """What was found in a recording."""
+    """The cause of a finding in a recording."""
 
     # The messages of an output topic, and their fields
     NOTHING_COMPARED = 'no message could be compared'

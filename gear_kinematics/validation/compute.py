@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Compute the node's outputs for a recorded rotor topic into a new bag, without ROS."""
+"""Computes the node's outputs for a recorded rotor topic into a new bag, without ROS."""
 
 from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence

@@ -89,7 +89,7 @@ def test_where_only_one_gear_can_be_meant_the_actuators_are_named(arm, tmp_path)
 def test_loads_and_info_report_on_each_actuator(arm, tmp_path):
     source, file = arm
     done = gearkin_here('loads', source, '--config', file, '-v')
-    left_out = 'no loads of elbow, wrist, of which only the ratio is known'
+    left_out = 'no loads of elbow, wrist, for which only the ratio is known'
     assert (done.returncode, done.stderr) == (0, f'gearkin: {source}: {left_out}\n')
     lines = done.stdout.splitlines()
     assert {line[: len('states: shoulder: ')] for line in lines} == {'states: shoulder: '}
