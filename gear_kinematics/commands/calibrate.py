@@ -34,7 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--check',
         type=Path,
         metavar='FILE',
-        help='judge this calibration by other recordings than its own, and write none',
+        help='judge this calibration by other recordings, and write none',
     )
     arguments.add_verbose(parser, 'print tables and remarks in a pipe, too')
     add_report_forms(parser)

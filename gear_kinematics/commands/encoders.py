@@ -71,8 +71,8 @@ def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
             'the output',
         )
     of_rotor = (
-        "the rotor's encoder, or that of the angle column, for angles in counts, as in a column "
-        'motor_inc (default: from the readings)'
+        'the encoder of the rotor or of the angle column, for angles in counts, such as motor_inc '
+        '(default: from the readings)'
     )
     for name, encoder in ('rotor', of_rotor), ('output', 'the output encoder'):
         count, text = arguments.between(1, kind=int), f'steps per turn of {encoder}'

@@ -8,7 +8,7 @@ from gear_kinematics.commands.output import complain, warn_of_shared_memory
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    arguments.add_running(parser, 'the only one that runs', 'all')
+    arguments.add_running(parser, 'the only one running', 'all')
 
 
 def run(options: argparse.Namespace) -> ExitCode:

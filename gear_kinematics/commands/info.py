@@ -25,7 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     arguments.add_config(
         parser,
         default='none; its joints are examined',
-        actuator='examine only the joint of this one of the `actuators` in FILE (default: all)',
+        actuator='examine only the joint of this actuator in FILE (default: all)',
     )
     arguments.add_quiet(parser)
     arguments.add_verbose(parser, 'also list every topic with its type')

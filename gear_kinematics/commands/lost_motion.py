@@ -31,7 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='rated torque at the output (default: the amplitude of the largest ramps)',
     )
     limits = parser.add_argument_group(
-        'limits', 'exit code 1 where one is exceeded, or cannot be shown to hold'
+        'limits', 'exit code 1 if a limit is exceeded, or cannot be shown to hold'
     )
     for name in ('hysteresis', 'lost-motion', 'backlash'):
         text = f'greatest {name.replace("-", " ")}'

@@ -18,9 +18,7 @@ from gear_kinematics.wire.nearest import listed
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    arguments.add_config(
-        parser, actuator='print only this one of the `actuators` of an arm (default: all)'
-    )
+    arguments.add_config(parser, actuator='print only this actuator of an arm (default: all)')
     output = arguments.group(parser, 'output')
     output.add_argument(
         '--macro',

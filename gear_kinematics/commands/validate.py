@@ -55,7 +55,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     limits.add_argument(
         '--independent',
         action='store_true',
-        help='compare with the matrix method as well, whose code the node does not run',
+        help='compare with the matrix method as well, by code that the node does not run',
     )
     sources = arguments.group(parser, 'several recordings').add_mutually_exclusive_group()
     sources.add_argument(

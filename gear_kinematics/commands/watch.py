@@ -13,7 +13,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action='store_true',
         help='show text in the terminal, or lines in a pipe, instead of a page',
     )
-    arguments.add_running(parser, 'the first that runs', 'the first')
+    arguments.add_running(parser, 'the first one running', 'the first')
 
 
 def run(options: argparse.Namespace) -> ExitCode:
