@@ -61,7 +61,7 @@ def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
     group.add_argument(
         '--angle-unit',
         choices=ANGLE_UNITS,
-        help='unit of all angles (default: by name, or rad unless the values contradict it)',
+        help='unit of all angles (default: by name, or rad unless something contradicts it)',
     )
     if 'torque' in roles:
         group.add_argument(
