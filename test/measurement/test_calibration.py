@@ -71,6 +71,19 @@ def test_orders_are_found_with_their_amplitudes():
     assert '70.0 % of it within the 95 % interval, which is too narrow. Nothing is' in finding
 
 
+def test_an_interval_that_few_errors_exceed_by_far_does_not_hold():
+    simulated, _ = one_gear(replace(USUAL, load=0.0), duration=10.0)
+    rotor, count = simulated.rotor.copy(), len(simulated.rotor)
+    for row in range(count // 100, count - count // 20, count // 20):
+        rotor[row : row + count // 1000] = rotor[row]  # the driver repeats a reading
+    result = fit([recorded(simulated._replace(rotor=rotor), 0)], RATIO)
+    found = result.calibration.validation
+    assert found.rms_before > found.rms_after > result.calibration.half_width
+    assert found.coverage > 0.9
+    assert not result.helps
+    assert 'too narrow' in document(result, 'gear.yaml').sections[0].findings[0].text
+
+
 def test_play_is_found_with_its_width():
     simulated, _ = one_gear(replace(USUAL, load=0.0, backlash=3e-3, wind_up=0.0))
     result = fit([recorded(simulated, 0)], RATIO, MECHANISM)

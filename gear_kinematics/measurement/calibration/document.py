@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from gear_kinematics.measurement.calibration.check import Judgement
-from gear_kinematics.measurement.calibration.fit import LEAST_COVERAGE, Fit
+from gear_kinematics.measurement.calibration.fit import Fit, interval_holds
 from gear_kinematics.measurement.envelope import envelope
 from gear_kinematics.measurement.json_values import plain
 from gear_kinematics.measurement.recording import Array
@@ -37,7 +37,7 @@ def document(fit: Fit, target: str) -> Document:
     verdict = Verdict.PASS if fit.helps else Verdict.FAIL
     if fit.helps:
         what = Observation.ERROR_FALLS
-    elif errors.coverage < LEAST_COVERAGE and errors.rms_after < errors.rms_before:
+    elif errors.rms_after < errors.rms_before and not interval_holds(made):
         what = Observation.TOO_NARROW
     else:
         what = Observation.NO_CORRECTION

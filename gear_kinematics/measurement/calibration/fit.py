@@ -42,7 +42,8 @@ from gear_kinematics.share import version
 from gear_kinematics.statistics.uncertainty import Estimate, jackknife
 
 _FEWEST = 100  # samples of a recording
-LEAST_COVERAGE = 0.9  # of samples left out, by the interval that should have 95 % of them
+_LEAST_COVERAGE = 0.9  # of samples left out, by the interval that should have 95 % of them
+_WORTH = 0.5  # of the error without a correction: with less, errors beyond the interval are few
 _MARGIN = 0.1  # share of the span of speed and torque beyond which they are not calibrated
 
 
@@ -190,7 +191,7 @@ def _result(
         ),
     )
     found = calibration.validation
-    falls = found.rms_after < found.rms_before and found.coverage >= LEAST_COVERAGE
+    falls = found.rms_after < found.rms_before and interval_holds(calibration)
     return Fit(
         calibration,
         falls and model.helps(),
@@ -201,6 +202,13 @@ def _result(
         before,
         after,
     )
+
+
+def interval_holds(calibration: Calibration) -> bool:
+    """Whether the interval describes the errors left out, which do not lie far beyond it."""
+    found = calibration.validation
+    most = max(calibration.half_width, _WORTH * found.rms_before)
+    return found.coverage >= _LEAST_COVERAGE and found.rms_after <= most
 
 
 def _span(columns: Sequence[Array | None], margin: float) -> tuple[float, float] | None:
