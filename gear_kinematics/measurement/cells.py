@@ -32,6 +32,7 @@ def numbers(column: Any, point: str = '.') -> Any:
     if column.dtype.kind in 'iufb':
         return column.to_numpy()
     text = column.astype(str).str.strip().str.replace('\u2212', '-')
+    text = text.str.replace(r'(?<=\d) sec$', '', regex=True)  # as MATLAB writes durations
     text = text.str.replace(r"(?<=\d)[ '\u00a0\u202f](?=\d{3}\b)", '', regex=True)
     other = re.escape('.' if point == ',' else ',')
     marked = text[text.str.contains(other)]
@@ -48,7 +49,8 @@ def numbers(column: Any, point: str = '.') -> Any:
         of_day = text.where(text.str.fullmatch(_MOMENT.pattern))
         moments = pd.Timestamp(0) + pd.to_timedelta(of_day, errors='coerce')
     if not moments.notna().any():  # others, of which 1/2/2026 is in January
-        dates = text.where(text.str.match(r'\d\d?[./-]\d\d?[./-]\d{4} +\d\d?:\d\d'))
+        date = r'\d\d?[./-](\d\d?|[A-Za-z]{3})[./-]\d{4} +\d\d?:\d\d'
+        dates = text.where(text.str.match(date))
         day_first = dates.str.match(r'\d+\.').any()
         moments = pd.to_datetime(dates, dayfirst=day_first, utc=True, errors='coerce')
     moments = moments.dt.tz_localize(None)

@@ -235,7 +235,7 @@ def _unknown(role: str, words: Sequence[str]) -> str:
 
 def _unit(text: str) -> str:
     """A unit as `_UNITS` has it, if it is one of them."""
-    plain = re.sub(r'\s', '', text.lower().replace('μ', 'µ')).strip('[]')
+    plain = re.sub(r'\s|units?:', '', text.lower().replace('μ', 'µ')).strip('[]')
     plain = re.sub(r'n(ewton)?[-_.*·⋅]?([cm]?)m(et(er|re)s?)?(?!\w)', r'n\2m', plain)
     outer, _, inner = plain.partition('(')  # as in "° (Degree)" and "(deg)"
     plain = (outer or inner).strip('()[].')
@@ -244,9 +244,9 @@ def _unit(text: str) -> str:
 
 def _split(name: str) -> tuple[tuple[str, ...], str]:
     """Words of a name, in lower case and without its unit, and the unit, in brackets or known."""
-    text = re.sub(
-        r'(?i)(?<![a-z])([mk]?n)[-_.*·⋅](m?m)(?![a-z])', r'\1\2', name.strip().strip('%#"')
-    )
+    text = name.strip().strip('%#"').replace('{name==', '{')  # of a joint, in paths of Foxglove
+    text = re.sub(r'\\\w+:\d+$', '', text)  # device and raster, of INCA
+    text = re.sub(r'(?i)(?<![a-z])([mk]?n)[-_.*·⋅](m?m)(?![a-z])', r'\1\2', text)
     bracketed = _BRACKETS.findall(text)[::-1]
     others = [one for one in bracketed if not one.isdigit() and one.lower() not in _KNOWN_WORDS]
     unit = next((u for u in map(_unit, bracketed) if u in _KNOWN), '')

@@ -25,11 +25,15 @@ _ROWS, _BEGIN = 100, 3
 _SEPARATORS = ';', '\t', ',', '|', ' '
 _COMMENT = ('#', '//', '%', 'sep=', 'SEP=')
 _BOMS = {b'\xef\xbb\xbf': 'utf-8-sig', b'\xff\xfe': 'utf-16', b'\xfe\xff': 'utf-16'}
+_TYPES = re.compile(r'(?i)[iuf]\d+|(float|double|u?int)\d*|(type|interp|blockpath|portindex): *.+')
+"""Rows between names and numbers that say what types the numbers have, of INCA and Simulink."""
+_FRAMES = re.compile(r'\s*\(\d+\.\d+\)\s+\w+\s+[0-9A-F]+#|;\$FILEVERSION')
+"""How logs of a CAN bus begin, of candump and PCAN-View."""
 _MISSING = {'', 'nan', '-nan', 'inf', '-inf', 'null', 'none', 'n/a', 'na', '-', '[]'}
 _CLOCKS = {'name': 'ms', 'x_value': 's'}
-"""Words before the names of channels with their own times, of TwinCAT Scope and LabVIEW: units."""
+"""Words before the names of channels with their own times, besides those for a time: units."""
 _TOPICS, _VALUE = (
-    ('topic', 'message path', 'series', 'signal', 'channel', 'label', 'name'),
+    ('topic', 'message path', 'series', 'signal', 'channel', 'label', 'field', 'name'),
     'value',
 )
 """Columns of a table with a row for each value."""
@@ -130,7 +134,7 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
                 low_memory=False,
             )
 
-    lower = [name.lower() for name in layout.names]
+    lower = [name.lower().strip('_') for name in layout.names]
     if _VALUE in lower and (topics := [name for name in _TOPICS if name in lower]):
         frame = read(range(len(lower)), 1).set_axis(layout.names, axis=1)
         columns = (layout.names[lower.index(name)] for name in (topics[0], _VALUE))
@@ -177,6 +181,8 @@ def _layout(lines: Sequence[str]) -> _Layout:
     Raises:
         ValueError: if there are no rows of numbers, or no names.
     """
+    if _FRAMES.match(''.join(lines[:1])):
+        raise ValueError('a log of CAN frames: decode their signals to columns, as cantools does')
     filled = [k for k, line in enumerate(lines) if line.strip() and not line.startswith(_COMMENT)]
     last = [lines[k] for k in filled[-_ROWS:]]
     last = last[len(last) // 2 :]
@@ -226,16 +232,21 @@ def _names(
         ValueError: if they do not name each of the numbers of a row, or more.
     """
     rows = [cells_of(line.lstrip('#%/ '), separator) for line in above]
+    plain = [k for k, row in enumerate(rows) if not all(map(_TYPES.fullmatch, filter(None, row)))]
+    above, rows = [above[k] for k in plain], [rows[k] for k in plain]
     units: list[str] = []
     at = -1
     labelled = (row for row in rows[:-1] if re.search('(?i)unit|einheit', ''.join(row[:1])))
     label = next((row for row in labelled if known_units(row[1:])), [])
     alike = [row[:width] for row in rows if row[2:] and len({*row[:width:2]}) == 1]
     pairs = {row[0].lower(): row[1::2] for row in alike}
-    for key in _CLOCKS.keys() & pairs.keys():
-        names = pairs[key]
-        clocks = {name: f'time of {name} [{_CLOCKS[key]}]' for name in names}
-        units = known_units(pairs.get('unit') or label[1::2])
+    for key, names in pairs.items():
+        is_time, unit = time_among([key])
+        if key not in _CLOCKS and not is_time:
+            continue
+        unit = _CLOCKS.get(key, unit)
+        clocks = {name: f'time of {name}' + f' [{unit}]' * bool(unit) for name in names}
+        units = known_units(pairs.get('unit') or pairs.get('') or label[1::2])
         columns = [one for name in names for one in (clocks[name], name)]
         return columns, dict(zip(names, units, strict=False)), clocks
     if label:  # such as Y_Unit_Label of LabVIEW

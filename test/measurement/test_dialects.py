@@ -238,6 +238,26 @@ ENCODERS = {
             for at, rotor, out, ahead, after in zip(
                 t, r, o, 0.75 * r + 0.25 * np.append(r[1:], r[-1]), np.append(r[1:], r[-1]),
                 strict=True))),
+    'slices by the name of a joint': lambda t, r, o: 'receive time,topic,value\n' + ''.join(
+        f'{at + 1764230000:.2f},/joint_states.position[:]{{name=="{joint}"}},{value:.5f}\n'
+        for joint, values in (('motor', r), ('output', o))
+        for at, value in zip(t, values, strict=True)),
+    'InfluxDB': lambda t, r, o: '#default,_result,,,,\n,result,table,_time,_value,_field\n'
+        + ''.join(f',,{table},{moment()(at)}Z,{value:.5f},{name}\n'
+        for table, (name, values) in enumerate((('rotor', r), ('output', o)))
+        for at, value in zip(t, values, strict=True)),
+    'durations of MATLAB': lambda t, r, o: written(
+        [t, r, o], NAMES, ('{:.2f} sec', *DECIMALS[1:])),
+    'dates with names of months': lambda t, r, o: written(
+        [t, r, o], NAMES,
+        (lambda v: (NOON + timedelta(seconds=v)).strftime('%d-Nov-%Y %H:%M:%S.%f'),
+         *DECIMALS[1:])),
+    'Simulink, with times of each signal': lambda t, r, o: written(
+        [t, r * DEG, t, o * DEG], 'time,motor angle,time,output angle\n'
+        ',Units: deg,,Units: deg\n,Interp: linear,,Interp: linear', 4 * ['{:.5f}']),
+    'INCA': lambda t, r, o: written(
+        [t, r * DEG, o * DEG], 'sampleCount\t1320\ntime\tMotorPos\\ETKC:1\tOutputPos\\ETKC:1\n'
+        's\tdeg\tdeg\nf8\tf8\tf8', mark='\t'),
     'over midnight': lambda t, r, o: written(
         [t, r, o], NAMES,
         (lambda v: moment(' ')(v + 15 * 3600 - 20)[11:], *DECIMALS[1:])),
@@ -328,6 +348,7 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
          'turns by 45.8° under torque'),
         (lambda t, _, o: written([t, 1e-3 * o, np.round(1e3 * o)], 'time,angle,torque'),
          'torque has whole numbers: give its unit as in --torque-column .torque .Nmm'),
+        (' (1764230000.000000) can0 141#A100000000000000\n', 'a log of CAN frames: decode'),
         ('time,angle_grad,torque\n0,1,2\n', 'known; known: .*; or give it with --angle-unit'),
         ('time,angle,torque\ns,gon,Nm\n0,1,2\n', 'the unit gon is not known'),
         ('rotor,output\n1.5,20\n359.5,30.5\n', 'rotor has turns of 360'),
