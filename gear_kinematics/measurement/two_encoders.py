@@ -73,7 +73,9 @@ class EncoderFit:
             RecordingError: if there are too few samples.
         """
         self._angles = rotor, output, time, way
-        kept = np.flatnonzero(way * (time - late >= time[0]) * (time - late <= time[-1]))
+        # The direction is that of the sample at which the rotor was there.
+        ways = way[np.rint(np.interp(time - late, time, np.arange(len(time)))).astype(int)]
+        kept = np.flatnonzero(ways * (time - late >= time[0]) * (time - late <= time[-1]))
         kept = kept[:: -(-len(kept) // _MOST) or 1]
         if len(kept) < 2 * _BLOCKS:
             raise RecordingError(f'{len(kept)} samples in motion are too few')
@@ -86,13 +88,13 @@ class EncoderFit:
         speed = slope * (after - early) / (2.0 * STEP)
         # Beside a reversal, the speed is not that of the sample.
         beside = (np.interp(time[kept] - late + k * STEP, time, way) for k in (-1, 1))
-        steady = (way[kept] * speed)[np.all([each == way[kept] for each in beside], axis=0)]
+        steady = (ways[kept] * speed)[np.all([each == ways[kept] for each in beside], axis=0)]
         parts = np.array_split(steady, max(1, min(_MEANS, len(steady))))
         self.tells_delay = tells_delay(steady, np.array([np.mean(part) for part in parts]))
         """Whether a delay can be told from play."""
         self.travel = float(np.ptp(at))
         # The measured angle must not explain itself: errors are periodic in that of the rotor.
-        columns = _columns(at, slope, way[kept], speed)
+        columns = _columns(at, slope, ways[kept], speed)
         # Nor must its error: the reading of the rotor is not in its acceleration.
         acceleration = slope * (first - early - after + last) / (3.0 * STEP**2)
         left = rest = output[kept] - slope * at - np.mean(output[kept] - slope * at)

@@ -206,3 +206,13 @@ def test_delay_is_said_and_too_small_a_motion_tells_nothing(
     report = report_of(time=time, rotor=-19.0 * rotor, output=output + error)
     assert answer(report).what is what
     assert [found.what for found in remarks(report)] == [*said, Observation.PLUS_MINUS]
+
+
+@pytest.mark.parametrize('late', [0.2, 0.5])  # s
+def test_lost_motion_is_right_however_late_the_output_is(report_of, shared_path, late):
+    path = shared_path('data/faults/both_encoders_clean.csv')  # with a lost motion of 6.9′
+    time, rotor, output = np.loadtxt(path, delimiter=',', skiprows=1).T
+    delayed = np.interp(time - late, time, output)
+    found = report_of(time_s=time, rotor_rad=rotor, output_rad=delayed).transmission
+    assert found.delay.value == pytest.approx(late, abs=1e-4)
+    assert abs(found.lost_motion.value - 6.9 * ARC_MINUTE) <= found.lost_motion.expanded
