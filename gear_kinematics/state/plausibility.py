@@ -236,6 +236,7 @@ class Plausibility:
     def _doubt(self, position: float, stamp: int) -> Belief:
         """Note a reading that is out of reach, and see whether it agrees with those before."""
         self._doubted = [*self._doubted[1 - _AGREEING :], (stamp, position)]
+        self._look_always()  # so that a reading in reach ends the row
         if len(self._doubted) < _AGREEING:
             return Belief.IMPLAUSIBLE
         times, positions = zip(*self._doubted, strict=True)

@@ -219,6 +219,18 @@ def test_a_corrupt_reading_of_any_size_is_no_jump(speed):
         assert (rotor.plausibility.jumped, rotor.referenced) == (None, True)
 
 
+def test_single_wrong_readings_between_the_others_are_no_jump():
+    times = np.arange(400) / 100
+    angles, wrong = 10.0 * times, np.array([50, 150, 250, 350])
+    wrongly = np.insert(times, wrong + 1, times[wrong] + 0.001)
+    batch = messages(wrongly, np.insert(angles, wrong + 1, 500.0))
+    rotor, samples = fed(MULTI, batch)
+    assert rotor.rejected == {'implausible': 4}
+    assert (rotor.plausibility.jumped, rotor.referenced) == (None, True)
+    found = [TURN * s.position.turns + s.position.angle for s in samples if s]
+    assert found == pytest.approx(angles.tolist())
+
+
 def test_the_first_steps_after_a_standstill_hide_no_jump():
     times = np.arange(500) / 500
     angles = np.where(times < 0.8, 1.0, 1.0 + 1e-4 * np.cumsum(times >= 0.8))
