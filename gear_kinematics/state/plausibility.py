@@ -28,6 +28,7 @@ from gear_kinematics.state.statuses import Condition, Fact
 _AGREEING = 3  # doubted readings in a row that are believed
 _MOST_OF = 0.8  # a period: where so much is in reach, nothing is doubted
 _MARGIN = 1.5  # of raised limits above what was seen
+_MOST_BEYOND = 2.0  # times the limit: speeds at which a driver may repeat readings
 _LONGEST_REPEAT = 1.0  # s, for which a driver repeats a reading while the rotor turns on
 _REPEATED = 0.05  # of the way meanwhile: what it may differ by from that at a steady speed
 _STEADY = 0.25  # of the speed: what it may change by meanwhile
@@ -254,7 +255,9 @@ class Plausibility:
             abs(s) <= self.limits.speed * (t + stale) + noise
             for s, t in zip(steps, spans, strict=True)
         )
-        if uneven > slack + abs(speed) * stale or not (within or total):
+        # A false speed, as of a wrong reading before a jump, must not allow its own unevenness.
+        slack += min(abs(speed), _MOST_BEYOND * self.limits.speed) * stale
+        if uneven > slack or not (within or total):
             return Belief.IMPLAUSIBLE
         first = self._wrapped(positions[0] - self._last[0])
         elapsed = (times[0] - (self._stamp if first else self._last[1])) * 1e-9

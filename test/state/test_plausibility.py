@@ -231,6 +231,19 @@ def test_single_wrong_readings_between_the_others_are_no_jump():
     assert found == pytest.approx(angles.tolist())
 
 
+@pytest.mark.parametrize('size', [5.0, -40.0, 300.0])
+def test_a_wrong_reading_before_a_jump_does_not_make_it_a_motion(size):
+    times = np.arange(60) / 1000
+    angles = np.round(20.0 * times, 3)
+    angles[30] += 1.0  # rad, out of reach
+    angles[31:] += size
+    rotor, _ = fed(MULTI, messages(times, angles))
+    assert rotor.plausibility.jump
+    assert rotor.plausibility.jump.size == pytest.approx(size, abs=0.3)
+    assert not rotor.referenced
+    assert rotor.plausibility.limits == LIMITS
+
+
 def test_the_first_steps_after_a_standstill_hide_no_jump():
     times = np.arange(500) / 500
     angles = np.where(times < 0.8, 1.0, 1.0 + 1e-4 * np.cumsum(times >= 0.8))
