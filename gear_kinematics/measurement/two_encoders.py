@@ -73,9 +73,9 @@ class EncoderFit:
             RecordingError: if there are too few samples.
         """
         self._angles = rotor, output, time, way
-        # The direction is that of the sample at which the rotor was there.
-        ways = way[np.rint(np.interp(time - late, time, np.arange(len(time)))).astype(int)]
-        kept = np.flatnonzero(ways * (time - late >= time[0]) * (time - late <= time[-1]))
+        then = time - late  # when the rotor was where the output is measured
+        ways = way[np.rint(np.interp(then, time, np.arange(len(time)))).astype(int)]
+        kept = np.flatnonzero(ways * (then >= time[0]) * (then <= time[-1]))
         kept = kept[:: -(-len(kept) // _MOST) or 1]
         if len(kept) < 2 * _BLOCKS:
             raise RecordingError(f'{len(kept)} samples in motion are too few')
@@ -83,11 +83,11 @@ class EncoderFit:
         share = late / step % 1.0 if step else 0.0
         self._between = 0.5 * share * (1.0 - share) * step**2
         """s², by which times the acceleration the angle between two samples is not their mean."""
-        around = (time[kept] - late + k * STEP for k in (-2, -1, 0, 1, 2))
+        around = (then[kept] + k * STEP for k in (-2, -1, 0, 1, 2))
         first, early, at, after, last = (np.interp(when, time, rotor) for when in around)
         speed = slope * (after - early) / (2.0 * STEP)
         # Beside a reversal, the speed is not that of the sample.
-        beside = (np.interp(time[kept] - late + k * STEP, time, way) for k in (-1, 1))
+        beside = (np.interp(then[kept] + k * STEP, time, way) for k in (-1, 1))
         steady = (ways[kept] * speed)[np.all([each == ways[kept] for each in beside], axis=0)]
         parts = np.array_split(steady, max(1, min(_MEANS, len(steady))))
         self.tells_delay = tells_delay(steady, np.array([np.mean(part) for part in parts]))

@@ -125,8 +125,8 @@ class RotorInput:
     def why_rejected(self) -> str:
         """The causes with their counts, and which joints there are if that is one of them."""
         causes = ', '.join(f'{cause} {count}' for cause, count in self.rejected.items())
-        hint = f': {self.missing_joint}; give the right --config or --joint'
-        return causes + hint * bool(self.missing_joint)
+        hint = f'{self.missing_joint}; give the right --config or --joint'
+        return f'{causes}: {hint}' if self.missing_joint else causes
 
     @property
     def segment(self) -> int:

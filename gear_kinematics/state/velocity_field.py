@@ -172,4 +172,5 @@ class VelocityField:
 
 @once_for_joints
 def _listed(stamps: Array) -> list[int]:
-    return list(stamps.tolist())
+    times: list[int] = stamps.tolist()
+    return times

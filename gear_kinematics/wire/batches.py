@@ -8,7 +8,7 @@ bytes. A recording has few layouts per topic; more only cost time.
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, wraps
-from typing import Any, ParamSpec, Self, TypeVar
+from typing import Any, Self, TypeVar, TypeVarTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,11 +29,11 @@ from gear_kinematics.wire.joint_reader import describe_missing
 
 Array = NDArray[Any]
 FIELDS = ('position', 'velocity', 'effort')
-_Given = ParamSpec('_Given')
+_Given = TypeVarTuple('_Given')
 _Result = TypeVar('_Result')
 
 
-def once_for_joints(function: Callable[_Given, _Result]) -> Callable[_Given, _Result]:
+def once_for_joints(function: Callable[[*_Given], _Result]) -> Callable[[*_Given], _Result]:
     """Keep the latest result of a function for the other joints of the same messages.
 
     Arrays are the same if they are one object, whose contents must not change.
@@ -41,11 +41,11 @@ def once_for_joints(function: Callable[_Given, _Result]) -> Callable[_Given, _Re
     latest: tuple[Any, Any] = (), None
 
     @wraps(function)
-    def look_up(*given: _Given.args, **options: _Given.kwargs) -> _Result:
+    def look_up(*given: *_Given) -> _Result:
         nonlocal latest
         known, result = latest
         if len(known) != len(given) or not all(map(_is_same, known, given)):
-            result = function(*given, **options)
+            result = function(*given)
             latest = given, result
         return result  # type: ignore[no-any-return]
 
