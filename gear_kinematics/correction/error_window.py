@@ -11,10 +11,8 @@ from gear_kinematics.correction.reversals import Array, Reversals, separate
 from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
 
-_MOST = 2**20
-"""Greatest number of samples kept: 60 s, the longest window, at 17 kHz."""
-_BINS = 720
-"""Bins of output angles in a turn, in which both directions are compared."""
+_MOST = 2**20  # greatest number of samples kept: 60 s, the longest window, at 17 kHz
+_BINS = 720  # bins of output angles in a turn, in which both directions are compared
 
 
 class ErrorStatistics(NamedTuple):

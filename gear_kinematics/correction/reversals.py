@@ -22,8 +22,7 @@ Array = NDArray[np.float64]
 
 _BLOCKS = 20
 """Blocks of angles. Errors within a block may be correlated, those of blocks are not."""
-_LEAST = 3
-"""Least number of blocks that a straight line and its scatter need."""
+_LEAST = 3  # least number of blocks that a straight line and its scatter need
 _SPREAD = 0.01
 """Least standard deviation of the speed, relative to its mean, that makes a delay measurable."""
 _STEADY = 0.02

@@ -13,8 +13,7 @@ from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_tu
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
-_DEPTH = 8192
-"""Number of samples of each kind that are kept."""
+_DEPTH = 8192  # number of samples of each kind that are kept
 
 
 class ErrorSample(NamedTuple):

@@ -13,10 +13,8 @@ from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.measured import LOST_MOTION, Measured, shown
 from gear_kinematics.measurement.sentences import Cause, Observation, Observed
 
-_SMALLER = 0.7
-"""Share of their amplitude to which smaller ramps are worth recording."""
-_TOLD = 0.25
-"""Share of the whole motion by which a ± leaves nothing to be told."""
+_SMALLER = 0.7  # share of their amplitude to which smaller ramps are worth recording
+_TOLD = 0.25  # share of the whole motion by which a ± leaves nothing to be told
 _UNEQUAL = 0.18
 """Difference of the peaks of a torque, of their sum, that none of 37 real recordings has."""
 

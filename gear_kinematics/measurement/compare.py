@@ -34,8 +34,7 @@ from gear_kinematics.report.document import (
     printable,
 )
 
-_TORQUES = 300
-"""Points of half a loop in a plot."""
+_TORQUES = 300  # points of half a loop in a plot
 
 
 def compared(

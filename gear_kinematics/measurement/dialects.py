@@ -69,10 +69,8 @@ class _Layout(NamedTuple):
 
     separator: str
     point: str
-    start: int
-    """Lines before the first row with numbers."""
-    row: list[str]
-    """That row."""
+    start: int  # lines before the first row with numbers
+    row: list[str]  # that row
     names: list[str]
     units: dict[str, str]
     clocks: dict[str, str]

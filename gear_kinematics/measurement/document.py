@@ -31,8 +31,7 @@ from gear_kinematics.statistics.uncertainty import COVERAGE, Estimate
 
 SCHEMA = 'gear_kinematics/lost_motion'
 VERSION = 3
-_COLUMNS = 2
-"""Panels side by side."""
+_COLUMNS = 2  # panels side by side
 
 
 @dataclass(frozen=True, eq=False, slots=True)

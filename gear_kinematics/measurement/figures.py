@@ -29,10 +29,8 @@ STIFFNESS_SHARES = (0.15, 0.5)
 """Limits between the ranges of stiffness, as shares of the rated torque."""
 _LEAST_RANGE = 1.5
 """Least ratio of the torques at the end and at the beginning of a range of stiffness."""
-_ROUNDING = 1e-11
-"""Relative rounding error of sums of many angles."""
-_TORQUES = 200
-"""At which a curve is compared with a straight line."""
+_ROUNDING = 1e-11  # relative rounding error of sums of many angles
+_TORQUES = 200  # at which a curve is compared with a straight line
 
 
 @dataclass(frozen=True, slots=True)

@@ -48,31 +48,22 @@ NO_ENCODER = 2e-6
 class _Compared(NamedTuple):
     """The error in the rows in which both shafts moved or stood; arrays are (m,), rad."""
 
-    rows: Array
-    """Numbers of these rows among the n of the recording."""
-    frozen: NDArray[np.bool_]
-    """(n,): rows in which one shaft stood still while the other moved."""
+    rows: Array  # numbers of these rows among the n of the recording
+    frozen: NDArray[np.bool_]  # (n,): rows in which one shaft stood still while the other moved
     rotor: Array
-    ideal: Array
-    """Output angle by the rotor."""
-    error: Array
-    """Measured minus ideal output angle, without wraps."""
-    travel: float
-    """rad, of the rotor in all rows."""
-    path: Array
-    """Output angle by each sample of the rotor."""
-    period: float
-    """What wraps of an encoder add to the error."""
+    ideal: Array  # output angle by the rotor
+    error: Array  # measured minus ideal output angle, without wraps
+    travel: float  # rad, of the rotor in all rows
+    path: Array  # output angle by each sample of the rotor
+    period: float  # what wraps of an encoder add to the error
 
 
 class _Steps(NamedTuple):
     """Steps of the error that no gear makes, (m - 1,)."""
 
     impossible: NDArray[np.bool_]
-    slipped: NDArray[np.bool_]
-    """Those of them that stay, however small they are."""
-    limit: float
-    """rad, of a step."""
+    slipped: NDArray[np.bool_]  # those of them that stay, however small they are
+    limit: float  # rad, of a step
 
 
 def gated(recording: Recording) -> Recording:

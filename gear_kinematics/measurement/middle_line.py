@@ -19,14 +19,12 @@ from gear_kinematics.measurement.loops import Array, Loop, Ramps
 from gear_kinematics.measurement.sentences import Cause
 from gear_kinematics.statistics.uncertainty import Estimate, resolution, student_t
 
-_ANGLES = 400
-"""Number of angles at which a loop is known."""
+_ANGLES = 400  # number of angles at which a loop is known
 _POINTS = 20
 """Number of points of the mean line on either side: springs and frictions of 5, 10, 20 and 40
 points give back the loops of 30 real recordings within 3.1, 2.2, 1.8 and 1.7 mrad (median), whose
 repeats differ by 2.5."""
-_LOADS = 40
-"""Number of loads at which the angle is read for a line through one side."""
+_LOADS = 40  # number of loads at which the angle is read for a line through one side
 _SIDE, _LOWER_HALF, _UPPER_HALF = (0.1, 0.9), (0.1, 0.35), (0.35, 0.9)
 """Parts of either side of the curve, as shares of the greatest load: of all of it that friction
 at the reversals leaves, and of its two halves, between which a bent spring differs."""
@@ -48,8 +46,7 @@ middle: springs that bend by less keep a backlash of 0 and of 10′ in their int
 _MOVED_BY_GAP = 2.0
 """By how many times the friction that a gap adds, over the stiffness, moves its ends: simulated
 gears with inertia need 1.7 at the most."""
-_NORMAL = 10**9
-"""Degrees of freedom of a normal distribution."""
+_NORMAL = 10**9  # degrees of freedom of a normal distribution
 
 
 class Backlash(NamedTuple):

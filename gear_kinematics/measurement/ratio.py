@@ -21,14 +21,10 @@ Array = NDArray[np.float64]
 
 _SETTLED, _MOST_PLAY = 0.05, math.radians(2.0)
 """After a reversal, left out, as play is crossed: share of the whole travel, and at most, rad."""
-_LEAST = 230
-"""Samples in motion."""
-_ONE_TURN = 390
-"""deg of the output: more than a turn, as hardly anything repeats in just one."""
-_MOST_TURNED = 3600
-"""deg of the output that can be asked for."""
-_BY_CHANCE = 0.05
-"""Probability below which a simple fraction in the interval is no coincidence."""
+_LEAST = 230  # samples in motion
+_ONE_TURN = 390  # deg of the output: more than a turn, as hardly anything repeats in just one
+_MOST_TURNED = 3600  # deg of the output that can be asked for
+_BY_CHANCE = 0.05  # probability below which a simple fraction in the interval is no coincidence
 _MAX_DISTANCE = 2
 """Expanded uncertainties within which a fraction may be the true ratio: of 20 recordings, one has
 it beyond a single one."""

@@ -20,8 +20,7 @@ from gear_kinematics.wire.cdr import SECOND
 
 Array = NDArray[Any]
 
-_SPEED_WINDOW = 0.02
-"""s, over which the speed is averaged."""
+_SPEED_WINDOW = 0.02  # s, over which the speed is averaged
 
 
 class RecordingError(ValueError):

@@ -11,10 +11,8 @@ from gear_kinematics.measurement.recording import Array
 from gear_kinematics.wire.cdr import SECOND, header_stamp, with_stamp
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
-_CLOCK_STEP = 20_000_000
-"""ns by which a clock is set back, at least; computers slew it by less."""
-_STEADY = 25
-"""Messages before and after, of which the age is the same."""
+_CLOCK_STEP = 20_000_000  # ns by which a clock is set back, at least; computers slew it by less
+_STEADY = 25  # messages before and after, of which the age is the same
 
 
 class ClockStep(NamedTuple):

@@ -13,8 +13,7 @@ from gear_kinematics.measurement.recording import Array, Encoders, RecordingErro
 from gear_kinematics.measurement.two_encoders import STEP, EncoderFit, directions
 from gear_kinematics.statistics.uncertainty import Component, Estimate, resolution
 
-_MIN_SHARE = 0.5
-"""Runs of at least this share of the longest one are repeats of it."""
+_MIN_SHARE = 0.5  # runs of at least this share of the longest one are repeats of it
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -27,10 +27,8 @@ STEP = 0.01
 _ACCURACY = math.radians(2.0 / 3600.0) / math.sqrt(3.0)
 """rad, standard deviation. Few encoders are accurate to ±2″ over the travel, and a gear on its
 springs follows its errors a little more the faster it turns."""
-_BLOCKS = 23
-"""Prime, as blocks of whole cycles of an error would not differ."""
-_MOST = 10_000
-"""Samples that are used: more tell no more of errors that are correlated."""
+_BLOCKS = 23  # prime, as blocks of whole cycles of an error would not differ
+_MOST = 10_000  # samples that are used: more tell no more of errors that are correlated
 _MEANS = 115
 """Means of successive samples, at least, whose scatter tells how far errors are correlated."""
 _ORDERS = 48, 4
@@ -49,8 +47,7 @@ _LAG = 6e-5
 _SLOPE, _WAY, _LATE = 0, 2, 3  # columns of the fit; 1 is the offset
 _LEAST_NOISE = 1e-7
 """rad: the step of an encoder of 26 bits. With less, rounding alone makes ratios wrong."""
-_ROUNDS = 5
-"""Estimates of the noise, each by what the one before left; with 3, ± is 50 % off."""
+_ROUNDS = 5  # estimates of the noise, each by what the one before left; with 3, ± is 50 % off
 
 
 class EncoderFit:

@@ -14,8 +14,7 @@ from gear_kinematics.measurement.recording import Array, Encoders, Recording, Re
 from gear_kinematics.report.document import counted
 from gear_kinematics.wire.cdr import SECOND
 
-_NEAR = 0.1
-"""s between a moment that is named and the sample that is taken for it."""
+_NEAR = 0.1  # s between a moment that is named and the sample that is taken for it
 _TURNS = {'degrees': 360.0, 'turns': 1.0}
 """A turn in the units that positions may have in place of rad."""
 _SAME_COUNTS = 0.02
