@@ -25,7 +25,7 @@ class Motion(NamedTuple):
     former: Reading
     moving: Reading
     stamp: int  # ns, of the last one with the last position
-    finest: float  # rad
+    noise: float  # rad
 
 
 def all_in_reach(
@@ -66,10 +66,10 @@ def all_in_reach(
         return None
     sizes = np.abs([steps, steps - step[1:-1]])
     sizes = np.where(sizes > EQUAL, sizes, COARSEST).min(axis=0)
-    finest = np.minimum.accumulate(np.append(known.finest, np.maximum(sizes, 0.5 * FLOOR)))
+    noise = np.minimum.accumulate(np.append(known.noise, np.maximum(2.0 * sizes, FLOOR)))
     for k in np.flatnonzero(ended).tolist():
         ends = (0.0, 0, moved[k], took[k]), (0.0, 0, step[k - 1], span[k - 1])
-        if limits.least_speed(*ends, finest[k - 1]):
+        if limits.least_speed(*ends, noise[k - 1]):
             return None
         where = float(positions[rows[k - 2]]) if k > 1 else position
         moving = where, int(changed[k - 1]), float(moved[k]), int(took[k])
@@ -84,20 +84,20 @@ def all_in_reach(
             (0.0, int(changed[k]), float(step[k + 1]), int(span[k + 1])),
             (0.0, 0, float(step[k]), int(span[k])),
         )
-        low, high = limits.reach(int(when[k]), int(until[k]), *ends, float(finest[k]))
+        low, high = limits.reach(int(when[k]), int(until[k]), *ends, float(noise[k]))
         if not low <= steps[k] <= high:
             return None
     if len(rows):
         before = float(positions[rows[-2]]) if len(rows) > 1 else position
         former = before, int(changed[-2]), float(step[-2]), int(span[-2])
     latest = float(positions[-1]), int(changed[-1]), float(step[-1]), int(span[-1])
-    return Motion(latest, former, moving, int(stamps[-1]), float(finest[-1]))
+    return Motion(latest, former, moving, int(stamps[-1]), float(noise[-1]))
 
 
 def _even(known: Motion, limits: RotorLimits, stamps: Array, positions: Array) -> Motion | None:
     """Take readings as `all_in_reach`, if the rotor moved on in even steps and regular times."""
     position, since, last, last_span = known.last
-    if known.stamp - since > STALEST_NS or known.finest > 0.5 * FLOOR or len(stamps) == 1:
+    if known.stamp - since > STALEST_NS or known.noise > FLOOR or len(stamps) == 1:
         return None
     bounds = _bounds(stamps, since, last_span, known.former[3], limits)
     steps = np.diff(positions, prepend=position)
@@ -110,7 +110,7 @@ def _even(known: Motion, limits: RotorLimits, stamps: Array, positions: Array) -
     earlier, before, now = [since, *stamps[-3:].tolist()][-3:]
     former = float(positions[-2]), before, float(steps[-2]), before - earlier
     latest = float(positions[-1]), now, float(steps[-1]), now - before
-    return Motion(latest, former, known.moving, now, known.finest)
+    return Motion(latest, former, known.moving, now, known.noise)
 
 
 @once_for_joints

@@ -85,9 +85,9 @@ class Plausibility:
         self._former: Reading = _UNKNOWN
         self._moving: Reading = _UNKNOWN  # the last one before a standstill
         self._stamp = 0  # ns, of the last believed reading with the last position
-        self.finest = COARSEST
-        """rad, the resolution of the encoder: the smallest step of all, or difference between two
-        in a row; not less than matters, which is half of `FLOOR`."""
+        self.noise = 2.0 * COARSEST
+        """rad, of a reading: twice the resolution of the encoder, which is the smallest step of
+        all, or difference between two in a row; at least `FLOOR`."""
         self._look_always()
 
     @property
@@ -139,10 +139,10 @@ class Plausibility:
             self._restart(float(positions[0]), int(stamps[0]))
         found = None
         if not self._doubted:
-            known = self._last, self._former, self._moving, self._stamp, self.finest
+            known = self._last, self._former, self._moving, self._stamp, self.noise
             found = all_in_reach(Motion(*known), self.limits, stamps, positions)
         if found:
-            self._last, self._former, self._moving, self._stamp, self.finest = found
+            self._last, self._former, self._moving, self._stamp, self.noise = found
             self._look_always()
         elif fresh:
             self.reset()
@@ -165,7 +165,7 @@ class Plausibility:
             return self._hold(position, stamp)
         if self.period:
             step = last_step + math.remainder(step - last_step, self.period)
-        low, high = self.limits.reach(stamp, self._stamp, last, former, self.finest)
+        low, high = self.limits.reach(stamp, self._stamp, last, former, self.noise)
         if self.period:
             middle = 0.5 * (low + high)
             step = middle + math.remainder(step - middle, self.period)
@@ -174,8 +174,8 @@ class Plausibility:
             return self._doubt(position, stamp)
         self._doubted.clear()
         for size in (abs(step), abs(step - last_step)):
-            if EQUAL < size < self.finest:
-                self.finest = max(size, 0.5 * FLOOR)
+            if EQUAL < size < 0.5 * self.noise:
+                self.noise = max(2.0 * size, FLOOR)
         span = stamp - changed
         if self._stamp - changed > STALEST_NS:  # it stood until then
             span = stamp - self._stamp or span
@@ -190,7 +190,7 @@ class Plausibility:
             shortest, longest = (1.0 - REGULAR) * usual, (1.0 + REGULAR) * usual
             if shortest <= span <= longest:
                 # A step that differs tells of the resolution, as long as that is coarse.
-                known = self.finest == 0.5 * FLOOR
+                known = self.noise == FLOOR
                 even = self.limits.even_step(usual) if known else EQUAL
                 if self.period:
                     even = min(even, 0.25 * self.period)
@@ -206,9 +206,9 @@ class Plausibility:
         held = stamp - self._last[1]
         if held > STALEST_NS:
             time = held * 1e-9 - STALEST
-            if speed := self.limits.least_speed(self._last, self._former, self.finest):
+            if speed := self.limits.least_speed(self._last, self._former, self.noise):
                 way = speed * time - 0.5 * self.limits.acceleration * time * time
-                if way > max(FLOOR, 2.0 * self.finest):
+                if way > self.noise:
                     return self._doubt(position, stamp)
             if not speed or time > 2.0 * speed / self.limits.acceleration:
                 if self._last[2]:
@@ -244,7 +244,7 @@ class Plausibility:
         spans = [(b - a) * 1e-9 for a, b in pairwise(times)]
         steps = [self._wrapped(b - a) for a, b in pairwise(positions)]
         stale = min(STALEST, max(spans))
-        noise = max(FLOOR, 2.0 * self.finest)
+        noise = self.noise
         total = sum(spans)
         if total < 0.0:
             return Belief.IMPLAUSIBLE
@@ -278,9 +278,9 @@ class Plausibility:
         else:
             self.jumps += 1
             self.jump = Jump(times[0], self._wrapped(first - before * elapsed))
-        last, finest = self._last, self.finest
+        last, noise = self._last, self.noise
         self._restart(position, stamp)
-        self.finest = finest
+        self.noise = noise
         if continuous and not speed:
             self._moving = last
         if spans[-1]:
@@ -300,7 +300,7 @@ class Plausibility:
         former = step / (span * 1e-9)
         change = _STEADY * abs(former) + (self.limits.acceleration * time if moved else 0.0)
         way, stale = 0.5 * (former + speed) * time, min(STALEST, 1.25e-9 * span)
-        uncertain = max(FLOOR, 2.0 * self.finest) + max(abs(former), abs(speed)) * stale
+        uncertain = self.noise + max(abs(former), abs(speed)) * stale
         uncertain += _REPEATED * abs(way) + 0.25 * change * time
         return abs(speed - former) <= change and abs(position - before - way) <= uncertain
 

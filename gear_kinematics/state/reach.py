@@ -39,17 +39,16 @@ class RotorLimits(NamedTuple):
         stale = (1.25 * (1.0 - REGULAR) * 1e-9) * span
         return FLOOR + 1.5 * self.acceleration * stale * stale
 
-    def least_speed(self, last: Reading, former: Reading, finest: float) -> float:
+    def least_speed(self, last: Reading, former: Reading, noise: float) -> float:
         """The speed, rad/s, that the rotor had at least; 0 if it can stand at once."""
         if not (last[3] and former[3]):
             return 0.0
-        noise = max(FLOOR, 2.0 * finest)
         time = (last[3] + former[3]) * 1e-9 + _stale(last, former)
         speed = (abs(last[2] + former[2]) - noise) / time - self.acceleration * time
         return speed if speed * abs(speed) > 2.0 * self.acceleration * noise else 0.0
 
     def reach(
-        self, stamp: int, until: int, last: Reading, former: Reading, finest: float
+        self, stamp: int, until: int, last: Reading, former: Reading, noise: float
     ) -> tuple[float, float]:
         """The least and the greatest step, rad, that the rotor can make until a stamp.
 
@@ -58,9 +57,8 @@ class RotorLimits(NamedTuple):
             until: stamp of the last reading with the last position.
             last: the first reading with it.
             former: the one before.
-            finest: rad, the smallest step until now.
+            noise: rad, of a reading, see `Plausibility`.
         """
-        noise = max(FLOOR, 2.0 * finest)
         slow, fast, stale = -self.speed, self.speed, STALEST
         _, changed, step, span = last
         elapsed, held = (stamp - changed) * 1e-9, (until - changed) * 1e-9

@@ -233,7 +233,7 @@ class RotorInput:
         self, rows: Array, stamps: Array, values: Array, received: Array, rejected: Array
     ) -> RotorSamples:
         turns, angle = split_turns(values[:, 0])
-        velocity = self.velocity_field.believed(stamps, values, self.plausibility.finest)
+        velocity = self.velocity_field.believed(stamps, values, 0.5 * self.plausibility.noise)
         zero_turns, zero_angle = self.zero
         direction = self._parameters.rotor_direction
         samples = RotorSamples(
@@ -325,7 +325,7 @@ class RotorInput:
             return None
         position = self._unwrapped(position)
         given = math.nan if velocity is None else velocity
-        field.note(stamp, position, given, self.plausibility.finest)
+        field.note(stamp, position, given, 0.5 * self.plausibility.noise)
         return None if field.contradicts else velocity
 
     def _unwrapped(self, position: float) -> float:

@@ -86,7 +86,7 @@ def state_of(judge) -> dict:
     """All but what makes it faster."""
     return vars(judge) | {
         '_even': None,
-        'finest': pytest.approx(judge.finest, abs=1e-8),
+        'noise': pytest.approx(judge.noise, abs=2e-8),
         '_last': judge._last[1:],
         '_former': judge._former[2:],
     }
