@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gear_kinematics.kinematics import Gear, Mechanism, MotionState
+from gear_kinematics.kinematics import Gear, Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.count_changes import CountChanges
@@ -30,8 +30,6 @@ from gear_kinematics.validation.task import Tolerances
 from gear_kinematics.wire.batches import JointStateBatch, once_for_joints
 from gear_kinematics.wire.cdr import MessageLayout
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
-
-Solver = Callable[..., MotionState]
 
 WINDOW = 16_384
 """Samples kept for late messages; even later ones count as extra."""
@@ -56,8 +54,6 @@ class Expectation(NamedTuple):
 
     gear: Gear
     tolerances: Tolerances
-    solver: Solver
-    """Recomputes the motion of a mechanism."""
     changes: CountChanges
     """Changes of the rotor's count that the outputs show."""
 
@@ -208,7 +204,7 @@ class OutputTopic:
         self.series = SeriesRecorder(self.errors)
         self.matcher = Matcher()
         self.missing = Missing()
-        self._gear, self._tolerances, self._solver, self._changes = expectation
+        self._gear, self._tolerances, self._changes = expectation
         self._wrong = 0
         self._wrong_without_velocity = 0  # besides, if velocities were expected
         self._without_velocity: Array | bool = False  # messages of the latest batch, (n,)

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics import Mechanism, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.diagnosis import AngleFit, FactorFit, diagnose
@@ -81,7 +81,7 @@ class JointStateTopic(OutputTopic):
         """The ideal output angle at samples, (n,), rad."""
         turns, angle = samples['turns'], samples['angle']
         if isinstance(self._gear, Mechanism):
-            return self._solver(self._gear, angle, rotor_turns=turns).output_angle
+            return solve(self._gear, angle, rotor_turns=turns).output_angle
         output_turns, rest = self._gear.output_angle(turns, angle, np)
         return np.asarray(TURN * output_turns + rest)
 
@@ -205,7 +205,7 @@ class BodyPoses(OutputTopic):
                 fault = FindingCause.ANOTHER_FRAME, frame_id.decode(errors='replace')
                 self._faults[fault].add(stamp[arrays.frame[rows] == k])
         poses = arrays.poses[rows]
-        state = self._solver(self._mechanism, samples['angle'], rotor_turns=samples['turns'])
+        state = solve(self._mechanism, samples['angle'], rotor_turns=samples['turns'])
         centres = np.concatenate([state.satellite_centre, state.oldham_centre], axis=1)
         x, y, z, *quaternions = np.moveaxis(poses, (2, 1), (0, 1))  # bodies first: faster maxima
         x, y, z = x - centres[..., 0].T, y - centres[..., 1].T, z - self._axial

@@ -13,7 +13,7 @@ import numpy as np
 from gear_kinematics.bag import BagError, Message, TopicMessages, by_topic
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.correction.corrector import Correction
-from gear_kinematics.kinematics import Mechanism, solve
+from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state.gear_state import GearState
@@ -24,7 +24,7 @@ from gear_kinematics.validation.corrected_topics import CORRECTED, Unbroken, why
 from gear_kinematics.validation.count_changes import CountChanges, first_number
 from gear_kinematics.validation.fields import Array, Window
 from gear_kinematics.validation.load_topics import LoadTopic
-from gear_kinematics.validation.matching import SAMPLES, WINDOW, Expectation, OutputTopic, Solver
+from gear_kinematics.validation.matching import SAMPLES, WINDOW, Expectation, OutputTopic
 from gear_kinematics.validation.output_topics import BodyPoses, OutputState
 from gear_kinematics.validation.recorder import Completeness, RecordedInputs
 from gear_kinematics.validation.report import BagReport, Finding
@@ -48,7 +48,6 @@ class Validator:
         task: Task,
         topics: Topics = _TOPICS,
         further: Mapping[str, str] = _NONE,
-        solver: Solver = solve,
         encoder: str = '',
     ) -> None:
         """Prepare for a recording.
@@ -58,7 +57,6 @@ class Validator:
             topics: names of the topics; that of poses that are not recorded is empty.
             further: the recorded ones of CORRECTED_TOPICS and LOAD_TOPICS, each with its name in
                 the recording.
-            solver: recomputes the motion: `solve`, or that of the matrix method.
             encoder: the topic of an encoder at the output that references the rotor, if recorded.
 
         Raises:
@@ -77,7 +75,7 @@ class Validator:
         self._begun: dict[str, int] = {}  # when the first message of each topic was received, ns
         angle, homing = task.tolerances.angle, not task.strict
         self._changes = CountChanges(parameters, angle, homing=homing)
-        self._expectation = Expectation(gear, task.tolerances, solver, self._changes)
+        self._expectation = Expectation(gear, task.tolerances, self._changes)
         self._samples = 0
         unseen = bool(parameters.rotor_period) or parameters.absolute
         self._given_segment = None if unseen else self._state.input.segment

@@ -19,9 +19,7 @@ EXTRAS = {'rclpy': 'ros', 'plotly': 'html', 'matplotlib': 'plot', 'tornado': 'wa
 
 # Packages that are missing.
 
-LAZY = tuple(
-    f'gear_kinematics.{name}' for name in ('ros.live', 'ros.replay', 'ros.demo', 'watch.')
-)
+LAZY = tuple(f'gear_kinematics.{name}' for name in ('ros.live', 'ros.replay', 'watch.'))
 """Imported where ROS or a page is needed."""
 READERS = ('validate', 'lost-motion', 'calibrate')
 MISSING = {

@@ -105,7 +105,7 @@ ROOMS = {
     'measurement': 'bag correction fleet kinematics parameters report state statistics wire',
     'plotting': 'bag kinematics parameters report shape state wire',
     'twin': 'correction kinematics parameters shape wire',
-    'ros': 'bag correction kinematics parameters shape state twin validation wire',
+    'ros': 'bag correction kinematics parameters shape state twin wire',
     'watch': 'bag kinematics measurement parameters report ros shape state wire',
     'commands': 'bag correction fleet kinematics measurement parameters plotting report ros '
     'shape twin validation watch wire',

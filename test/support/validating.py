@@ -4,7 +4,6 @@
 from pathlib import Path
 
 from gear_kinematics.bag import Message, in_batches
-from gear_kinematics.kinematics import solve
 from gear_kinematics.validation.findings import sentence
 from gear_kinematics.validation.report import BagReport, FieldReport, TopicReport
 from gear_kinematics.validation.task import Task
@@ -16,13 +15,12 @@ def validate(
     config: dict,
     *topics,
     further=None,
-    solver=solve,
     encoder='',
     **options,
 ) -> BagReport:
     """Validate messages with the options of a `Task`."""
     task = Task(Path('bag'), config, **options)
-    named = {'further': further or {}, 'solver': solver, 'encoder': encoder}
+    named = {'further': further or {}, 'encoder': encoder}
     validator = Validator(task, *topics, **named)
     validator.feed(in_batches(messages, 8192))
     return validator.report()

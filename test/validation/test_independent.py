@@ -54,6 +54,8 @@ def miscounted(monkeypatch) -> None:
     ('plant', 'name', 'parameters'),
     [
         (None, 'driver_faults', DEFAULT),
+        (None, 'servo_point_to_point', DEFAULT),
+        (None, 'constant_speed_3000rpm', DEFAULT),
         (None, 'single_turn_encoder', SINGLE),
         (scaled, 'servo_point_to_point', DEFAULT),
         (miscounted, 'single_turn_encoder', SINGLE),
