@@ -27,11 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_columns(parser, 'rotor', 'angle', 'torque')
     gear = arguments.group(parser, 'gear')
     for name, unit, text in (
-        (
-            'cam-rating',
-            'N',
-            "dynamic load rating C of a cam's ball bearing, for its L10 life",
-        ),
+        ('cam-rating', 'N', "dynamic load rating C of a cam's ball bearing, for its L10 life"),
         ('slot-friction', 'MU', 'coefficient of friction of the slots, to estimate their loss'),
     ):
         gear.add_argument(

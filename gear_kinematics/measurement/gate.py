@@ -15,13 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.measurement.ramp_gate import (
-    jumped,
-    left_out,
-    longest,
-    shifted,
-    usual,
-)
+from gear_kinematics.measurement.ramp_gate import jumped, left_out, longest, shifted, usual
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RotorMotion
 from gear_kinematics.measurement.sentences import NAMED, Observation, Observed
 from gear_kinematics.measurement.two_encoders import directions
