@@ -24,11 +24,7 @@ _LONGEST_PERIOD = 2**26  # rotor turns; products of two such numbers are exact i
 
 
 def is_calibration(path: Path) -> bool:
-    """Return whether a file is a calibration of any version.
-
-    Raises:
-        OSError: if it cannot be read.
-    """
+    """Return whether a file is a calibration of any version; OSError if it cannot be read."""
     begin = f'schema: {SCHEMA.rpartition("/")[0]}'.encode()
     with path.open('rb') as file:
         return file.read(len(begin)) == begin
@@ -176,11 +172,7 @@ class Calibration:
 
     @classmethod
     def load(cls, path: Path, gear: Gear | None = None) -> Self:
-        """Read a file.
-
-        Args:
-            path: path of the file.
-            gear: the gear to correct; None skips the check of the gear.
+        """Read a file, and check that it is one for a gear, if that is given.
 
         Raises:
             CalibrationError: if the file cannot be used, or is of another gear; the text names it.

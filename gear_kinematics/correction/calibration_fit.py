@@ -63,13 +63,9 @@ class CalibrationFit(NamedTuple):
 
 
 def independent_samples(residual: Array) -> float:
-    """The number of independent samples that a series is worth, at least 1.
+    """How many independent samples a series, (n,), with a mean of 0 is worth, at least 1.
 
-    Args:
-        residual: (n,), with a mean of 0.
-
-    Returns:
-        n/τ, with the autocorrelation time τ from the initial positive autocorrelations (Geyer).
+    It is n/τ, with the autocorrelation time τ from the initial positive autocorrelations (Geyer).
     """
     count = len(residual)
     size = 1 << (2 * count - 1).bit_length()

@@ -110,16 +110,10 @@ class Corrector:
         *,
         referenced: Array | bool = True,
     ) -> Correction:
-        """Compute the correction at the next samples, all arrays (n,) as in `RotorSamples`.
+        """Compute the correction at the next samples.
 
-        Args:
-            stamp: ns.
-            turns: whole turns of the rotor.
-            angle: angle of the rotor within the turn, rad.
-            velocity: velocity of the rotor, rad/s; NaN where it is unknown.
-            effort: torque of the rotor, N·m; NaN where it is unknown.
-            segment: the states are unknown after it has changed.
-            referenced: whether the rotor's turns are known, of all or each.
+        Their columns, (n,), are as in `RotorSamples`, with NaN for an unknown velocity or effort;
+        `referenced` is of all samples, or of each.
         """
         columns: list[Any] = [stamp, turns, angle, velocity, effort, segment]
         known = np.broadcast_to(referenced, stamp.shape)

@@ -44,14 +44,12 @@ class Reversals:
 def separate(difference: Array, speed: Array) -> Reversals | None:
     """Separate lost motion from a delay, at angles that both directions cover, in their order.
 
-    Uncertainties are those of the jackknife, which leaves out a block of angles at a time.
+    Uncertainties are those of the jackknife, which leaves out a block of angles at a time. Without
+    common angles there are none: None.
 
     Args:
         difference: error of backward minus forward motion, (n,), rad.
         speed: speed of forward minus that of backward motion, (n,), rad/s.
-
-    Returns:
-        None without common angles.
     """
     if not len(speed):
         return None

@@ -44,11 +44,7 @@ class Direction:
     """
 
     def __init__(self, travel: float) -> None:
-        """Start without a direction.
-
-        Args:
-            travel: angle after a reversal until the new direction counts, rad.
-        """
+        """Start without a direction; a new one counts after a travel, rad, from a reversal."""
         self._travel = travel
         self.reset()
 
@@ -140,11 +136,7 @@ class TransmissionError:
         return self._match()
 
     def add_measured(self, stamp: int, angle: float) -> list[ErrorSample]:
-        """Add a measured output angle, rad, at a stamp, ns.
-
-        Returns:
-            The errors that are known now, in the order of their stamps.
-        """
+        """Add a measured output angle, rad, at a stamp, ns; see `add_ideal`."""
         if not abs(angle) <= LARGEST_ANGLE:  # NaN compares false
             self.unmatched['not finite, or too large'] += 1
             return []

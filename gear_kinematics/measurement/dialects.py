@@ -174,11 +174,7 @@ def _encoding(head: bytes) -> str:
 
 
 def _layout(lines: Sequence[str]) -> _Layout:
-    """Find separator, decimal point, names and units.
-
-    Raises:
-        ValueError: if there are no rows of numbers, or no names.
-    """
+    """Find separator, decimal point, names and units; ValueError without numbers or names."""
     if _FRAMES.match(''.join(lines[:1])):
         raise ValueError('a log of CAN frames: decode their signals to columns, as cantools does')
     filled = [k for k, line in enumerate(lines) if line.strip() and not line.startswith(_COMMENT)]
@@ -270,11 +266,7 @@ def _names(
 
 
 def _joint_state(row: Sequence[str]) -> tuple[list[str], dict[str, str], dict[str, str]]:
-    """Name the columns that `ros2 topic echo --csv` writes of sensor_msgs/JointState.
-
-    Raises:
-        ValueError: if these are others.
-    """
+    """Name the columns that `ros2 topic echo --csv` writes; ValueError for others."""
     joints = [*takewhile(lambda cell: cell and not weight(cell, '.'), row[3:])]
     fields = (len(row) - 3) / max(len(joints), 1) - 1.0
     if fields not in {1.0, 2.0, 3.0} or not all(map(str.isdecimal, row[:2])):

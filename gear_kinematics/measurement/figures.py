@@ -91,12 +91,10 @@ class GearFigures:
 def gear_figures(
     ramps: Sequence[Ramps], angle_step: float, rated_torque: float | None = None
 ) -> GearFigures:
-    """Compute the figures of ramps, in ascending order of amplitude.
+    """Compute the figures of the ramps of a recording, in ascending order of amplitude.
 
-    Args:
-        ramps: of one recording.
-        angle_step: rad at the output; 0 if unknown.
-        rated_torque: N·m; None: the amplitude of the largest ramps.
+    `angle_step` is in rad at the output, 0 if unknown. Without a rated torque, N·m, that is the
+    amplitude of the largest ramps.
 
     Raises:
         RampError: if the angle does not grow with the torque.

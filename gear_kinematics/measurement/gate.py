@@ -187,10 +187,8 @@ def _lost_motion(steps: Array, ideal: Array, fastest: float) -> NDArray[np.bool_
 def _slipped(error: Array, ideal: Array, usually: float) -> NDArray[np.bool_]:
     """Find steps of the error, (n - 1,), after which it is another one at all angles and ways.
 
-    Args:
-        error: (n,), rad, without stray readings.
-        ideal: (n,), output angle, rad.
-        usually: rad, the step that 98 % have.
+    The error, without stray readings, and the ideal output angle, (n,) each, are in rad, as is
+    `usually`, the step that 98 % have.
     """
     steps = np.diff(error)
     found = np.zeros(len(steps), bool)

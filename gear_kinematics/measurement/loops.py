@@ -127,11 +127,7 @@ class Ramps:
 
 
 def find_ramps(torque: Array, angle: Array) -> tuple[Ramps, ...]:
-    """Find the ramps of a recording, in ascending order of amplitude.
-
-    Args:
-        torque: (n,), N·m.
-        angle: (n,), rad.
+    """Find the ramps in torques, N·m, and angles, rad, (n,) each, in ascending order of amplitude.
 
     Raises:
         RampError: if the torque never goes to both sides and back.

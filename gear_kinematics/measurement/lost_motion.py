@@ -57,12 +57,9 @@ class LostMotion:
 def measure(
     recording: Recording, parameters: NodeParameters, rated_torque: float | None = None
 ) -> LostMotion:
-    """Measure a recording.
+    """Measure torque ramps, the motion of both encoders, or both, as far as a recording has them.
 
-    Args:
-        recording: torque ramps, the motion of both encoders, or both.
-        parameters: of the node: the gear, and `transmission_error_travel`.
-        rated_torque: N·m; None: the amplitude of the largest ramps.
+    Without a rated torque, N·m, that is the amplitude of the largest ramps.
 
     Raises:
         RampError, RecordingError: if nothing can be measured.

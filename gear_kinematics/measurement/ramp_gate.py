@@ -32,10 +32,8 @@ _LOADED = 0.5  # of the torque, where no play is crossed; and of the range of th
 def gated_ramps(ramps: Loading) -> tuple[Loading, tuple[Observed, ...]]:
     """Leave out readings that leave both neighbours and come back, and all before or after a slip.
 
-    What remains is searched again until nothing more is found, as a fault can hide another.
-
-    Returns:
-        The longest part without a slip, and what was left out.
+    What remains is searched again until nothing more is found, as a fault can hide another. The
+    longest part without a slip is returned, with what was left out.
     """
     time, timed = ramps.moments, ramps.seconds is not None
     strays = saturated = np.zeros(0)

@@ -104,11 +104,8 @@ def estimate_ratio(
 ) -> RatioEstimate:
     """Estimate the ratio by the fit of both encoders.
 
-    Args:
-        rotor: (n,), rad, counting turns, in the order of time.
-        output: (n,), rad, counting turns.
-        time: (n,), s.
-        period: s between the samples between which the rotor is interpolated; 0 if it is not.
+    The angles, (n,) each, rad, count turns, and are in the order of time, s. Between samples that
+    are `period` apart, s, the rotor is interpolated; 0 if it is not.
 
     Raises:
         RecordingError: if there are too few samples, or the output hardly turns with the rotor, or

@@ -44,13 +44,9 @@ def read(
     sources: Sources | None = None,
     progress: ReportProgress | None = None,
 ) -> Recording:
-    """Read a recording.
+    """Read a table or a bag, by what is known of its columns or topics, and of the encoders.
 
-    Args:
-        path: of a table or a bag.
-        parameters: of the node.
-        sources: what is known of its columns or topics, and of the encoders.
-        progress: called after each batch of a bag, with the messages on all of its topics.
+    `progress` is called after each batch of a bag, with the messages on all of its topics.
 
     Raises:
         BagError, RecordingError: if it cannot be read, or contains nothing to measure.
@@ -68,11 +64,7 @@ def read_encoders(
     sources: Sources | None = None,
     progress: ReportProgress | None = None,
 ) -> tuple[Recording, Encoders]:
-    """Read a recording of both encoders; see `read`.
-
-    Raises:
-        BagError, RecordingError: see `read`; if it lacks the output's encoder.
-    """
+    """Read a recording as `read` does; RecordingError if it lacks one of both encoders."""
     sources = sources or Sources()
     if not is_table(path):
         with open_bag(path) as bag:

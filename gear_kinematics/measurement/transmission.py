@@ -86,10 +86,7 @@ def transmission_figures(
 ) -> TransmissionFigures:
     """Compute the figures of a recording, less a delay that is clear.
 
-    Args:
-        encoders: of rotor and output.
-        ratio: of the gear.
-        travel: rad of the output after a reversal until the new direction counts.
+    A new direction counts after so much travel of the output, rad, from a reversal.
     """
     both = Component(math.sqrt(2.0) * resolution(encoders.error_step(ratio).size))
     motion = _Motion(encoders, ratio, travel)

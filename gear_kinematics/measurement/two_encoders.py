@@ -56,15 +56,10 @@ class EncoderFit:
     def __init__(
         self, rotor: Array, output: Array, time: Array, way: Array, slope: float, late: float = 0.0
     ) -> None:
-        """Fit angles, (n,) each, rad, counting turns, in the order of time.
+        """Fit angles of rotor and output, (n,) each, rad, counting turns, in the order of time, s.
 
-        Args:
-            rotor: angle of the rotor.
-            output: angle of the output.
-            time: s.
-            way: direction of the motion, 1 or -1; samples with 0 are left out.
-            slope: output angle over rotor angle, about.
-            late: delay of the output's samples, s, about.
+        `way` is the direction of the motion, 1 or -1; samples with 0 are left out. The slope,
+        output angle over rotor angle, and the delay `late` of the output, s, are estimates.
 
         Raises:
             RecordingError: if there are too few samples.
@@ -150,12 +145,10 @@ class EncoderFit:
 
 
 def directions(output: Array, travel: float, starts: Collection[int] = ()) -> Array:
-    """Direction of the output at each sample, (n,): 1, -1, or 0 where it is not known.
+    """Direction of an output angle, (n,), rad, in the order of time: 1, -1, or 0 if unknown.
 
-    Args:
-        output: (n,), rad, in the order of time.
-        travel: rad after a reversal until the new direction counts.
-        starts: indices of samples before which the motion is unknown.
+    A new one counts after so much travel, rad, from a reversal. The motion before the samples with
+    the indices `starts` is unknown.
     """
     direction = Direction(travel)
     way = np.zeros(len(output), np.int8)

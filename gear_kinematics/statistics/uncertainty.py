@@ -40,24 +40,15 @@ class Estimate:
 
     @classmethod
     def of_mean(cls, values: Sequence[float], *others: Component) -> Self:
-        """Estimate a quantity from its repeats, and components that are the same in all of them.
-
-        Args:
-            values: at least one.
-            others: such as the resolution of the encoder.
-        """
+        """Estimate a quantity from at least one repeat, and components that all repeats share."""
         return cls.of_sum([(1.0, values)], *others)
 
     @classmethod
     def of_sum(cls, terms: Sequence[tuple[float, Sequence[float]]], *others: Component) -> Self:
-        """Estimate a sum of quantities, each with its own repeats.
+        """Estimate a sum of quantities, each with a factor and its own repeats, at least one.
 
         The standard uncertainties of the means (GUM 4.2.3) and the other components are combined
         (GUM 5.1.2), with effective degrees of freedom by Welch and Satterthwaite (GUM G.4.1).
-
-        Args:
-            terms: factor and repeated values of each quantity, at least one value each.
-            others: further components of the sum.
         """
         value = sum(factor * float(np.mean(values)) for factor, values in terms)
         repeats = min(len(values) for _, values in terms)
@@ -96,11 +87,7 @@ class Estimate:
 
 
 def combined(parts: Sequence[Component]) -> tuple[float, float]:
-    """Combine independent components (GUM 5.1.2).
-
-    Returns:
-        The standard uncertainty, and its effective degrees of freedom (GUM G.4.1).
-    """
+    """Combine independent components (GUM 5.1.2): standard uncertainty and degrees of freedom."""
     standard = math.hypot(*(part.standard for part in parts))
     # Shares of the variance, since fourth powers of large numbers overflow.
     spread = sum(

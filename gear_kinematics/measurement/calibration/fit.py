@@ -95,12 +95,9 @@ class Fit:
 def fit(
     recordings: Sequence[Recorded], ratio: Fraction, mechanism: Mechanism | None = None
 ) -> Fit:
-    """Calibrate a gear.
+    """Calibrate a gear of an exact ratio i by one recording or more.
 
-    Args:
-        recordings: at least one.
-        ratio: i, exact.
-        mechanism: for the orders of satellite and teeth, if it is known.
+    A mechanism adds the orders of its satellites and teeth.
 
     Raises:
         RecordingError: if the recordings do not suffice, or have another ratio.

@@ -129,12 +129,8 @@ def without_delays(
 ) -> tuple[GearModel, list[Estimate | None]]:
     """Fit a model, and again with the delays taken out that are clear.
 
-    Args:
-        model_of: makes the model with a delay, s, taken out of each recording.
-        recordings: their number.
-
-    Returns:
-        The model, and the delay of each recording, s; None where it cannot be told.
+    `model_of` makes it with a delay, s, taken out of each of so many recordings. The model is
+    returned with the delay of each recording, s; None where it cannot be told.
     """
     late = [0.0] * recordings
     model = model_of(late)
@@ -169,12 +165,7 @@ def select(equations: NormalEquations, terms: Sequence[Term], own: Sequence[int]
     """Choose among terms, whose columns are the first ones of the equations, in order.
 
     A leading trend stays: any output has errors that vary slowly with its angle, and limit where
-    others hold.
-
-    Args:
-        equations: with single blocks as folds.
-        terms: candidates.
-        own: columns that are always fitted.
+    others hold. The equations have single blocks as folds; the columns `own` are always fitted.
     """
     places = iter(range(len(own) + sum(len(term.coefficients) for term in terms)))
     columns = [list(islice(places, len(term.coefficients))) for term in terms]

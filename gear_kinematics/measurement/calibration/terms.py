@@ -121,13 +121,10 @@ class Samples:
 
 
 def _play_bounds(x: Array, radius: float) -> Array:
-    """Follow a play operator along x, (n,), rad, before which its play is unknown.
+    """The least and the greatest play, (2, n), of an operator that follows x, (n,), rad.
 
-    Clipping to one interval and then to another is clipping to one interval again, so that all
-    steps are composed in log2 n passes, without rounding.
-
-    Returns:
-        The least and the greatest possible plays, (2, n).
+    Its play is unknown before. Clipping to one interval and then to another is clipping to one
+    interval again, so that all steps are composed in log2 n passes, without rounding.
     """
     parts, before = [], np.array([[-np.inf], [np.inf]])
     for start in range(0, len(x), _CHUNK):

@@ -47,9 +47,7 @@ def unwrapped(values: Array, seconds: Array, step: Step, period: float = 0.0) ->
 def signed(values: Array, count: float) -> Array:
     """Take positions for negative ones where they pass from 0 to the greatest of a register.
 
-    Args:
-        values: (n,), in the order of time, in a unit.
-        count: one count of the encoder, in that unit.
+    The values, (n,), are in the order of time; `count` is one count of the encoder in their unit.
     """
     period = _REGISTER * count
     passed = np.unwrap(values, period=period)
@@ -57,12 +55,7 @@ def signed(values: Array, count: float) -> Array:
 
 
 def find_range(values: Array, seconds: Array, step: Step) -> tuple[float, int]:
-    """Find after which angle positions repeat, in the order of time.
-
-    Args:
-        values: (n,), rad.
-        seconds: (n,), s.
-        step: rad, of the encoder.
+    """Find after which angle positions, (n,), rad, at times, s, repeat.
 
     Returns:
         The range, rad, and the number of wraps that show it; 0 and 0 if they do not repeat.

@@ -77,11 +77,7 @@ class Joint:
         return float(np.ptp(self.encoders.measured))
 
     def row_at(self, moment: float | Literal['START', 'END']) -> int:
-        """Find the sample at START, END, or a time of the recording, s.
-
-        Raises:
-            RecordingError: if there is no sample then.
-        """
+        """Find the sample at START, END or a time, s; RecordingError if there is none then."""
         if isinstance(moment, str):
             return 0 if moment == 'START' else -1
         seconds = float(self.encoders.rotor.stamp[0]) / SECOND + self.encoders.seconds

@@ -156,11 +156,7 @@ class RecordedLoads:
             )
 
     def forces(self, cam_rating: float) -> Iterator[Force]:
-        """Yield what each joint carried.
-
-        Args:
-            cam_rating: C, N, for the life of a cam's bearing, (C/P)^p 10⁶ turns (ISO 281).
-        """
+        """Yield what each joint carried; cams have bearings of the dynamic load rating C, N."""
         ratio = float(self.parameters.mechanism.gear_ratio)
         turns = self.travel.sum() / TURN * (1.0 - 1.0 / ratio)  # of the satellite on its cam
         hours = self.time[-1] / 3600.0
@@ -181,10 +177,7 @@ class RecordedLoads:
         """Share of the output's work that the slots take: μ (4/π)(zk/zs) Σ abs(T)/abs(Σ T).
 
         Each couple T acts as two forces at a distance of 2 rs; both slides have the amplitude e,
-        so that the sum of their speeds is (4/π) e (zk/zs) φ2' in the mean of a turn.
-
-        Args:
-            friction: μ.
+        so that the sum of their speeds is (4/π) e (zk/zs) φ2' in the mean. The friction is μ.
         """
         mechanism = self.parameters.mechanism
         torques, _ = self.parameters.sharing.branches(self.torque)
@@ -270,10 +263,7 @@ def _levels(values: Array) -> tuple[float, float, float]:
 
 
 def spectrum(values: Array) -> list[tuple[float, float]]:
-    """Count the cycles of a load by rainflow (ASTM E1049-85, 5.4.4).
-
-    Args:
-        values: (n,), of which only 64 levels are told apart.
+    """Count the cycles of a load, (n,), in 64 levels by rainflow (ASTM E1049-85, 5.4.4).
 
     Returns:
         Ranges in the unit of the values, the largest first, with their counts.
