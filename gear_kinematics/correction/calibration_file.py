@@ -38,14 +38,11 @@ class CalibrationError(ValueError):
 class UsedRecording:
     """A recording from which a calibration was made."""
 
-    name: str
-    """Name of the file."""
+    name: str  # name of the file
     sha256: str
     samples: int
-    duration: float
-    """Duration of the recording, s."""
-    zero: float
-    """Offset of the deviation in this recording, from the zero of its encoder, rad."""
+    duration: float  # duration of the recording, s
+    zero: float  # rad: offset of the deviation in this recording, from the zero of its encoder
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,58 +50,44 @@ class Order:
     """A periodic deviation: cos · cos(n φ2) + sin · sin(n φ2)."""
 
     name: str
-    cycles: Fraction
-    """Order n: cycles per turn of the rotor."""
-    cos: float
-    """Cosine coefficient, rad."""
-    sin: float
-    """Sine coefficient, rad."""
+    cycles: Fraction  # order n: cycles per turn of the rotor
+    cos: float  # cosine coefficient, rad
+    sin: float  # sine coefficient, rad
 
 
 @dataclass(frozen=True, slots=True)
 class Stop:
     """A stop operator on the ideal output angle: its coefficient times its state in ±radius."""
 
-    radius: float
-    """Radius of the operator, rad, greater than 0."""
-    coefficient: float
-    """Coefficient of the state, rad/rad."""
+    radius: float  # rad, greater than 0
+    coefficient: float  # coefficient of the state, rad/rad
 
 
 @dataclass(frozen=True, slots=True)
 class Compliance:
     """Wind-up caused by the output torque M: coefficient · (M - torque)."""
 
-    coefficient: float
-    """Coefficient of the torque, rad/(N·m)."""
-    torque: float
-    """Torque without a wind-up, N·m."""
+    coefficient: float  # coefficient of the torque, rad/(N·m)
+    torque: float  # torque without a wind-up, N·m
 
 
 @dataclass(frozen=True, slots=True)
 class Spans:
     """Ranges of the output that the recordings covered, each as its least and greatest value."""
 
-    speed: tuple[float, float] | None
-    """Range of the speed, rad/s; None if time was not recorded."""
-    torque: tuple[float, float] | None
-    """Range of the torque, N·m; None if no effort was recorded."""
-    angle: tuple[float, float]
-    """Range of the ideal output angle, rad."""
-    time: float
-    """Total duration, s."""
+    speed: tuple[float, float] | None  # range of the speed, rad/s; None if time was not recorded
+    torque: tuple[float, float] | None  # range of the torque, N·m; None if no effort was recorded
+    angle: tuple[float, float]  # range of the ideal output angle, rad
+    time: float  # total duration, s
 
 
 @dataclass(frozen=True, slots=True)
 class Prediction:
     """Quality of the prediction on held-out blocks of the data."""
 
-    rms_before: float
-    """Root mean square error without the correction, rad."""
-    rms_after: float
-    """Root mean square error with the correction, rad."""
-    coverage: float
-    """Share of samples within the 95 % interval."""
+    rms_before: float  # root mean square error without the correction, rad
+    rms_after: float  # root mean square error with the correction, rad
+    coverage: float  # share of samples within the 95 % interval
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -63,8 +63,7 @@ def _of_ramps(figures: GearFigures) -> Observed:
 class LimitCheck(NamedTuple):
     """Whether a recording is shown to keep to a limit."""
 
-    limit: str
-    """Name of the limit."""
+    limit: str  # name of the limit
     holds: bool
     why: Observed
 

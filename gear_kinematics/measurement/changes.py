@@ -31,8 +31,7 @@ class Group(NamedTuple):
     """Recordings of one state of the gear."""
 
     name: str
-    members: tuple[int, ...]
-    """Numbers of the recordings."""
+    members: tuple[int, ...]  # numbers of the recordings
 
 
 def single(names: Sequence[str]) -> list[Group]:
@@ -65,10 +64,8 @@ class Quantity(NamedTuple):
     """One figure of several recordings."""
 
     name: str
-    unit: str
-    """SI."""
-    values: tuple[Estimate | None, ...]
-    """One per recording."""
+    unit: str  # SI
+    values: tuple[Estimate | None, ...]  # one per recording
 
 
 def at_common_torque(reports: Sequence[LostMotion]) -> list[LostMotion]:

@@ -94,13 +94,10 @@ class Column(NamedTuple):
     """A column that is read."""
 
     name: str
-    scale: float
-    """Factor from its numbers to rad, N·m or s."""
-    unit: str
-    """Empty where nothing is known."""
+    scale: float  # factor from its numbers to rad, N·m or s
+    unit: str  # empty where nothing is known
     on_rotor: bool
-    on_output: bool
-    """Whether its name says so."""
+    on_output: bool  # whether its name says so
 
 
 class ColumnsError(ValueError):

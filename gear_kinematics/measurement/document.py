@@ -39,10 +39,8 @@ class Comparison:
     """Comparison of recordings at a common torque."""
 
     section: Section
-    sentence: str
-    """The answer, in one line."""
-    data: Mapping[str, Any]
-    """For the JSON."""
+    sentence: str  # the answer, in one line
+    data: Mapping[str, Any]  # for the JSON
 
 
 def document(

@@ -39,8 +39,7 @@ class MeasuredStiffness:
 
     low: float
     high: float
-    slope: Estimate
-    """N·m/rad, the mean of both signs of torque."""
+    slope: Estimate  # N·m/rad, the mean of both signs of torque
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -34,14 +34,10 @@ class RampError(ValueError):
 class HalfLoop:
     """Half of a hysteresis loop: from a torque peak to the opposite one."""
 
-    torque: Array
-    """(n,), N·m, strictly monotonic."""
-    angle: Array
-    """(n,), rad, at these torques."""
-    noise: float
-    """N·m, standard deviation of a reading of the torque."""
-    blur: float
-    """N·m, the same after smoothing."""
+    torque: Array  # (n,), N·m, strictly monotonic
+    angle: Array  # (n,), rad, at these torques
+    noise: float  # N·m, standard deviation of a reading of the torque
+    blur: float  # N·m, the same after smoothing
 
     @property
     def start(self) -> float:

@@ -20,11 +20,9 @@ class Measured(NamedTuple):
     """A figure of a recording."""
 
     name: str
-    unit: str
-    """SI."""
+    unit: str  # SI
     value: Estimate | Backlash | None
-    at: str = ''
-    """Condition under which it was read, in words that follow the name."""
+    at: str = ''  # condition under which it was read, in words that follow the name
 
     @property
     def cell(self) -> Cell:

@@ -53,10 +53,8 @@ class Backlash(NamedTuple):
     """The backlash that a recording leaves room for, rad."""
 
     low: float
-    high: float | None
-    """None where nothing bounds it."""
-    cause: Cause
-    """Why it has no value."""
+    high: float | None  # None where nothing bounds it
+    cause: Cause  # why it has no value
 
     @property
     def value(self) -> Estimate | None:
@@ -72,8 +70,7 @@ class MiddleLine:
     """Middle line of a loop, in the order of the angle: (n,) each, rad and N·m."""
 
     angle: Array
-    load: Array
-    """Non-decreasing."""
+    load: Array  # non-decreasing
     friction: Array
 
     @classmethod

@@ -18,12 +18,9 @@ _STEADY = 25  # messages before and after, of which the age is the same
 class ClockStep(NamedTuple):
     """A clock that was set back while it was recorded."""
 
-    received: int
-    """When the first message with a stamp of the new time was received, ns."""
-    size: int
-    """ns."""
-    stamp: int
-    """The last one of the old time, ns."""
+    received: int  # when the first message with a stamp of the new time was received, ns
+    size: int  # ns
+    stamp: int  # the last one of the old time, ns
 
 
 class RestoredClock:

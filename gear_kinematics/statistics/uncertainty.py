@@ -22,8 +22,7 @@ _MAX_DEGREES = 10_000  # of freedom; the quantile is within 1.3e-4 of the normal
 class Component:
     """One source of uncertainty."""
 
-    standard: float
-    """Its contribution to the standard uncertainty of the value."""
+    standard: float  # its contribution to the standard uncertainty of the value
     degrees_of_freedom: float = math.inf
 
 
@@ -32,10 +31,8 @@ class Estimate:
     """A measured quantity."""
 
     value: float
-    standard: float | None
-    """Standard uncertainty, in the unit of the value; None without repeats."""
-    degrees_of_freedom: float
-    """Effective degrees of freedom of the standard uncertainty."""
+    standard: float | None  # standard uncertainty, in the unit of the value; None without repeats
+    degrees_of_freedom: float  # effective degrees of freedom of the standard uncertainty
     repeats: int
 
     @classmethod

@@ -52,14 +52,10 @@ class FittedTerm:
     """A term of the calibration, as the report shows it."""
 
     name: str
-    cycles: Fraction | None
-    """Cycles of an order per turn of the rotor."""
-    radius: float | None
-    """Radius of a stop operator, rad."""
-    amplitude: Estimate
-    """Amplitude, rad; that of a stop operator or of the wind-up has a sign."""
-    cause: str
-    """Likely cause, in words."""
+    cycles: Fraction | None  # cycles of an order per turn of the rotor
+    radius: float | None  # radius of a stop operator, rad
+    amplitude: Estimate  # rad; that of a stop operator or of the wind-up has a sign
+    cause: str  # likely cause, in words
 
 
 @dataclass(frozen=True, slots=True)

@@ -60,10 +60,8 @@ class Value:
     """A parameter of the node, or what else is to be determined."""
 
     name: str
-    value: str | int | float | None
-    """Value; None if it is open."""
-    evidence: Observed
-    """Evidence; for an open value, what is known and what to do."""
+    value: str | int | float | None  # None if it is open
+    evidence: Observed  # for an open value, what is known and what to do
 
 
 @dataclass(frozen=True, eq=False, slots=True)

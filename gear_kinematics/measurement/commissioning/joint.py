@@ -33,14 +33,11 @@ class Joint:
     """Both encoders in one recording."""
 
     recording: Recording
-    encoders: Encoders
-    """Angles without wraps, rad."""
-    turned: Array
-    """Angle of the rotor at the output's angles `encoders.measured`, (n,), rad."""
+    encoders: Encoders  # angles without wraps, rad
+    turned: Array  # angle of the rotor at the output's angles `encoders.measured`, (n,), rad
     rotor_wraps: int
     output_wraps: int
-    rotor_range: float
-    """Angle after which the rotor's position repeats, rad; 0 if it does not."""
+    rotor_range: float  # angle after which the rotor's position repeats, rad; 0 if it does not
 
     @classmethod
     def of(cls, recording: Recording, encoders: Encoders) -> 'Joint':

@@ -49,10 +49,8 @@ class LoadReport(NamedTuple):
 
     section: Section | None
     data: dict[str, Any]
-    error: str
-    """In one line that names the recording: of damage, up to which it was read, too."""
-    taken: str = ''
-    """Columns that were taken from a table."""
+    error: str  # in one line that names the recording: of damage, up to which it was read, too
+    taken: str = ''  # columns that were taken from a table
 
 
 def document(reports: Sequence[LoadReport]) -> Document:

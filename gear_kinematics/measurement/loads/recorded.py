@@ -60,15 +60,11 @@ class LoadTask:
 class Moment(NamedTuple):
     """A time in which a branch was out of mesh."""
 
-    start: float
-    """s, since the first sample."""
-    duration: float
-    """s; that of a single sample lasts until the next one."""
+    start: float  # s, since the first sample
+    duration: float  # s; that of a single sample lasts until the next one
     branch: str
-    least_margin: float
-    """N·m, less than 0."""
-    stamp: int
-    """Stamp of the first sample, ns."""
+    least_margin: float  # N·m, less than 0
+    stamp: int  # stamp of the first sample, ns
 
 
 class Force(NamedTuple):
