@@ -145,8 +145,8 @@ def test_trend_is_not_trusted_beyond_the_calibrated_angles():
 
 def test_a_delay_that_is_not_certain_is_left_in():
     simulated, _ = one_gear(replace(IN_CLASS['coloured noise'], delay=1e-4))
-    (r,) = fit([recorded(simulated, 0)], RATIO, MECHANISM).recordings
-    assert not r.delay.clear
+    (delay,) = fit([recorded(simulated, 0)], RATIO, MECHANISM).delays
+    assert not delay.clear
 
 
 def test_the_same_gear_has_its_own_zero_in_each_recording():
@@ -154,9 +154,9 @@ def test_the_same_gear_has_its_own_zero_in_each_recording():
     gear = gears(USUAL, random)
     simulated = [simulate(USUAL, gear, strokes(20.0, random), random) for _ in range(3)]
     result = fit([recorded(s, 0) for s in simulated], RATIO, MECHANISM)
-    for s, residuals in zip(simulated, result.recordings, strict=True):
+    for s, used in zip(simulated, result.calibration.recordings, strict=True):
         error = s.measured[:, 0] - s.rotor[:, 0] / -19.0
-        assert residuals.used.zero == pytest.approx(error.mean(), abs=2e-3)
+        assert used.zero == pytest.approx(error.mean(), abs=2e-3)
     assert improvement(result) > 1.0 / 0.15
 
 

@@ -44,7 +44,7 @@ def test_delay_of_each_recording_is_estimated_like_its_zero():
         first, second = two_halves(replace(GearSet(1), delay=delay), 3, strokes, 40.0)
         calibrated = fit([first], Fraction(-19), MECHANISM)
         delays[delay] = judge(*second, calibrated.calibration)
-        assert calibrated.recordings[0].delay.value == pytest.approx(delay, abs=1.5e-4)
+        assert calibrated.delays[0].value == pytest.approx(delay, abs=1.5e-4)
     found = delays[2e-3]
     difference = found.delay.value - delays[0.0].delay.value
     assert difference == pytest.approx(2e-3, abs=1.5e-4)
@@ -61,7 +61,7 @@ def test_delay_of_each_recording_is_estimated_like_its_zero():
 def test_without_times_there_is_no_delay():
     first, second = two_halves(GearSet(1), 3, strokes, 30.0, timed=False)
     result = fit([first], Fraction(-19), MECHANISM)
-    assert result.recordings[0].delay is None
+    assert result.delays == [None]
     judged = judge(*second, result.calibration)
     assert judged.delay is None
     assert judged.rms_after_with_delay == judged.rms_after

@@ -76,7 +76,10 @@ def document(fit: Fit, target: str) -> Document:
         'left_out': plain(errors) | widths,
         'terms': plain(fit.terms),
         'not_fitted': plain(fit.refused),
-        'recordings': [plain(r.used) | {'delay': plain(r.delay)} for r in fit.recordings],
+        'recordings': [
+            plain(used) | {'delay': plain(delay)}
+            for used, delay in zip(made.recordings, fit.delays, strict=True)
+        ],
         'remarks': sentences,
     }
     return Document('gearkin calibrate', (section,), data, verdict)
@@ -84,10 +87,10 @@ def document(fit: Fit, target: str) -> Document:
 
 def _remarks(fit: Fit) -> Iterator[str | Observed]:
     """Yield the basis and the limits of the calibration."""
-    for r in fit.recordings:
-        yield from (f'{r.used.name}: {text}' for text in r.remarks)
-        if r.delay and r.delay.clear:
-            yield Observation.OUTPUT_LATE(recording=r.used.name, delay=r.delay)
+    for recording, delay in zip(fit.recordings, fit.delays, strict=True):
+        yield from (f'{recording.name}: {text}' for text in recording.sentences)
+        if delay and delay.clear:
+            yield Observation.OUTPUT_LATE(recording=recording.name, delay=delay)
     for name, cause in fit.refused.items():
         yield Observation.NOT_FITTED(term=name, cause=cause)
 

@@ -36,7 +36,7 @@ from gear_kinematics.measurement.calibration.model import (
 from gear_kinematics.measurement.calibration.terms import Recorded, Samples, thinned
 from gear_kinematics.measurement.gate import NO_ENCODER
 from gear_kinematics.measurement.ratio import wrong_ratio
-from gear_kinematics.measurement.recording import Array, RecordingError
+from gear_kinematics.measurement.recording import Array, Recording, RecordingError
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.share import version
 from gear_kinematics.statistics.uncertainty import Estimate, jackknife
@@ -58,16 +58,6 @@ class FittedTerm:
     cause: str  # likely cause, in words
 
 
-@dataclass(frozen=True, slots=True)
-class FittedRecording:
-    """A recording that the calibration was made from."""
-
-    used: UsedRecording
-    delay: Estimate | None
-    """Delay of the output's angles, s, taken out if it exceeds its ±; None if not separable."""
-    remarks: Sequence[str]
-
-
 @dataclass(frozen=True, eq=False, slots=True)
 class Fit:
     """The result; arrays are (n,), of the used samples of all recordings, in rad."""
@@ -77,7 +67,10 @@ class Fit:
     helps: bool
     """Whether it reduces the error by more than a standard error, and its interval holds."""
     terms: tuple[FittedTerm, ...]
-    recordings: tuple[FittedRecording, ...]
+    recordings: Sequence[Recording]
+    delays: Sequence[Estimate | None]
+    """Delay of the output's angles in each recording, s, taken out if it exceeds its ±; None if
+    not separable."""
     refused: Mapping[str, Observed]
     """Terms that the recordings cannot determine, with the cause."""
     output: Array
@@ -132,37 +125,33 @@ def _result(
     samples, deviation = model.samples, model.values() @ model.coefficients[0]
     constant = -float(deviation.mean())
     before, after, width, coverage = model.checked()
-    entries, terms, trends, place = [], [], 0.0, 0
-    for term in model.terms:
-        fits = model.coefficients[:, place : place + len(term.coefficients)]
-        place += len(term.coefficients)
-        sizes = np.hypot(*fits.T) if len(term.coefficients) > 1 else fits[:, 0]
+    entries, terms, trends = [], [], 0.0
+    for term, columns in zip(model.terms, model.columns, strict=True):
+        fits = model.coefficients[:, columns]
+        sizes = np.hypot(*fits.T) if len(columns) > 1 else fits[:, 0]
         amplitude = jackknife(term.unit * sizes, together=TOGETHER)
-        entry: Any = term.entry
-        entries.append(
-            replace(entry, **dict(zip(term.coefficients, fits[0].tolist(), strict=True)))
-        )
-        radius = getattr(entry, 'radius', None)
+        values: dict[str, Any] = dict(zip(term.coefficients, fits[0].tolist(), strict=True))
+        entries.append(replace(term.entry, **values))
+        radius = getattr(term.entry, 'radius', None)
         terms.append(FittedTerm(term.name, term.cycles, radius, amplitude, term.cause))
         trends += amplitude.value * term.is_trend
     # Beyond the calibrated angles, a trend can be as wrong as it becomes large.
     outside = half_width(before) + half_width(deviation + constant) + trends
-    used = tuple(
-        UsedRecording(
-            s.recording.name,
-            s.recording.sha256,
-            len(s.error),
-            s.encoders.duration,
-            model.zero(k) - constant,
-        )
-        for k, s in enumerate(samples)
-    )
     fits = model.coefficients[1:]
     covariance = (len(fits) - 1) * np.cov(fits.T, ddof=0).reshape(2 * fits.shape[1:])
     calibration = Calibration(
         made_by=f'gearkin calibrate {version()}',
         created=datetime.now(UTC).isoformat(timespec='seconds'),
-        recordings=used,
+        recordings=tuple(
+            UsedRecording(
+                s.recording.name,
+                s.recording.sha256,
+                len(s.error),
+                s.encoders.duration,
+                model.zero(k) - constant,
+            )
+            for k, s in enumerate(samples)
+        ),
         gear_ratio=ratio,
         ring_teeth=mechanism.ring_teeth if mechanism else None,
         satellite_teeth=mechanism.satellite_teeth if mechanism else None,
@@ -189,7 +178,8 @@ def _result(
         calibration,
         falls and model.helps(),
         tuple(terms),
-        tuple(map(FittedRecording, used, delays, (s.recording.sentences for s in samples))),
+        [s.recording for s in samples],
+        delays,
         refused,
         np.concatenate([s.output[s.used] for s in samples]),
         before,

@@ -10,13 +10,13 @@ of Statistical Learning, 2nd ed., 2009, sections 3.3.2, 7.10).
 """
 
 from collections.abc import Callable, Sequence
-from itertools import islice, pairwise
+from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import lsq_linear
 
 from gear_kinematics.correction.calibration_file import Stop
-from gear_kinematics.measurement.calibration.terms import Samples, Term
+from gear_kinematics.measurement.calibration.terms import Samples, Term, columns_of
 from gear_kinematics.measurement.recording import Array
 from gear_kinematics.statistics.normal_equations import NormalEquations, block_bounds
 from gear_kinematics.statistics.uncertainty import (
@@ -40,16 +40,17 @@ class GearModel:
     def __init__(self, samples: Sequence[Samples], terms: Sequence[Term]) -> None:
         """Fit a zero and a delay of each recording, and choose among terms of the gear."""
         self.samples = samples
-        common = sum(len(term.coefficients) for term in terms)
+        columns = columns_of(terms)
+        common = sum(map(len, columns))
         own = range(common, common + 2 * len(samples))
         bounds = block_bounds([len(s.used) for s in samples])
         blocks = [(k, *ends) for k, edges in enumerate(bounds) for ends in pairwise(edges)]
         products = np.array([c.T @ c for c in (self._columns(terms, *of) for of in blocks)])
         chosen = select(NormalEquations(products), terms, own)
         self.terms = [terms[k] for k in chosen]
+        self.columns = columns_of(self.terms)
         # From here on, of the chosen terms alone.
-        firsts = np.cumsum([0, *(len(term.coefficients) for term in terms)])
-        places = [place for k in chosen for place in range(firsts[k], firsts[k + 1])]
+        places = [place for k in chosen for place in columns[k]]
         self._common = len(places)
         self._products = products[:, [*places, *own, -1]][:, :, [*places, *own, -1]]
         self._equations = NormalEquations(self._products)
@@ -167,8 +168,7 @@ def select(equations: NormalEquations, terms: Sequence[Term], own: Sequence[int]
     A leading trend stays: any output has errors that vary slowly with its angle, and limit where
     others hold. The equations have single blocks as folds; the columns `own` are always fitted.
     """
-    places = iter(range(len(own) + sum(len(term.coefficients) for term in terms)))
-    columns = [list(islice(places, len(term.coefficients))) for term in terms]
+    columns = columns_of(terms)
 
     def errors(chosen: Sequence[int]) -> Array:
         return equations.errors([*(place for k in chosen for place in columns[k]), *own])

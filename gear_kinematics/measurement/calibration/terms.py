@@ -7,6 +7,7 @@ contains.
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from itertools import count, islice
 from typing import NamedTuple
 
 import numpy as np
@@ -175,6 +176,12 @@ class Term(NamedTuple):
                 return samples.stop_states(radius)[0][at, None]
             case Compliance(torque=mean):
                 return np.asarray(samples.torque)[at, None] - mean
+
+
+def columns_of(terms: Sequence[Term]) -> list[list[int]]:
+    """Columns of each term, where those of all of them follow one another."""
+    columns = count()
+    return [list(islice(columns, len(term.coefficients))) for term in terms]
 
 
 def output_cycles(ratio: Fraction) -> Fraction:
