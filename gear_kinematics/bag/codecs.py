@@ -101,11 +101,7 @@ class ReadLimits:
         return cls.spare_size + cls.file_expansion * size
 
     def count(self, expanded: int) -> None:
-        """Count decompressed bytes.
-
-        Raises:
-            ValueError: if there are too many.
-        """
+        """Count decompressed bytes; raises ValueError if there are too many."""
         self._expanded -= expanded
         if self._expanded < 0:
             raise ValueError('its compressed data expand to more than a bag of this size can hold')
@@ -149,11 +145,7 @@ def codec_of(data: bytes) -> Codec | None:
 
 
 def decompressed(data: bytes, decompress: Decompressor, limits: ReadLimits, what: str) -> bytes:
-    """Decompress a chunk or message.
-
-    Raises:
-        ValueError: if it is cut off, or expands too far; the text begins with `what`.
-    """
+    """Decompress a chunk or message, `what`; raises ValueError if it is cut off or too large."""
     content, whole = decompress(data, limits.expanded_chunk(len(data)))
     limits.count(len(content))
     if not whole:

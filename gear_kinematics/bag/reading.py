@@ -69,11 +69,7 @@ class Bag:
     """Number of messages on all topics; None without metadata.yaml."""
 
     def __init__(self, path: Path | str) -> None:
-        """Read the topics.
-
-        Raises:
-            BagError: if there is no readable bag.
-        """
+        """Read the topics; raises BagError if there is no readable bag."""
         self.path = Path(path)
         self._readings = ExitStack()
         self._described: dict[str, Topic] = {}
@@ -137,11 +133,7 @@ class Bag:
         return found
 
     def describe(self, name: str) -> Topic:
-        """Return the description of a topic.
-
-        Raises:
-            BagError: if it is not in the bag, or the bag cannot be read.
-        """
+        """Return the description of a topic; raises BagError if it is missing or unreadable."""
         self.type_of(name)
         if not self._described:
             self._describe()

@@ -106,11 +106,7 @@ class Storage:
         raise NotImplementedError
 
     def check_encoding(self, topic: Topic) -> None:
-        """Make sure that the messages on a topic can be read.
-
-        Raises:
-            ValueError: if they are not CDR.
-        """
+        """Raise ValueError if the messages on a topic cannot be read, as they are not CDR."""
         if topic.encoding != 'cdr' and not self.any_encoding:
             raise ValueError(f'messages on {topic.name} are {topic.encoding!r}, not CDR')
 

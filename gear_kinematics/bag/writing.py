@@ -91,12 +91,10 @@ class BagWriter:
         storage: Literal['mcap', 'sqlite3'] = 'mcap',
         compression: Literal['none', 'zstd'] = 'none',
     ) -> None:
-        """Define the recording; `__enter__` opens it.
+        """Define the recording in a new folder of an existing one; `__enter__` opens it.
 
-        Args:
-            path: the folder to create, in an existing one.
-            storage: format of the files.
-            compression: zstd compresses the chunks of an mcap file, or a whole sqlite3 file.
+        The compression zstd is that of the chunks of an mcap file, or of a whole sqlite3
+        file.
         """
         self.path = Path(path)
         self._storage = StoragePlugin[storage.upper()]
@@ -106,11 +104,7 @@ class BagWriter:
         self._entries = 0
 
     def __enter__(self) -> Self:
-        """Create a folder.
-
-        Raises:
-            BagError: if the path exists already or cannot be written.
-        """
+        """Create a folder; raises BagError if the path exists already or cannot be written."""
         with bag_errors(self.path), ExitStack() as stack:
             if self.path.exists() or self.path.is_symlink():
                 raise ValueError('exists already')
@@ -138,22 +132,14 @@ class BagWriter:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Finish the recording, or remove it after an exception.
-
-        Raises:
-            BagError: if it cannot be finished.
-        """
+        """Finish the recording, or remove it after an exception; raises BagError if that fails."""
         with bag_errors(self.path), self._folder:
             self._writer.__exit__(kind, error, trace)
             if kind is None:
                 self._partial.rename(self.path)
 
     def add_file(self, name: str, content: bytes) -> None:
-        """Put another file into the folder.
-
-        Raises:
-            BagError: if it cannot be written.
-        """
+        """Put another file into the folder; raises BagError if it cannot be written."""
         with bag_errors(self.path):
             (self._partial / name).write_bytes(content)
 

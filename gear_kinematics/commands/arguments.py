@@ -166,11 +166,7 @@ def load_configs(
 
 
 def check_of_one(options: argparse.Namespace, actuators: Collection[str], *names: str) -> None:
-    """Check that options that apply to one gear are not given for several actuators.
-
-    Raises:
-        ValueError: naming the option and the actuators.
-    """
+    """Raise ValueError if options that apply to one gear are given for several actuators."""
     for name in names if len(actuators) > 1 else ():
         if getattr(options, name, None):
             option = f'--{name.replace("_", "-")}'

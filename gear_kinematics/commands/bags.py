@@ -23,9 +23,8 @@ CALIBRATION = 'calibration.yaml'
 def add_rotor(parser: argparse.ArgumentParser, *, configured: bool = True) -> None:
     """Add the options for the rotor's topic and joint; `load_config` applies the latter.
 
-    Args:
-        parser: the parser to which they are added.
-        configured: whether the command takes parameters of the node, too.
+    Without `configured`, the command takes no parameters of the node, and the joint finds the
+    topic.
     """
     group = arguments.group(parser, 'recording')
     group.add_argument(
@@ -73,11 +72,7 @@ def calibration_path(
 def load_calibration(
     options: argparse.Namespace, config: NodeParameters, bag: Path | None
 ) -> Calibration | None:
-    """Load the calibration at `calibration_path`.
-
-    Raises:
-        ValueError: if it cannot be used for the gear, or the parameters describe none.
-    """
+    """Load the calibration at `calibration_path`; raises ValueError if it is of another gear."""
     gear, path = config.gear, calibration_path(options, config, bag)
     return Calibration.load(path, gear) if path else None
 
@@ -145,11 +140,7 @@ def key(task: Any) -> tuple[Path, str]:
 
 @contextmanager
 def naming(bag: Path, *others: Path) -> Iterator[None]:
-    """Add the bag's name to errors that name neither the bag nor other files.
-
-    Raises:
-        ValueError, RuntimeError: with a text that begins with the bag.
-    """
+    """Put the name of the bag before errors that name neither the bag nor other files."""
     try:
         yield
     except (ValueError, RuntimeError) as error:

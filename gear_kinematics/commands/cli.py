@@ -151,11 +151,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def make_parser(*called: str) -> argparse.ArgumentParser:
-    """Build the parser of the program.
-
-    Args:
-        called: the subcommands whose modules are imported for their arguments; all if empty.
-    """
+    """Build the parser; imports only the `called` subcommands for their arguments, or else all."""
     listed = [
         f'{title}:\n' + ''.join(f'  {name:12} {about[0]}\n' for name, about in group.items())
         for title, group in GROUPS.items()

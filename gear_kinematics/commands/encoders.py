@@ -27,12 +27,9 @@ _COLUMNS = {
 def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: bool = True) -> None:
     """Add the recordings, and the options on how to read them.
 
-    `load_config` applies `--ratio` and `--joint`, and `sources` returns the others.
-
-    Args:
-        parser: parser of the command.
-        roles: quantities of `_COLUMNS` that columns of tables can have.
-        configured: whether the command takes parameters of the node, and a ratio.
+    `load_config` applies `--ratio` and `--joint`, and `sources` returns the others. `roles`
+    are those of `_COLUMNS` that tables can have; without `configured`, the command takes
+    neither parameters of the node nor a ratio.
     """
     number = '+' if configured else '*'  # --live takes their place
     text = 'recording by ROS, or table such as a CSV file'

@@ -98,11 +98,7 @@ def write_text(target: str, text: str) -> None:
 
 
 def write_file(target: str, content: bytes) -> None:
-    """Write a file completely or not at all.
-
-    Raises:
-        ValueError: if the file cannot be written, naming it.
-    """
+    """Write a file completely or not at all; raises ValueError with its name if that fails."""
     path = Path(target)
     try:
         if path.exists() and not path.is_file():  # such as a pipe, which must not be replaced

@@ -96,11 +96,7 @@ def _names(paths: Sequence[Path]) -> list[str]:
 
 
 def _measured(path: Path, name: str, options: argparse.Namespace) -> LostMotion:
-    """Measure a recording.
-
-    Raises:
-        ValueError, OSError: if it cannot be read or measured.
-    """
+    """Measure a recording; raises ValueError or OSError if that is impossible."""
     config = arguments.load_config(options, path)
     with message_progress(name, quiet=options.quiet) as report_progress:
         try:

@@ -112,11 +112,7 @@ class Reporter:
             write_file(plot, to_image(figure, Path(plot)))
 
     def _origin(self, configs: Iterable[Path]) -> Origin:
-        """Record the time, the command and its parameter files, each of them once.
-
-        Raises:
-            OSError: if one of the files has become unreadable.
-        """
+        """Record the time, the command and its parameter files, each of them once."""
         digests = {path: hashlib.sha256(path.read_bytes()).hexdigest() for path in configs}
         return Origin(
             version(),

@@ -65,11 +65,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _write(mechanism: Mechanism, module: float, folder: Path) -> None:
-    """Write the solids to a folder, which is created.
-
-    Raises:
-        ValueError: if they cannot be written, or a file of the same name is not of this program.
-    """
+    """Write the solids to a folder; raises ValueError if a file there is of another program."""
     files = {
         folder / f'{name}.stl': to_stl(solid) for name, solid in solids(mechanism, module).items()
     }

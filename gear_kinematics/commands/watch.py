@@ -17,11 +17,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Watch the node until interrupted.
-
-    Raises:
-        KeyboardInterrupt: on SIGINT or SIGTERM, once everything is closed.
-    """
+    """Watch until interrupted; then raises KeyboardInterrupt, once everything is closed."""
     warn_of_shared_memory(participants=1)
     # These need ROS, unlike most commands.
     from gear_kinematics.ros.replay import stopped_by_signals  # noqa: PLC0415

@@ -66,11 +66,7 @@ def actuators_of(given: Mapping[str, Any]) -> dict[str, NodeParameters]:
 
 
 def chosen(actuators: Mapping[str, NodeParameters], name: str) -> dict[str, NodeParameters]:
-    """Return the actuator of a name alone, or all for ''.
-
-    Raises:
-        ConfigError: if there is none of the name.
-    """
+    """Return the actuator of a name alone, or all for ''; raises ConfigError for another name."""
     if name and name not in actuators:
         there = among(name, [*filter(None, actuators)])
         raise ConfigError(f'no actuator {name!r} in `actuators`{there}')

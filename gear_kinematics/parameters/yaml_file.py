@@ -84,11 +84,7 @@ def read_yaml(path: Path, error_type: type[ValueError], loader: type[Loader] = L
 
 
 def load_yaml(text: str, loader: type[Loader] = Loader) -> Any:
-    """Load a document within the bounds of a loader.
-
-    Raises:
-        Exception: of any kind if it cannot be loaded.
-    """
+    """Load a document within the bounds of a loader; raises any Exception if that fails."""
     depth = 0
     if '%TAG' in text:  # libyaml compares each with all others
         raise ValueError('%TAG is not supported')

@@ -28,11 +28,7 @@ _FEW_SENTENCES = 6
 
 
 def to_html(document: Document) -> str:
-    """Write a report as a self-contained page, with plotly.js if it has figures.
-
-    Raises:
-        ModuleNotFoundError: if it has figures and plotly is not installed.
-    """
+    """Write a report as a self-contained page, with plotly.js if it has figures."""
     scripts, body = [], ''.join(_body(document.in_order()))
     if any(section.figure for section in document.sections):
         from plotly.offline import get_plotlyjs  # noqa: PLC0415, an extra

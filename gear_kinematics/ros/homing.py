@@ -19,11 +19,7 @@ from gear_kinematics.state.statuses import Condition
 def restored(
     node: Node, path: Path, actuators: Mapping[str, NodeParameters]
 ) -> Mapping[str, float]:
-    """Set the zeros of the home file, if there is one; returns them by actuator.
-
-    Raises:
-        ConfigError: if the file cannot be used.
-    """
+    """Set the zeros of the home file, if any, and return them by actuator; raises ConfigError."""
     if not (home := read_home(path, actuators, node.get_fully_qualified_name())):
         return {}
     zeros, homed = home

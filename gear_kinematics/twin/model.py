@@ -20,10 +20,4 @@ class TwinModel(Protocol):
     notice: str  # how the motion has differed from that of the gear since this was cleared; or ''
 
     def advance(self, duration: float, rotor_torque: float, load_torque: float) -> None:
-        """Advance the time.
-
-        Args:
-            duration: time to simulate, s.
-            rotor_torque: torque of the motor, N·m.
-            load_torque: external torque on the output shaft, N·m.
-        """
+        """Advance by a time, s, with torques of the motor and on the output shaft, N·m."""

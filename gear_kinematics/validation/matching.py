@@ -189,13 +189,10 @@ class OutputTopic:
     def __init__(
         self, name: str, label: str, expectation: Expectation, units: Mapping[str, str]
     ) -> None:
-        """Start without messages.
+        """Start without messages; `label` is the joint or the frame that they name.
 
-        Args:
-            name: of the topic.
-            label: the joint or the frame that its messages name.
-            expectation: how to judge them.
-            units: of what is compared in them, by its names.
+        The expectation says how to judge them, and `units` what is compared in them, by
+        its names.
         """
         self.name, self.label = name, label
         self.errors = tuple(

@@ -237,10 +237,8 @@ def _orientation_error(quaternions: Sequence[Array], angle: Array) -> Array:
 def _in_order(messages: int, samples: int, fit: Callable[[int, slice], Array]) -> Array:
     """Pair messages with samples in the order of both; `fit` returns which samples fit a message.
 
-    Messages that fit none are paired by their place between two that do, or all by their place.
-
-    Returns:
-        The indices of the messages and of their samples, (2, n).
+    Messages that fit none are paired by their place between two that do, or all by their
+    place. Returns the indices of the messages and of their samples, (2, n).
     """
     found = [(-1, -1)]
     for message in range(messages):

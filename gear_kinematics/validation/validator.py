@@ -115,11 +115,7 @@ class Validator:
         self._findings: list[Finding] = []
 
     def feed(self, batches: Iterable[Sequence[Message]]) -> None:
-        """Process messages on the topics, up to an exception of the iterable, if any.
-
-        Args:
-            batches: of messages, in the order of their reception.
-        """
+        """Process batches of messages, up to an exception of the iterable, if any."""
         for batch in batches:
             self.take(by_topic(batch, self.topics))
 
@@ -129,9 +125,8 @@ class Validator:
     ) -> BagReport:
         """Return the report on all messages; must be called once, at the end.
 
-        Args:
-            error: damage at which reading ended, if any.
-            lost: numbers of messages that the recorder says that it lost, by topic.
+        `error` is damage at which reading ended, and `lost` how many messages the recorder
+        says that it lost, by topic.
         """
         if any(output.late for output in self.outputs):  # they wait for one more batch
             self.feed([()])
