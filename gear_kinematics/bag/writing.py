@@ -171,25 +171,8 @@ class BagWriter:
             qos = parse_yaml(topic.qos) if isinstance(topic.qos, str) else topic.qos
             self._add(topic, parse_qos(qos))
 
-    def write(self, topic: str, received: int, data: bytes) -> None:
-        """Write a message.
-
-        Args:
-            topic: name of an added topic.
-            received: time of reception, ns.
-            data: CDR.
-
-        Raises:
-            BagError: if the topic has not been added, or the message cannot be written.
-        """
-        self.write_all([(topic, received, data)])
-
     def write_all(self, messages: Iterable[Message]) -> None:
-        """Write many messages.
-
-        Raises:
-            BagError: see `write`.
-        """
+        """Write messages; raises BagError if one cannot be written, or its topic is not added."""
         with bag_errors(self.path):
             for topic, received, data in messages:
                 self._writer.write(self._topics[topic], received, data)

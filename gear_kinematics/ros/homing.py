@@ -52,6 +52,8 @@ class Homing:
             actuator.state.monitor.zero_kept = zero_kept
             if name:
                 node.create_service(Trigger, f'~/{name}/home', partial(self._answer, [name]))
+        self.answer = partial(self._answer, [*actuators])
+        """Homes all shafts or none on a request, and fills in its response."""
         node.create_service(Trigger, '~/home', self.answer)
 
     def keep(self, names: Collection[str]) -> None:
@@ -68,10 +70,6 @@ class Homing:
             kept = Condition.ZERO_NOT_KEPT(path=self._path, why=error.strerror)
         for name in zeros:
             self._actuators[name].state.monitor.zero_kept = kept
-
-    def answer(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """Declare that the output shafts are at `home_angle` now, or tell why none is."""
-        return self._answer([*self._actuators], request, response)
 
     def _answer(
         self, names: Sequence[str], _request: Trigger.Request, response: Trigger.Response

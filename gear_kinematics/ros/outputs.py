@@ -81,13 +81,6 @@ class Outputs:
             except rclpy_implementation.RCLError as error:
                 self._on_failure(self.publishers[topic], error)
 
-    def wait_for_delivery(self, timeout: float) -> None:
-        """Wait until reliable subscribers have received all messages; `timeout` is in s."""
-        deadline = time.monotonic() + timeout
-        for publisher in self.publishers.values():
-            left = max(0.0, deadline - time.monotonic())
-            publisher.wait_for_all_acked(Duration(seconds=left))
-
 
 class PublishingNode(Node):  # type: ignore[misc]  # rclpy has no types
     """A node whose outputs can be waited for, and which warns at most once a second."""
@@ -113,7 +106,10 @@ class PublishingNode(Node):  # type: ignore[misc]  # rclpy has no types
 
     def wait_for_delivery(self, timeout: float) -> None:
         """Wait until reliable subscribers have received all outputs; `timeout` is in s."""
-        self._outputs.wait_for_delivery(timeout)
+        deadline = time.monotonic() + timeout
+        for publisher in self._outputs.publishers.values():
+            left = max(0.0, deadline - time.monotonic())
+            publisher.wait_for_all_acked(Duration(seconds=left))
 
     def _warn(self, text: str) -> None:
         if time.monotonic() >= self._next_warning:

@@ -11,6 +11,7 @@ from typing import ClassVar
 import numpy as np
 
 from gear_kinematics.correction.calibration_file import Calibration
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.validation.fields import Window
 from gear_kinematics.validation.output_topics import STATE_UNITS, Array, Bounds, JointStateTopic
 from gear_kinematics.validation.recorder import HOLE
@@ -72,12 +73,12 @@ CORRECTED: Mapping[str, type[JointStateTopic]] = {
 """Class that compares each of CORRECTED_TOPICS."""
 
 
-def why_unjudged(calibration: Calibration | None, *, single_turn: bool, absolute: bool) -> str:
+def why_unjudged(calibration: Calibration | None, parameters: NodeParameters) -> str:
     """Return why the corrected output cannot be judged; an empty text if it can."""
     if not calibration:
         return 'no calibration is given'
-    if absolute:
+    if parameters.absolute:
         return 'a recording does not show when the output encoder referenced the rotor'
-    if single_turn and calibration.period > 1:
+    if parameters.rotor_period and calibration.period > 1:
         return 'a recording does not show when a single-turn encoder was referenced'
     return ''

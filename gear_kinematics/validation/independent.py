@@ -21,7 +21,7 @@ from gear_kinematics.bag import Message
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.kinematics import Mechanism, matrix_method
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.validation.task import QUANTITIES, Tolerances
+from gear_kinematics.validation.task import Tolerances
 
 _KEPT = 20_000  # inputs, outputs and poses that wait for each other
 _UNITS = {'position': 'rad', 'velocity': 'rad/s', 'effort': 'N·m'}
@@ -100,7 +100,7 @@ class Independent:
         self._parameters, self._topics, self._strict = parameters, topics, strict
         self._ratio, self._direction = parameters.gear.gear_ratio, parameters.rotor_direction
         self._joint = parameters.output_name if parameters.actuator else ''  # the only one
-        self._limits = {name: getattr(limits, QUANTITIES[unit]) for name, unit in _UNITS.items()}
+        self._limits = {name: limits.of(unit) for name, unit in _UNITS.items()}
         self._errors: dict[str, float] = {}
         self._wrong: list[int] = []
         self._inputs: dict[int, list[_State]] = defaultdict(list)

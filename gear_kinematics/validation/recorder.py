@@ -7,8 +7,7 @@ and the recorder has settled; an output counts as extra only if its input would 
 """
 
 from collections import Counter, deque
-from collections.abc import Iterable, Iterator, Mapping
-from typing import Protocol
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -91,19 +90,12 @@ class Missing:
         self._after = Occurrences()
 
 
-class Output(Protocol):
-    """A topic with outputs."""
-
-    name: str
-    missing: Missing
-
-
 class Completeness:
     """Finds missing outputs on topics with the same inputs, recorded from the same time on."""
 
-    def __init__(self, rotor: str, outputs: Iterable[Output], *, strict: bool) -> None:
+    def __init__(self, rotor: str, topics: Mapping[str, Missing], *, strict: bool) -> None:
         """Start with no input; `strict` judges everything, as if the recorder lost nothing."""
-        self.topics = {output.name: output.missing for output in outputs}
+        self.topics = topics
         self._rotor = rotor
         self._on_all = Missing()  # inputs without an output on any topic
         self._strict = strict

@@ -77,8 +77,9 @@ class Validator:
         self._changes = CountChanges(parameters, angle, homing=homing)
         self._expectation = Expectation(gear, task.tolerances, self._changes)
         self._samples = 0
-        unseen = bool(parameters.rotor_period) or parameters.absolute
-        self._given_segment = None if unseen else self._state.input.segment
+        self._unseen = bool(parameters.rotor_period) or parameters.absolute
+        """Whether the turns can change unseen, so that they are known from outputs alone."""
+        self._given_segment = None if self._unseen else self._state.input.segment
         """The latest segment with an output."""
         joint = parameters.output_name
         self.output = OutputState(topics.output, joint, self._expectation)
@@ -86,11 +87,7 @@ class Validator:
         if isinstance(gear, Mechanism) and topics.poses:
             frame = parameters.frame_prefix + _FRAME
             self.poses = BodyPoses(topics.poses, frame, gear, self._expectation)
-        self._why_unjudged = why_unjudged(
-            task.calibration,
-            single_turn=bool(parameters.rotor_period),
-            absolute=parameters.absolute,
-        )
+        self._why_unjudged = why_unjudged(task.calibration, parameters)
         self._unbroken, self._corrector, self._loads = Unbroken(), None, None
         columns: list[Any] = list(SAMPLES)
         if self._corrected and not self._why_unjudged:
@@ -103,8 +100,11 @@ class Validator:
                 groups.append([LoadTopic(topic, name, self._loads, self._expectation)])
             elif self._corrector:
                 groups.append([CORRECTED[topic](name, joint, self._expectation)])
-        self._groups = [(Completeness(topics.rotor, of, strict=task.strict), of) for of in groups]
+        self._groups = []
         """Outputs that are recorded from the same time on: a node publishes the first ones all."""
+        for of in groups:
+            missing = {output.name: output.missing for output in of}
+            self._groups.append((Completeness(topics.rotor, missing, strict=task.strict), of))
         for output in self.outputs:
             output.shared = bool(parameters.actuator)
         if self._loads:
@@ -216,8 +216,7 @@ class Validator:
         columns = {name: getattr(samples, name) for name, _ in SAMPLES[4:]}
         columns['number'] = first_number(samples.segment) + self._samples
         columns['number'] += np.arange(len(samples.stamp))
-        unseen = bool(self._parameters.rotor_period) or self._parameters.absolute
-        columns['turns_known'] = np.full(len(samples.stamp), not unseen)
+        columns['turns_known'] = np.full(len(samples.stamp), not self._unseen)
         decided = self._state.input.velocity_field.decided
         columns['velocity_open'] = np.full(len(samples.stamp), decided is None)
         if decided is not None:

@@ -172,8 +172,9 @@ def test_the_topic_with_most_rotors_is_theirs_even_if_each_message_has_one(tmp_p
         for topic in ('/encoders', '/motors'):
             writer.add_topic(topic, JOINT_STATE)
         for number, name in enumerate(['m1', 'm2', 'm3']):
-            writer.write('/encoders', number, rotor_bytes(number, ['m1', 'm3'], [0.0, 0.0]))
-            writer.write('/motors', number, rotor_bytes(number, [name], [0.0]))
+            both = rotor_bytes(number, ['m1', 'm3'], [0.0, 0.0])
+            one = rotor_bytes(number, [name], [0.0])
+            writer.write_all([('/encoders', number, both), ('/motors', number, one)])
     with Bag(tmp_path / 'arm') as bag:
         assert find_rotor_topic(bag, None, 'm1', 'm2', 'm3') == '/motors'
         which = r'\? /encoders \(joints m1, m3\), /motors \(joints m1, m2, m3\)'

@@ -107,11 +107,11 @@ def test_invalid_messages_are_refused(tmp_path):
         for attempt, cause in (
             (lambda: writer.add_topic('/a', 'sensor_msgs/msg/JointState'), 'added already'),
             (lambda: writer.add_topic('/b', 'my_msgs/msg/Odd'), 'my_msgs/msg/Odd is not of'),
-            (lambda: writer.write('/b', 1, b''), "'/b' is missing"),
+            (lambda: writer.write_all([('/b', 1, b'')]), "'/b' is missing"),
         ):
             with pytest.raises(BagError, match=cause):
                 attempt()
-        writer.write('/a', 1, b'\0\1\0\0')
+        writer.write_all([('/a', 1, b'\0\1\0\0')])
     assert read(tmp_path / 'bag', ['/a']) == [('/a', 1, b'\0\1\0\0')]
 
 
@@ -166,7 +166,7 @@ def test_a_copied_topic_keeps_its_description(described, tmp_path, storage):
         with BagWriter(tmp_path / 'copy', storage) as writer:
             for name in names:
                 writer.copy_topic(bag, name)
-                writer.write(name, 5, b'\0\1\0\0')
+                writer.write_all([(name, 5, b'\0\1\0\0')])
         with Bag(tmp_path / 'copy') as copy, BagWriter(tmp_path / 'again') as again:
             assert list(copy.topics) == names
             assert list(copy.messages(['/full'])) == [('/full', 5, b'\0\1\0\0')]
@@ -212,7 +212,7 @@ def test_a_type_that_nobody_defines_is_copied_by_name(tmp_path, storage):
     source = old_recording(tmp_path / 'old.db3', [('/b', kind)], [('/b', 5, data)])
     with Bag(source) as bag, BagWriter(tmp_path / 'copy', storage) as writer:
         writer.copy_topic(bag, '/b')
-        writer.write('/b', 5, data)
+        writer.write_all([('/b', 5, data)])
     assert read(tmp_path / 'copy', ['/b']) == [('/b', 5, data)]
     with rosbag2.Reader(tmp_path / 'copy') as reader:
         [connection] = reader.connections

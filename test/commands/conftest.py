@@ -47,7 +47,7 @@ def rewrite(
                 edit(number, message.position)
                 data = replaying.encode(message)  # noqa: PLW2901
                 number += 1
-            writer.write(rename(topic), received, data)
+            writer.write_all([(rename(topic), received, data)])
     return path
 
 

@@ -155,7 +155,7 @@ def joint_states(folder, positions, **topics):
             for topic, joints in topics.items():
                 template = JointStateTemplate(joints, velocity=False, effort=False)
                 values = [rotor if joint == 'm' else output for joint in joints]
-                writer.write(f'/{topic}', stamp, template.encode(stamp, values))
+                writer.write_all([(f'/{topic}', stamp, template.encode(stamp, values))])
     return folder / 'bag'
 
 

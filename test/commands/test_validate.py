@@ -82,8 +82,8 @@ def test_the_node_chooses_among_sets_of_topics_and_the_joint_of_wrong_outputs_is
             writer.add_topic(side + topic, TYPES[topic])
         for topic, received, data in read_bag(SERVO)[:300]:
             whole = edited(data, JOINT_STATE, with_shoulder) if topic == ROTOR else data
-            writer.write(f'/left{topic}', received, whole)
-            writer.write(f'/right{topic}', received, whole)
+            sides = f'/left{topic}', f'/right{topic}'
+            writer.write_all((name, received, whole) for name in sides)
     words = ['validate', str(path), '--joint']
     assert 'which topic is rotor_state? /left' in refusal(*words, 'elbow', report='.*')
     assert main([*words, 'elbow', '--node', '/left/gear_state_publisher']) == 0

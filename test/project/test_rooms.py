@@ -85,7 +85,7 @@ def test_independent_comparison_shares_nothing_with_the_node(imports):
         'kinematics',
         'kinematics.Mechanism',
         'kinematics.matrix_method',
-        *(f'validation.task{name}' for name in ('', '.QUANTITIES', '.Tolerances')),
+        *(f'validation.task{name}' for name in ('', '.Tolerances')),
     }
     assert (PACKAGE / path).read_bytes().count(b'\n') <= 200
 

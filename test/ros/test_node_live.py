@@ -222,8 +222,7 @@ def test_the_recording_that_the_readme_makes_is_proven(start, tmp_path):
         for topic, kind in zip(states, (JOINT_STATE, JOINT_STATE, POSE_ARRAY), strict=True):
             writer.add_topic(topic, kind)
         rng = random.Random(1)  # noqa: S311, of faults, not of secrets
-        for message in rosbag2_recorder.record(traffic, rng, begin=begin, end=end, late=0.03):
-            writer.write(*message)
+        writer.write_all(rosbag2_recorder.record(traffic, rng, begin=begin, end=end, late=0.03))
     done = gearkin_here('validate', 'monday', cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, '')
     assert 'm1, the only joint on /motor/joint_states, is taken' in done.stdout

@@ -25,6 +25,5 @@ def write_bag(path: Path, messages, types=TYPES, **form) -> Path:
     with BagWriter(path, **form) as writer:
         for topic, kind in types.items():
             writer.add_topic(topic, kind)
-        for message in messages:
-            writer.write(*message)
+        writer.write_all(messages)
     return path
