@@ -199,15 +199,9 @@ class SimulatedGear:
         """Simulate the gear of an actuator; `files` are calibrations by values of parameters."""
         gear = TwinGear.of(parameters, own, files.get(parameters.calibration))
         model = _make_model(own.model, gear)
-        driver = Driver(
-            model,
-            max_torque=own.max_rotor_torque,
-            rotor_counts=own.rotor_counts,
-            output_counts=own.output_counts,
-            dropout=own.dropout,
-        )
         output = parameters.output_encoder_joint or parameters.output_joint
-        return cls(parameters.actuator, parameters.rotor_joint, output, model, driver)
+        joint, driver = parameters.rotor_joint, Driver(model, own)
+        return cls(parameters.actuator, joint, output, model, driver)
 
     @property
     def title(self) -> str:

@@ -19,6 +19,7 @@ from typing import NamedTuple
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.twin.fast_model import inertias
 from gear_kinematics.twin.model import TwinModel
+from gear_kinematics.twin.parameters import TwinParameters
 
 _PERIOD = 2e-4  # s, of the servo loop
 _BANDWIDTH = 30.0  # Hz, ω/2π; less if the inertia of the output needs it
@@ -46,30 +47,15 @@ class Command(NamedTuple):
 class Driver:
     """Moves a model by commands, and reads its encoders."""
 
-    def __init__(
-        self,
-        model: TwinModel,
-        *,
-        max_torque: float,
-        rotor_counts: int = 0,
-        output_counts: int = 0,
-        dropout: float = 0.0,
-    ) -> None:
-        """Switch the driver on; the rotor is free until the first command.
+    def __init__(self, model: TwinModel, own: TwinParameters) -> None:
+        """Switch the driver on, by its own parameters and those of the gear of the model.
 
-        Args:
-            model: the gear, whose parameters have directions, zeros and the greatest speed.
-            max_torque: greatest torque of the motor, N·m.
-            rotor_counts: steps per turn of the rotor's encoder; 0 for an exact one.
-            output_counts: steps per turn of the output's encoder; 0 for an exact one.
-            dropout: share of the messages that are not sent.
+        The rotor is free until the first command.
         """
         self.model = model
         self.torque = 0.0  # torque of the motor, or of the lock of the rotor, N·m
-        self._max_torque = max_torque
-        self._counts = rotor_counts, output_counts
-        self._dropout, self._random = dropout, random.Random(_SEED)  # noqa: S311, no secret
-        self._parameters = model.gear.parameters
+        self._own, self._parameters = own, model.gear.parameters
+        self._random = random.Random(_SEED)  # noqa: S311, no secret
         rotor, output = inertias(model.gear)
         self._inertia = rotor + output / model.gear.ratio**2
         # At first the torque accelerates the rotor alone, by at most half of the speed error.
@@ -110,7 +96,7 @@ class Driver:
         direction = parameters.rotor_direction
         position = self._origin + direction * self.model.rotor_angle
         return (
-            _counted(position, self._counts[0], parameters.rotor_period),
+            _counted(position, self._own.rotor_counts, parameters.rotor_period),
             direction * self.model.rotor_velocity,
             direction * self.torque / parameters.rotor_effort_factor,
         )
@@ -120,20 +106,21 @@ class Driver:
         direction = self._parameters.output_encoder_direction
         position = self._parameters.output_encoder_zero + direction * self.model.output_angle
         return (
-            _counted(position, self._counts[1], TURN),
+            _counted(position, self._own.output_counts, TURN),
             direction * self.model.output_velocity,
             direction * self._load,
         )
 
     def drops(self) -> bool:
         """Decide whether the next message is dropped; every run drops the same messages."""
-        return self._random.random() < self._dropout
+        return self._random.random() < self._own.dropout
 
     def _servo(self, period: float) -> float:
         """Compute the torque of the motor, N·m, for the next period, s."""
         if self._command is None:
             return 0.0
-        model, omega, fastest = self.model, self._omega, _SHARE * self._parameters.max_rotor_speed
+        model, omega, most = self.model, self._omega, self._own.max_rotor_torque
+        fastest = _SHARE * self._parameters.max_rotor_speed
         direction = self._parameters.rotor_direction
         position, velocity, effort = self._command
         if position is None and velocity is None:
@@ -141,7 +128,7 @@ class Driver:
             torque = direction * (effort or 0.0)
             if abs(model.rotor_velocity) > fastest and torque * model.rotor_velocity > 0.0:
                 torque = 0.0
-            return _within(torque, self._max_torque)
+            return _within(torque, most)
         speed = direction * (velocity or 0.0)
         if position is not None:
             if self._age > _FRESH:
@@ -152,9 +139,9 @@ class Driver:
         error = _within(speed, fastest) - model.rotor_velocity
         integral = self._integral + period * error
         torque = self._inertia * omega * (error + 0.125 * omega * integral)
-        if abs(torque) <= self._max_torque:
+        if abs(torque) <= most:
             self._integral = integral
-        return _within(torque, self._max_torque)
+        return _within(torque, most)
 
 
 def _within(value: float, bound: float) -> float:

@@ -20,6 +20,7 @@ from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.twin.driver import Command, Driver
 from gear_kinematics.twin.gear import TwinGear
 from gear_kinematics.twin.model import TwinModel
+from gear_kinematics.twin.parameters import TwinParameters
 
 MILLISECOND = 1e-3  # s, between the samples of a recording
 RATED = 10.0  # N·m
@@ -73,7 +74,8 @@ def report(*arguments: object) -> dict:
 
 def driver_of(model: TwinModel) -> Driver:
     """Switch on a driver of the rotor."""
-    return Driver(model, max_torque=10.0, rotor_counts=ROTOR_COUNTS, output_counts=OUTPUT_COUNTS)
+    counts = {'rotor_counts': ROTOR_COUNTS, 'output_counts': OUTPUT_COUNTS}
+    return Driver(model, TwinParameters.of({'max_rotor_torque': 10.0, **counts}))
 
 
 # Torque ramps

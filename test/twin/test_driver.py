@@ -12,14 +12,16 @@ from gear_kinematics.twin.gear import TwinGear
 from gear_kinematics.twin.parameters import TwinParameters
 
 VALUES = {'play': 1e-3, 'friction': 0.05, 'rotor_damping': 0.0, 'output_inertia': 0.005}
+VALUES |= {'rotor_counts': 0, 'output_counts': 0}
 SHARED = {'preload': 1.5, 'branch_stiffness': [3000.0], 'loads.rotor_inertia': 1e-5}
 INERTIA = 1e-5 + 0.005 / 361.0
 FREE = Command(None, None, None)
 
 
 def driver(shared=(), *, max_torque=0.5, **options) -> Driver:
-    gear = TwinGear.of(NodeParameters.of({**SHARED, **dict(shared)}), TwinParameters.of(VALUES))
-    return Driver(FastModel(gear), max_torque=max_torque, **options)
+    own = TwinParameters.of({**VALUES, 'max_rotor_torque': max_torque, **options})
+    gear = TwinGear.of(NodeParameters.of({**SHARED, **dict(shared)}), own)
+    return Driver(FastModel(gear), own)
 
 
 def run(driver: Driver, command: Command, seconds: float, load: float = 0.0) -> None:
@@ -50,9 +52,7 @@ def test_position_is_reached_and_held_against_a_load(direction):
 
 @pytest.mark.parametrize(('heavy', 'steps'), [(1.0, 4000), (200.0, 20_000)])
 def test_step_overshoots_little_with_any_inertia_of_the_output(heavy, steps):
-    values = {**VALUES, 'output_inertia': heavy * 0.005}
-    gear = TwinGear.of(NodeParameters.of(SHARED), TwinParameters.of(values))
-    stepped = Driver(FastModel(gear), max_torque=0.5)
+    stepped = driver(output_inertia=heavy * 0.005)
     stepped.follow(Command(5.0, None, None))
     reached = []
     for _ in range(steps):
