@@ -113,7 +113,9 @@ def add_quiet(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_verbose(parser: argparse.ArgumentParser, text: str) -> None:
+def add_verbose(
+    parser: argparse.ArgumentParser, text: str = 'print tables and remarks in a pipe, too'
+) -> None:
     """Add the option for more output."""
     group(parser, 'output').add_argument('-v', '--verbose', action='store_true', help=text)
 

@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='FILE',
         help='judge this calibration by other recordings, and write none',
     )
-    arguments.add_verbose(parser, 'print tables and remarks in a pipe, too')
+    arguments.add_verbose(parser)
     add_report_forms(parser)
 
 
@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     """Calibrate with all recordings together, or judge a calibration by each."""
     others = {} if options.check else {'-o': options.output}
     sections = len(options.recordings) if options.check else 1
-    reporter = Reporter(options, sections, others, brief=not options.verbose)
+    reporter = Reporter(options, sections, others)
     # All recordings are of one gear, so one configuration applies to all.
     config = arguments.load_config(options, options.recordings[0])
     if options.check:
@@ -59,10 +59,9 @@ def run(options: argparse.Namespace) -> ExitCode:
         say_columns(recording, options)
     if result.helps:
         write_text(options.output, result.calibration.text())
-    reporter.write(
+    return reporter.write(
         document(result, options.output), [arguments.config_path(options, options.recordings[0])]
     )
-    return ExitCode.DONE if result.helps else ExitCode.FAILED
 
 
 def _check(options: argparse.Namespace, config: NodeParameters, reporter: Reporter) -> ExitCode:
@@ -75,12 +74,11 @@ def _check(options: argparse.Namespace, config: NodeParameters, reporter: Report
             say_columns(recording, options)
         except RecordingError as error:
             complain(error)
+    code = ExitCode.DONE
     if judgements:
-        configs = [arguments.config_path(options, options.recordings[0])]
-        reporter.write(check_document(options.check, calibration.half_width, judgements), configs)
-    if len(judgements) < len(options.recordings):
-        return ExitCode.UNUSABLE
-    return ExitCode.DONE if all(one.holds for one in judgements) else ExitCode.FAILED
+        report = check_document(options.check, calibration.half_width, judgements)
+        code = reporter.write(report, [arguments.config_path(options, options.recordings[0])])
+    return code if len(judgements) == len(options.recordings) else ExitCode.UNUSABLE
 
 
 def _read(

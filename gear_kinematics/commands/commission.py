@@ -25,7 +25,6 @@ from gear_kinematics.measurement.reading import read_encoders
 from gear_kinematics.measurement.rotor_fields import questions
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.arm_file import check_new
-from gear_kinematics.report.document import Verdict
 from gear_kinematics.wire.topics import JOINT_STATE
 
 
@@ -49,7 +48,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "(default: where the output's encoder reads 0)",
     )
     add_new_config(parser)
-    arguments.add_verbose(parser, 'print tables and remarks in a pipe, too')
+    arguments.add_verbose(parser)
     add_report_forms(parser)
 
 
@@ -61,7 +60,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     if options.live == bool(options.recordings):
         raise ValueError('name recordings, or give --live to listen to the drivers instead')
     written = {} if options.check or path.exists() else {'-o': options.output}
-    reporter = Reporter(options, others=written, brief=not options.verbose)
+    reporter = Reporter(options, others=written)
     file = None
     if options.check:
         file = NodeParameters.load(options.check, actuator=options.actuator)
@@ -79,8 +78,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     if result.between and not file:
         write_file(result, path, options.actuator)
     report = document(result, str(options.check or path))
-    reporter.write(report, [options.check] if file else [])
-    return ExitCode.FAILED if report.verdict == Verdict.FAIL else ExitCode.DONE
+    return reporter.write(report, [options.check] if file else [])
 
 
 def _read(options: argparse.Namespace, request: analysis.Request) -> analysis.Commissioning:

@@ -57,10 +57,9 @@ def run(options: argparse.Namespace) -> ExitCode:
         figure=plotting.outlines(described, size),
         answer=_sentence(data),
     )
-    reporter.write(
+    return reporter.write(
         Document('gearkin describe', (section,), data), [arguments.config_path(options)]
     )
-    return ExitCode.DONE
 
 
 def _sentence(data: Mapping[str, Any]) -> str:

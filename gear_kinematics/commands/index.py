@@ -43,11 +43,10 @@ def run(options: argparse.Namespace) -> ExitCode:
     gear = arguments.load_config(options).mechanism
     pins = pinning.find(options, gear, math.radians(options.degrees or 0.0), _NEIGHBOURS)
     zk = gear.ring_teeth
-    reporter.write(
+    return reporter.write(
         Document('gearkin index', (_section(pins, zk),), _data(pins, zk)),
         [arguments.config_path(options)],
     )
-    return ExitCode.DONE
 
 
 def _data(pins: Pins, zk: int) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from gear_kinematics.measurement.formats import is_table
 from gear_kinematics.measurement.loads.document import WORK, document
 from gear_kinematics.measurement.loads.recorded import LoadTask
 from gear_kinematics.parameters import NodeParameters, default_config
-from gear_kinematics.report.document import Verdict, printable
+from gear_kinematics.report.document import printable
 from gear_kinematics.wire.nearest import listed
 
 
@@ -36,14 +36,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     way = arguments.group(parser, 'several recordings').add_mutually_exclusive_group()
     bags.add_jobs(way)
     add_report_forms(parser)
-    arguments.add_verbose(parser, 'print tables and remarks in a pipe, too')
+    arguments.add_verbose(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Report the loads of every recording; the exit code is 1 if a branch was out of mesh."""
     import_module('rainflow')  # before hours of work
     found = find_bags(options.bags)
-    reporter = Reporter(options, len(found.bags), brief=not options.verbose)
+    reporter = Reporter(options, len(found.bags))
     tasks = [
         LoadTask(
             bag,
@@ -67,12 +67,10 @@ def run(options: argparse.Namespace) -> ExitCode:
         complain(fault)
     for table in filter(None, (report.taken for report in reports)):
         print(printable(table), file=sys.stderr)
-    joined = document(reports)
+    code, joined = ExitCode.DONE, document(reports)
     if joined.sections:
-        reporter.write(joined, (arguments.config_path(options, task.bag) for task in tasks))
-    if faults:
-        return ExitCode.UNUSABLE
-    return ExitCode.FAILED if joined.verdict == Verdict.FAIL else ExitCode.DONE
+        code = reporter.write(joined, (arguments.config_path(options, task.bag) for task in tasks))
+    return ExitCode.UNUSABLE if faults else code
 
 
 def _configs(options: argparse.Namespace, bag: Path) -> list[NodeParameters]:

@@ -19,7 +19,6 @@ from gear_kinematics.measurement.document import Comparison, document
 from gear_kinematics.measurement.lost_motion import LostMotion, measure
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.wording import ARC_MINUTES
-from gear_kinematics.report.document import Verdict
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -47,7 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='glob of the names of a group of recordings to compare (repeat the option for each)',
     )
     add_report_forms(parser, junit=True)
-    arguments.add_verbose(parser, 'print tables and remarks in a pipe, too')
+    arguments.add_verbose(parser)
 
 
 def _arc_minutes(text: str) -> float:
@@ -65,7 +64,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         options.max_backlash,
         options.min_stiffness,
     )
-    reporter = Reporter(options, len(names), compared=True, brief=not options.verbose)
+    reporter = Reporter(options, len(names), compared=True)
     reports, failed = [], False
     for path, name in zip(options.recordings, names, strict=True):
         try:
@@ -78,15 +77,11 @@ def run(options: argparse.Namespace) -> ExitCode:
         if report.recording.damage:
             failed = True
             complain(report.recording.damage)
-    verdict = None
+    code = ExitCode.DONE
     if reports:
         configs = (arguments.config_path(options, path) for path in options.recordings)
-        found = document(*_compared(reports, options), limits)
-        verdict = found.verdict
-        reporter.write(found, configs)
-    if failed:
-        return ExitCode.UNUSABLE
-    return ExitCode.FAILED if verdict == Verdict.FAIL else ExitCode.DONE
+        code = reporter.write(document(*_compared(reports, options), limits), configs)
+    return ExitCode.UNUSABLE if failed else code
 
 
 def _names(paths: Sequence[Path]) -> list[str]:

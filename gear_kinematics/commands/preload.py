@@ -107,10 +107,9 @@ def run(options: argparse.Namespace) -> ExitCode:
         answer=f'With {answer.pins.nearest.settings[0]} {_outcome(answer.pinned)}.',
         figure=plotting.torque_split(answer.preload, answer.names),
     )
-    reporter.write(
+    return reporter.write(
         Document('gearkin preload', (section,), _data(answer)), [arguments.config_path(options)]
     )
-    return ExitCode.DONE
 
 
 def _answer(options: argparse.Namespace) -> _Answer:

@@ -10,10 +10,10 @@ from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
 
-from gear_kinematics.commands import arguments
+from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.files import add_force, check_targets, write_file, write_text
 from gear_kinematics.commands.output import Console, closed_pipe_ignored
-from gear_kinematics.report.document import Document, Origin, printable
+from gear_kinematics.report.document import Document, Origin, Verdict, printable
 from gear_kinematics.report.html import to_html
 from gear_kinematics.report.image import check_image, to_image
 from gear_kinematics.report.json import to_json
@@ -25,6 +25,12 @@ _FORMS: Mapping[str, Callable[[Document], str]] = {
     'json': to_json,
     'junit': to_junit,
     'html': to_html,
+}
+_EXIT_CODES = {
+    None: ExitCode.DONE,
+    Verdict.PASS: ExitCode.DONE,
+    Verdict.FAIL: ExitCode.FAILED,
+    Verdict.UNUSABLE: ExitCode.UNUSABLE,
 }
 
 
@@ -50,7 +56,6 @@ class Reporter:
         others: Mapping[str, str | None] = MappingProxyType({}),
         *,
         compared: bool = False,
-        brief: bool = False,
     ) -> None:
         """Check that everything can be written, before any other work.
 
@@ -59,13 +64,14 @@ class Reporter:
             sections: number of sections of the document.
             others: targets of other options, which the command itself writes.
             compared: whether the last section compares the others, and has the figure of the plot.
-            brief: whether a section that passed is one line in a pipe.
 
         Raises:
             ValueError: if options exclude each other, or a file must not or cannot be written.
             ModuleNotFoundError: if a form needs a package that is not installed.
         """
-        self._options, self._brief = options, brief
+        self._options = options
+        # Other reports have nothing that could be left out.
+        self._brief = not getattr(options, 'verbose', True)
         self._forms = {form: target for form in _FORMS if (target := getattr(options, form, None))}
         given = {f'--{form}': target for form, target in self._forms.items()}
         given |= {'--plot': options.plot, **others}
@@ -84,13 +90,16 @@ class Reporter:
 
     def write(
         self, document: Document, configs: Iterable[Path] = (), *, printed: bool = True
-    ) -> None:
+    ) -> ExitCode:
         """Print the document, unless a form of it goes to stdout, and write the files.
 
         Args:
             document: the report.
             configs: the parameter files that were used.
             printed: whether to print the report; False if one line on stderr was enough.
+
+        Returns:
+            The exit code for the verdict.
 
         Raises:
             ValueError: if there is nothing to plot; everything else is written by then.
@@ -110,6 +119,7 @@ class Reporter:
             if not (figure := last.image):
                 raise ValueError(f'{plot}: there is nothing to plot')
             write_file(plot, to_image(figure, Path(plot)))
+        return _EXIT_CODES[document.verdict]
 
     def _origin(self, configs: Iterable[Path]) -> Origin:
         """Record the time, the command and its parameter files, each of them once."""

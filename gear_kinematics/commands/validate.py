@@ -12,17 +12,10 @@ from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import complain, warn_of_shared_memory
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.parameters import NODE
-from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.document import document
 from gear_kinematics.validation.report import BagReport, unusable
 from gear_kinematics.validation.task import QUANTITIES, Task, Tolerances
 from gear_kinematics.validation.validate_bag import WORK, of_arm, validate_bag
-
-_EXIT_CODES = {
-    Verdict.PASS: ExitCode.DONE,
-    Verdict.FAIL: ExitCode.FAILED,
-    Verdict.UNUSABLE: ExitCode.UNUSABLE,
-}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -69,13 +62,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Validate every bag; the worst verdict gives the exit code."""
+    """Validate every bag."""
     tolerances = Tolerances(
         **{name: getattr(options, f'tolerance_{name}') for name in Tolerances._fields}
     )
     found = find_bags(options.bags)
     faults = dict(found.faults)
-    reporter = Reporter(options, len(found.bags) + len(faults), brief=not options.verbose)
+    reporter = Reporter(options, len(found.bags) + len(faults))
     tasks: list[Task] = []
     for bag in found.bags:
         try:
@@ -97,8 +90,7 @@ def run(options: argparse.Namespace) -> ExitCode:
                 report.error if report.bag in report.error else f'{report.bag}: {report.error}'
             )
     configs = (Path(task.config) for task in tasks)
-    reporter.write(document(reports), configs, printed=bool(tasks))
-    return max(_EXIT_CODES[report.verdict] for report in reports)
+    return reporter.write(document(reports), configs, printed=bool(tasks))
 
 
 def _task(bag: Path, tolerances: Tolerances, options: argparse.Namespace) -> Task:
