@@ -25,12 +25,9 @@ _ZERO = Fraction(0)
 class Pins(NamedTuple):
     """The wanted turn of a ring gear, and the positions of the vernier around it."""
 
-    phase: float | None
-    """Part of the turn that the cam phase of branch B requires, rad; None if not requested."""
-    ring_turn: float
-    """The wanted turn, rad."""
-    choices: list[Choice]
-    """Positions of the vernier, with the nearest one in the middle."""
+    phase: float | None  # rad: part of the turn that the cam phase of branch B requires, or None
+    ring_turn: float  # the wanted turn, rad
+    choices: list[Choice]  # positions of the vernier, with the nearest one in the middle
 
     @property
     def nearest(self) -> Choice:

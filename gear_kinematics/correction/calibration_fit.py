@@ -20,14 +20,10 @@ class CalibrationFit(NamedTuple):
     """Comparison of the measured transmission error with the calibration."""
 
     samples: int
-    explained: float | None
-    """Share of the error's variance that the calibration explains; None if it is constant."""
-    outside: float
-    """Share of samples outside the 95 % interval once the encoder's zero is removed."""
-    fits: bool
-    """Whether chance explains the share outside, or it hardly exceeds what chance explains."""
-    independent: float
-    """Number of independent samples on which `outside` is based."""
+    explained: float | None  # share of the error's variance that it explains; None if constant
+    outside: float  # share of samples outside the 95 % interval once the encoder's zero is removed
+    fits: bool  # whether chance explains `outside`, or it hardly exceeds that
+    independent: float  # number of independent samples on which `outside` is based
 
     @property
     def outside_uncertainty(self) -> float:

@@ -108,13 +108,10 @@ class Loop(NamedTuple):
 class Ramps:
     """Ramps of one amplitude."""
 
-    amplitude: float
-    """N·m, the mean."""
+    amplitude: float  # N·m, the mean
     loops: tuple[Loop, ...]
-    pulls: tuple[tuple[HalfLoop, HalfLoop], ...]
-    """Half loops to the positive and to the negative peak, paired in order of time."""
-    sides: tuple[tuple[HalfLoop, HalfLoop], ...]
-    """Half loops to a peak and back from it, in order of time."""
+    pulls: tuple[tuple[HalfLoop, HalfLoop], ...]  # to the positive and to the negative peak
+    sides: tuple[tuple[HalfLoop, HalfLoop], ...]  # to a peak and back from it, in order of time
 
     @property
     def halves(self) -> list[HalfLoop]:

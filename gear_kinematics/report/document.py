@@ -233,25 +233,18 @@ class Case:
 class Section:
     """The report on one recording, or on one mechanism."""
 
-    name: str
-    """Name of the section, which may be empty if it is the only one."""
-    tables: tuple[Table, ...]
-    """Tables, of which the first describes the subject of the report."""
+    name: str  # name of the section, which may be empty if it is the only one
+    tables: tuple[Table, ...]  # tables, of which the first describes the subject of the report
     verdict: Verdict | None = None
     findings: tuple[Sentence, ...] = ()
-    remarks: tuple[str, ...] = ()
-    """Notes on the interpretation of the values."""
+    remarks: tuple[str, ...] = ()  # notes on the interpretation of the values
     figure: Figure | None = None
     mechanism: MovingMechanism | None = None
-    below: Figure | None = None
-    """Figure that a page shows below the other figure and the mechanism."""
-    key: Table | None = None
-    """Table that a page shows above the figure."""
-    leads: bool = False
-    """Whether a page begins with this section, such as a comparison of the others."""
+    below: Figure | None = None  # on a page, below the other figure and the mechanism
+    key: Table | None = None  # table that a page shows above the figure
+    leads: bool = False  # whether a page begins with it, such as a comparison of the others
     cases: tuple[Case, ...] = ()
-    answer: str = ''
-    """The result in one line."""
+    answer: str = ''  # the result in one line
     elapsed: float = 0.0  # duration of the check, s
 
     @property
@@ -278,16 +271,12 @@ class Origin:
 class Document:
     """A whole report."""
 
-    title: str
-    """Title such as `gearkin validate`."""
+    title: str  # title such as `gearkin validate`
     sections: tuple[Section, ...]
-    data: Mapping[str, Any] = field(default_factory=dict)
-    """Contents of the JSON: the numbers of the results."""
+    data: Mapping[str, Any] = field(default_factory=dict)  # contents of the JSON
     verdict: Verdict | None = None
-    summary: Table | None = None
-    """A row for each section; shown if there are several."""
-    totals: str = ''
-    """Summary of the sections in one line."""
+    summary: Table | None = None  # a row for each section; shown if there are several
+    totals: str = ''  # summary of the sections in one line
     origin: Origin | None = None
 
     def of_failed(self) -> Self:

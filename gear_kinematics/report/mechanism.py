@@ -27,18 +27,12 @@ class MovingMechanism:
     """A mechanism that moves with the x axis of the figure."""
 
     mechanism: Mechanism
-    module: float
-    """Module of the teeth, m."""
-    time: Array
-    """Times of the samples, (n,), s."""
-    rotor: Array
-    """Angle of the rotor, (n,), degrees."""
-    output: Array
-    """Angle of the output shaft, (n,), degrees."""
-    start: int = 0
-    """Index of the sample that is shown first."""
-    forces: Array | None = None
-    """Force F_t of each branch, (n, B), as the length of an arrow in radii of the drawing."""
+    module: float  # module of the teeth, m
+    time: Array  # times of the samples, (n,), s
+    rotor: Array  # angle of the rotor, (n,), degrees
+    output: Array  # angle of the output shaft, (n,), degrees
+    start: int = 0  # index of the sample that is shown first
+    forces: Array | None = None  # F_t of each branch, (n, B), as arrows in radii of the drawing
 
 
 class Drawings:

@@ -20,12 +20,9 @@ _OVERRIDES = 'frame_prefix', 'rotor_joint'  # replace those of the file, unless 
 class NodeArguments(NamedTuple):
     """Arguments of the node gear_state_publisher."""
 
-    config: Path
-    """The parameter file."""
-    actuators: dict[str, NodeParameters]
-    """The parameters of its actuators, with the values that they will have."""
-    given: dict[str, Any]
-    """Those that replace values of the file."""
+    config: Path  # the parameter file
+    actuators: dict[str, NodeParameters]  # parameters of its actuators, with their values
+    given: dict[str, Any]  # those that replace values of the file
 
 
 def node_arguments(configurations: Mapping[str, str]) -> NodeArguments:

@@ -174,10 +174,8 @@ def _listed(value: Any) -> Any:
 class GearReport(NamedTuple):
     """Facts on one subject in the time since the last report."""
 
-    facts: Sequence[Fact]
-    """The gravest first."""
-    values: Mapping[str, Any]
-    """Counts, numbers in the unit of their name, and facts; None where there is none."""
+    facts: Sequence[Fact]  # the gravest first
+    values: Mapping[str, Any]  # counts, numbers in the unit of their name, facts; None for none
 
     @classmethod
     def of(cls, facts: Iterable[Fact], values: Mapping[str, Any]) -> Self:

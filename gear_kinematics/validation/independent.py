@@ -34,13 +34,10 @@ _State = tuple[int, float, float, float]
 class IndependentReport:
     """The result of the independent comparison."""
 
-    compared: int
-    """Messages of the output and of the poses whose input is there; the rest is not compared."""
+    compared: int  # messages of the output and of the poses whose input is there
     not_compared: int
-    turns_taken: int
-    """How often the turns, or another zero, were taken from the outputs."""
-    errors: dict[str, float]
-    """Greatest errors by field, in rad, rad/s, N·m and m."""
+    turns_taken: int  # how often the turns, or another zero, were taken from the outputs
+    errors: dict[str, float]  # greatest errors by field, in rad, rad/s, N·m and m
     first_wrong: int | None
     passed: bool
 

@@ -62,23 +62,15 @@ class FittedTerm:
 class Fit:
     """The result; arrays are (n,), of the used samples of all recordings, in rad."""
 
-    calibration: Calibration
-    """Its constant makes the mean deviation zero; its errors are of samples left out."""
-    helps: bool
-    """Whether it reduces the error by more than a standard error, and its interval holds."""
+    calibration: Calibration  # with a mean deviation of zero, and the errors of samples left out
+    helps: bool  # whether the error falls by more than a standard error, and its interval holds
     terms: tuple[FittedTerm, ...]
     recordings: Sequence[Recording]
-    delays: Sequence[Estimate | None]
-    """Delay of the output's angles in each recording, s, taken out if it exceeds its ±; None if
-    not separable."""
-    refused: Mapping[str, Observed]
-    """Terms that the recordings cannot determine, with the cause."""
-    output: Array
-    """Ideal output angle."""
-    before: Array
-    """Error without the correction; zero and delay are taken out."""
-    after: Array
-    """Error with the correction that was fitted without the part that holds the sample."""
+    delays: Sequence[Estimate | None]  # of the output's angles, s; None if not separable
+    refused: Mapping[str, Observed]  # terms that the recordings cannot determine, with the cause
+    output: Array  # ideal output angle
+    before: Array  # error without the correction; zero and delay are taken out
+    after: Array  # error with the correction that was fitted without the sample's part
 
 
 def fit(

@@ -70,21 +70,15 @@ class Moment(NamedTuple):
 class Force(NamedTuple):
     """A force, N, or a couple, N·m, over a recording."""
 
-    name: str
-    """As in `RecordedLoads.joints`."""
+    name: str  # as in `RecordedLoads.joints`
     unit: str
     greatest: float
-    p99_9: float
-    """99.9 % of the samples are below."""
+    p99_9: float  # 99.9 % of the samples are below
     mean: float
-    cubic_mean: float
-    """The cube root of the mean cube over the rotor's travel; NaN at a standstill."""
-    l10_hours: float
-    """The life of a cam's bearing at the speed and the cubic mean of the recording, or NaN."""
-    by_rotor_angle: list[tuple[float, float, float]]
-    """The first three at each of ANGLE_BINS; NaN where the rotor never was."""
-    cycles: list[tuple[float, float]]
-    """The load spectrum of a force: ranges, N, and how often they occurred."""
+    cubic_mean: float  # cube root of the mean cube over the rotor's travel; NaN at a standstill
+    l10_hours: float  # life of a cam's bearing at the recording's speed and cubic mean, or NaN
+    by_rotor_angle: list[tuple[float, float, float]]  # first three at ANGLE_BINS; NaN for none
+    cycles: list[tuple[float, float]]  # load spectrum of a force: ranges, N, and their counts
 
 
 @dataclass(frozen=True, eq=False)
