@@ -16,8 +16,7 @@ from gear_kinematics.fleet.cluster import on_cluster
 from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.parameters.arm import as_file
 
-CALIBRATION = 'calibration.yaml'
-"""Name of a calibration in the folder of a bag."""
+CALIBRATION = 'calibration.yaml'  # name of a calibration in the folder of a bag
 
 
 def add_rotor(parser: argparse.ArgumentParser, *, configured: bool = True) -> None:

@@ -30,8 +30,7 @@ _FILLING = {
 """Words that may stand beside the others; all of them exclude commands, speeds and the like."""
 _COUNTS = ('counts', 'count', 'cnt', 'inc', 'increments', 'ticks', 'pulse', 'pulses')
 _NANOSECONDS = ('ns', 'nsec', 'nsecs', 'nanosec', 'nanosecs', 'nanoseconds')
-ANGLE_UNITS = (*UNITS, 'counts')
-"""Units of angle that can be given."""
+ANGLE_UNITS = (*UNITS, 'counts')  # units of angle that can be given
 _ANGULAR = ('angle', 'rotor', 'output')
 _OF_ANGLE = {
     **UNITS,

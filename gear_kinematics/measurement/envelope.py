@@ -5,8 +5,7 @@ import numpy as np
 
 from gear_kinematics.report.document import Array
 
-MOST = 2000
-"""Points of a line."""
+MOST = 2000  # points of a line
 
 
 def envelope(x: Array, y: Array) -> tuple[Array, Array]:

@@ -8,10 +8,8 @@ from gear_kinematics.measurement.wording import ARC_MINUTES, plus_minus
 from gear_kinematics.report.document import Cell, Tone, number
 from gear_kinematics.statistics.uncertainty import Estimate
 
-HYSTERESIS = 'hysteresis'
-"""The name of the figure that is judged first."""
-LOST_MOTION = 'lost motion'
-"""The name of the figure at a small torque, or on reversals."""
+HYSTERESIS = 'hysteresis'  # the name of the figure that is judged first
+LOST_MOTION = 'lost motion'  # the name of the figure at a small torque, or on reversals
 SHOWN = {'rad': ('′', ARC_MINUTES), 's': ('ms', 1e3)}
 """Units in which others are shown, and their factors."""
 

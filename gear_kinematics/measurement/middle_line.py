@@ -38,8 +38,7 @@ _MIDDLE, _DEAD = 2.0 / 3.0, 0.15
 """A dead band yields over this share of its width at less than this share of the stiffness beside
 it. Simulated: a fifth takes a soft middle of 60 in 300 N·m/rad for play, a tenth misses one of ten
 plays of 10′ where friction takes up half of the torque."""
-MOST_FRICTION = 0.8
-"""Share of the torque beyond which friction hardly lets the spring be loaded."""
+MOST_FRICTION = 0.8  # share of the torque beyond which friction hardly lets the spring be loaded
 _MOST_COMPLIANT = 1.5
 """Ratio of the compliances of small and large ramps from which on the small ones are in a soft
 middle: springs that bend by less keep a backlash of 0 and of 10′ in their intervals."""

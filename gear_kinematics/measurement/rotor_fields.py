@@ -16,8 +16,7 @@ from gear_kinematics.state.velocity_field import VelocityField, VelocityMeaning
 from gear_kinematics.wire.batches import decode_joint_states
 from gear_kinematics.wire.cdr import SECOND
 
-MOST = 500_000
-"""Messages that are looked at; they take about 200 bytes each."""
+MOST = 500_000  # messages that are looked at; they take about 200 bytes each
 _FEWEST = 10
 _MOVED = 1.0  # rad, by which a rotor has moved for certain
 _EQUAL = 1e-9  # rad, below which positions differ by rounding alone

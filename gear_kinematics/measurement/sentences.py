@@ -16,8 +16,7 @@ from gear_kinematics.report.document import number
 from gear_kinematics.statistics.uncertainty import Estimate
 from gear_kinematics.wire.joint_reader import ARRAY_SIZES
 
-NAMED = 3
-"""Moments of a kind that are named."""
+NAMED = 3  # moments of a kind that are named
 _UNITS = {'si': 1.0, 'arcmin': ARC_MINUTES, 'deg': math.degrees(1.0), 'ms': 1e3}
 
 # Parts of several sentences

@@ -22,8 +22,7 @@ from gear_kinematics.statistics.uncertainty import Component, Estimate, jackknif
 ENCODER_ERROR = math.radians(1.0)
 """rad. Magnetic encoders deviate by ±1° over a turn (datasheets of ams AS5046 and AS5600), and
 printed gears by about as much: that of the rotor's encoder, and of gear and output's encoder."""
-STEP = 0.01
-"""s around a sample, for its speed; of a row without times."""
+STEP = 0.01  # s around a sample, for its speed; of a row without times
 _ACCURACY = math.radians(2.0 / 3600.0) / math.sqrt(3.0)
 """rad, standard deviation. Few encoders are accurate to ±2″ over the travel, and a gear on its
 springs follows its errors a little more the faster it turns."""

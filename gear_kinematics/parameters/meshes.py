@@ -7,10 +7,8 @@ from typing import Any
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.share import PACKAGE, share_directory
 
-AUTO = 'auto'
-"""Value that selects the installed meshes, if there are any for this mechanism."""
-NONE = 'none'
-"""Value that selects simple shapes."""
+AUTO = 'auto'  # value that selects the installed meshes, if there are any for this mechanism
+NONE = 'none'  # value that selects simple shapes
 _URI = re.compile(r'[A-Za-z][A-Za-z0-9+.-]*://[!-~]+')
 
 

@@ -22,8 +22,7 @@ from gear_kinematics.parameters.files import ConfigError, default_values
 from gear_kinematics.parameters.parameter import Parameter, declared_in, parameter
 from gear_kinematics.share import share_directory
 
-NODE = 'gear_state_publisher'
-"""The default name of the node."""
+NODE = 'gear_state_publisher'  # the default name of the node
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,8 +10,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.plotting.trajectory import Trajectory
 from gear_kinematics.report.document import PENS, Array, Figure, Line, Panel, Pen
 
-MOST_PETALS = 1000
-"""Greatest number of petals; with more, a rose looks like a disc."""
+MOST_PETALS = 1000  # greatest number of petals; with more, a rose looks like a disc
 _PETAL_POINTS = 48
 _MM = 1e3  # in a metre
 _SAMPLES = 361  # per turn

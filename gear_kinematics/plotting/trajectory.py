@@ -18,8 +18,7 @@ from gear_kinematics.wire.cdr import SECOND
 
 Array = NDArray[np.float64]
 
-MOST_TURNS = 1000
-"""Rotor turns at a constant speed; animations cannot show more."""
+MOST_TURNS = 1000  # rotor turns at a constant speed; animations cannot show more
 _PER_TURN = 360  # samples
 _ROUNDING = 1e-9  # relative excess by which the last interval may pass the end
 

@@ -3,8 +3,7 @@
 
 from pathlib import Path
 
-MARK = 'made by gearkin'
-"""Mark in comments of text files and in the metadata of images."""
+MARK = 'made by gearkin'  # mark in comments of text files and in the metadata of images
 _JSON = b'{\n  "made_by": "gearkin '
 _STARTS = (b'<!DOCTYPE html>', b'<?xml ', b'\x89PNG\r\n', b'GIF8', b'%PDF-')
 """First bytes of files in the other formats."""

@@ -40,8 +40,7 @@ from gear_kinematics.wire.cdr import SECOND, STAMP_BYTES, JointStateTemplate, wi
 from gear_kinematics.wire.joint_reader import RejectedInputError
 from gear_kinematics.wire.topics import CORRECTED_TOPICS, JOINT_STATE, OUTPUT_ENCODER
 
-POLL = 0.1
-"""Greatest delay of the response to a signal, s."""
+POLL = 0.1  # greatest delay of the response to a signal, s
 
 _TOPICS = Topics()
 _ENCODER = f'/{OUTPUT_ENCODER}'

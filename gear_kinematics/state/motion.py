@@ -9,13 +9,10 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.state.reach import FLOOR, REGULAR, STALEST, Reading, RotorLimits
 from gear_kinematics.wire.batches import Array, once_for_joints
 
-COARSEST = TURN / 6.0
-"""rad; what a Hall sensor of one pole pair resolves."""
-EQUAL = 1e-9
-"""rad, below which steps differ by rounding alone."""
+COARSEST = TURN / 6.0  # rad; what a Hall sensor of one pole pair resolves
+EQUAL = 1e-9  # rad, below which steps differ by rounding alone
 STALEST_NS = round(STALEST * 1e9)
-LONGEST_NS = 12_000_000
-"""Between readings for which a look at the step alone may be enough."""
+LONGEST_NS = 12_000_000  # between readings for which a look at the step alone may be enough
 
 
 class Motion(NamedTuple):

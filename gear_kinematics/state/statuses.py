@@ -11,8 +11,7 @@ from typing import Any, NamedTuple, Self
 
 from gear_kinematics.statistics.uncertainty import Estimate
 
-OK, WARN, ERROR = 0, 1, 2
-"""Levels of diagnostic_msgs/DiagnosticStatus."""
+OK, WARN, ERROR = 0, 1, 2  # levels of diagnostic_msgs/DiagnosticStatus
 
 _DRIVER = 'Check that the driver is running, and that its topic is remapped.'
 _HOME_IT = 'then home it (gearkin home or ~/home)'

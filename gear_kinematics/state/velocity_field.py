@@ -11,8 +11,7 @@ import numpy as np
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.wire.batches import Array, once_for_joints
 
-SPAN = 100_000_000
-"""ns, between the readings that are compared; four of them decide."""
+SPAN = 100_000_000  # ns, between the readings that are compared; four of them decide
 _PAUSE = 10 * SPAN  # after velocities that were found right
 _READINGS = 4
 _STRIDES = 1, 4, 16

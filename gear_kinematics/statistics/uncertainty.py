@@ -10,8 +10,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-COVERAGE = 0.95
-"""Coverage probability of expanded uncertainties."""
+COVERAGE = 0.95  # coverage probability of expanded uncertainties
 _NORMAL = 1.959963984540054
 """The quantile of Student's distribution for infinitely many degrees of freedom."""
 _FEWEST = 3  # groups of blocks from which a standard error is estimated

@@ -13,8 +13,7 @@ from gear_kinematics.parameters.files import default_values, given_parameters
 from gear_kinematics.parameters.parameter import Parameter, declared_in, faults_of, parameter
 from gear_kinematics.share import share_directory
 
-NODE = 'gear_simulator'
-"""The default name of the node that simulates an actuator."""
+NODE = 'gear_simulator'  # the default name of the node that simulates an actuator
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,8 +70,7 @@ class TwinParameters:
         return cls(**{name: values.get(name, default_value(name)) for name in PARAMETERS})
 
 
-PARAMETERS: Mapping[str, Parameter] = declared_in(TwinParameters)
-"""The parameters by name."""
+PARAMETERS: Mapping[str, Parameter] = declared_in(TwinParameters)  # the parameters by name
 
 
 def default_config() -> Path:

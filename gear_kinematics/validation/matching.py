@@ -31,8 +31,7 @@ from gear_kinematics.wire.batches import JointStateBatch, once_for_joints
 from gear_kinematics.wire.cdr import MessageLayout
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
-WINDOW = 16_384
-"""Samples kept for late messages; even later ones count as extra."""
+WINDOW = 16_384  # samples kept for late messages; even later ones count as extra
 
 SAMPLES = [
     ('number', np.int64),

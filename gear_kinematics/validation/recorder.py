@@ -29,8 +29,7 @@ LOST = 'that the recorder says that it lost'
 _SETTLING_TIME = 1_000_000_000  # ns after which a recorder has settled
 _QUIET_TIME = 150_000_000  # ns without a loss after which it has settled earlier
 _MAX_END = 500_000_000  # ns by which outputs may end before their inputs
-HOLE = 1.5
-"""Median periods between inputs; beyond, an input between them was not recorded."""
+HOLE = 1.5  # median periods between inputs; beyond, an input between them was not recorded
 _MAX_STAMPS = 32_768  # of inputs
 _MAX_RESETS = 64  # latest ones, after which an output can come
 _APART = 2**40  # ns between the clocks before and after a reset of the stamps

@@ -271,5 +271,4 @@ def _lost(task: Task, cause: str) -> BagReport:
     return unusable(task.bag, f'{task.bag}: {cause}', task.config)
 
 
-WORK = Work(validate_bag, _lost)
-"""For `fleet.processes`."""
+WORK = Work(validate_bag, _lost)  # for `fleet.processes`

@@ -21,8 +21,7 @@ from gear_kinematics.watch.drivers import Listener
 from gear_kinematics.watch.gear import Answer, GearNode
 from gear_kinematics.watch.view import View, view_of
 
-PERIOD = 1.0 / 30.0
-"""Period at which messages are taken, s."""
+PERIOD = 1.0 / 30.0  # period at which messages are taken, s
 _LOOK = 0.5  # s between two looks at the graph
 _SEARCH = 4.0  # s, in which nodes are found that announce themselves every 3 s
 

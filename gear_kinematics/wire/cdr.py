@@ -22,8 +22,7 @@ STAMP_OFFSET = 4  # after the encapsulation
 STAMP = struct.Struct('<iI')
 STAMP_BYTES = slice(STAMP_OFFSET, STAMP_OFFSET + STAMP.size)
 """Position of the stamp in the bytes of a message with a header."""
-LATEST = 2**31 * SECOND - 1
-"""Latest stamp, ns, whose seconds fit into 32 bits."""
+LATEST = 2**31 * SECOND - 1  # latest stamp, ns, whose seconds fit into 32 bits
 _ENCAPSULATION = b'\x00\x01\x00\x00'  # of what is written here: little endian
 _ENCAPSULATIONS = {
     bytes((0, kind + little)): ('><'[little], alignment)

@@ -81,8 +81,7 @@ def _lost(task: LoadTask, cause: str) -> LoadReport:
     return LoadReport(None, {}, told)
 
 
-WORK = Work(report, _lost)
-"""For `fleet.processes`."""
+WORK = Work(report, _lost)  # for `fleet.processes`
 
 
 def _report(task: LoadTask, loads: RecordedLoads) -> LoadReport:

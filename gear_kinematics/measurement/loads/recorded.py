@@ -28,8 +28,7 @@ from gear_kinematics.wire.cdr import SECOND, JointStateTemplate
 
 Array = NDArray[Any]
 
-ANGLE_BINS = 72
-"""Bins of a turn of the rotor, of 5° each."""
+ANGLE_BINS = 72  # bins of a turn of the rotor, of 5° each
 _JOINTS = 'mesh', 'cam', 'slot'
 _BEARING_EXPONENT = 3.0  # of ball bearings, ISO 281:2007, 4; roller bearings live longer
 _STEPS = 64  # of the range of a force, below one of which a cycle is not counted

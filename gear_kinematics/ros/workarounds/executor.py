@@ -8,8 +8,7 @@ lack it, and that of others does nothing if it is to spin without a timeout.
 from rclpy.context import Context
 from rclpy.executors import Executor, SingleThreadedExecutor
 
-ENDLESS = 3600.0
-"""Timeout for spinning in a loop, s."""
+ENDLESS = 3600.0  # timeout for spinning in a loop, s
 
 
 def make_executor(kind: str = 'auto', context: Context | None = None) -> Executor:
