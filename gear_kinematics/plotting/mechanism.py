@@ -137,12 +137,8 @@ def scheme(
 ) -> bytes:
     """Draw the kinematic scheme: the bodies of a branch to scale, and their centres magnified.
 
-    Args:
-        mechanism: the mechanism, whose first branch is drawn.
-        module: module of the teeth, m.
-        path: path of the image file, whose suffix is its format.
-        rotor: rotor angle φ2.
-        force: F_t, N, to draw the forces on the satellite, too.
+    The branch is the first one, its module in m; the suffix of the path is the format of the
+    image. A force F_t, N, adds the forces on the satellite.
     """
     with canvas((7.4, 4.7)) as figure:
         left, right = figure.subplots(1, 2)

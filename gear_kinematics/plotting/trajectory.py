@@ -37,14 +37,10 @@ class Trajectory(NamedTuple):
 
     @classmethod
     def at_constant_speed(cls, speed: float, turns: int) -> Self:
-        """Create a motion from φ2 = 0 on, with samples close enough for smooth curves.
-
-        Args:
-            speed: rad/s.
-            turns: of the rotor.
+        """Create a motion from φ2 = 0 on at a speed, rad/s, sampled for smooth curves.
 
         Raises:
-            ValueError: if there are more turns than `MOST_TURNS`.
+            ValueError: if there are more turns of the rotor than `MOST_TURNS`.
         """
         if turns > MOST_TURNS:
             raise ValueError(f'{turns} turns of the rotor are more than {MOST_TURNS}')
@@ -69,11 +65,9 @@ class Trajectory(NamedTuple):
         return type(self)(*(column[inside] for column in self))
 
     def every(self, interval: float, *, closed: bool = False) -> Self:
-        """Interpolate at even intervals.
+        """Interpolate at even intervals, s.
 
-        Args:
-            interval: s; adjusted to divide the duration if `closed`.
-            closed: whether the motion is periodic, so that its end is left out.
+        A `closed` motion is periodic: the intervals divide its duration, and its end is left out.
         """
         duration = self.time[-1] - self.time[0]
         if closed:

@@ -34,12 +34,9 @@ _TONE_STYLES = {Tone.PLAIN: '', Tone.NONE: 'dim', Tone.NOTABLE: 'yellow', Tone.B
 def render(document: Document, console: Console, *, brief: bool = False) -> None:
     """Print a report: tables on a terminal, one row per line elsewhere.
 
-    Args:
-        document: the report.
-        console: the console to print on.
-        brief: whether a section is reduced to its verdict, findings and answer; in a pipe, to a
-            single line if it passed. On a terminal, only sections that have an answer or are
-            unusable are reduced.
+    If it is brief, a section is reduced to its verdict, findings and answer; in a pipe, to a
+    single line if it passed. On a terminal, only sections that have an answer or are unusable are
+    reduced.
     """
     if not console.is_terminal:
         for line in lines(document, brief=brief):

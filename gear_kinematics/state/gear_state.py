@@ -170,11 +170,9 @@ class GearState:
         return [(TRANSMISSION_ERROR, encode(e.stamp, [e.error])) for e in errors if chosen]
 
     def report(self, now: float, connections: Connections) -> dict[str, GearReport]:
-        """Report facts by subject on the time since the last report, until now.
+        """Report facts by subject since the last report, until a time of a steady clock, s.
 
-        Args:
-            now: time of a steady clock, s, as in `monitors`.
-            connections: those of the node.
+        The connections are those of the node.
         """
         reports = {'rotor input': self.monitor.report(now, connections)}
         if errors := self.encoder_monitor.report(now, connections.encoder):

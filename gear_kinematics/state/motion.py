@@ -30,14 +30,8 @@ def all_in_reach(
 ) -> Motion | None:
     """Take further readings in order of time, as `Plausibility.judge` takes them one by one.
 
-    Args:
-        known: the motion before.
-        limits: those of the rotor.
-        stamps: of the readings, (n,), ns, n > 0.
-        positions: (n,), rad.
-
-    Returns:
-        The motion with them; None if not each of them would be believed at once.
+    Stamps, ns, and positions, rad, are (n,), n > 0. The motion with them is returned; None if not
+    each of them would be believed at once.
     """
     if found := _even(known, limits, stamps, positions):
         return found
@@ -116,15 +110,8 @@ def _bounds(
 ) -> tuple[Array, Array] | None:
     """Return by how much each step may differ from the last one, and its most, rad, each (n,).
 
-    Args:
-        stamps: of the readings, (n,), ns.
-        since: stamp of the reading before, ns.
-        last_span: the time from one reading to the next until then, ns.
-        former_span: the one before that, ns.
-        limits: those of the rotor.
-
-    Returns:
-        None if the times between the readings are not regular.
+    The stamp `since` is that of the reading before; the times from one reading to the next until
+    then were `former_span` and `last_span`; all in ns. Without regular times it is None.
     """
     spans = np.diff(stamps, prepend=since)
     former = np.concatenate([[former_span, last_span], spans])

@@ -60,9 +60,7 @@ class OutputEncoder:
     def accept(self, data: JointMessage, now: Callable[[], int]) -> Sequence[ErrorSample]:
         """Process the next message; returns the errors that are known now, in order.
 
-        Args:
-            data: the message, or what was read from it.
-            now: the clock, ns, for messages without a stamp.
+        A message without a stamp gets that of the clock `now`, ns.
 
         Raises:
             RejectedInputError: if the message has no valid angle. It is counted.

@@ -59,12 +59,9 @@ class Plausibility:
     """Follows the readings of an encoder."""
 
     def __init__(self, max_speed: float, max_acceleration: float, period: float = 0.0) -> None:
-        """Start without readings.
+        """Start without readings, which repeat after a period, rad; 0: never.
 
-        Args:
-            max_speed: rad/s.
-            max_acceleration: rad/s².
-            period: rad after which the readings repeat; 0: never.
+        The limits are in rad/s and rad/s².
         """
         self.jumps = 0
         self.jump: Jump | None = None  # the latest

@@ -134,11 +134,7 @@ class RotorInput:
         return self.turns.unknown_gaps + self.resets + self._restarts + self.plausibility.jumps
 
     def accept(self, data: JointMessage, now: Callable[[], int]) -> RotorSample:
-        """Process the next message.
-
-        Args:
-            data: the message, or what was read from it.
-            now: the clock, ns, for messages without a stamp.
+        """Process the next message; one without a stamp gets that of the clock `now`, ns.
 
         Raises:
             RejectedInputError: if the message gives no output. It is counted.
@@ -182,11 +178,9 @@ class RotorInput:
         return self.turns.zero_for(rotor_angle, self._parameters.rotor_direction)
 
     def accept_batch(self, messages: Sequence[bytes], received: Sequence[int]) -> RotorSamples:
-        """Process many messages at once, with the same result as one by one.
+        """Process many serialised messages at once, with the same result as one by one.
 
-        Args:
-            messages: serialised sensor_msgs/JointState.
-            received: times of reception, ns; they replace missing stamps.
+        The times of reception, ns, replace missing stamps.
         """
         self.received += len(messages)
         states = decode_joint_states(messages, self._parameters.rotor_joint)

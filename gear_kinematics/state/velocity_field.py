@@ -77,15 +77,10 @@ class VelocityField:
         return Condition.VELOCITIES_ARE(meaning=self.finding)
 
     def believed(self, stamps: Array, values: Array, finest: float) -> Array:
-        """Note readings in order of time.
+        """Note readings in order of time, and return their velocities, (n,).
 
-        Args:
-            stamps: (n,), ns.
-            values: (n, 3): position, velocity and effort.
-            finest: rad, the smallest step of the encoder.
-
-        Returns:
-            The velocities, (n,); NaN where they are found to contradict the positions.
+        Stamps, (n,), are in ns; values, (n, 3), are position, velocity and effort; `finest` is the
+        smallest step of the encoder, rad. Velocities that contradict the positions become NaN.
         """
         velocity, start = values[:, 1].copy(), 0
         times = _listed(stamps)

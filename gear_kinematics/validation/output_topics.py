@@ -218,11 +218,9 @@ class BodyPoses(OutputTopic):
 
 
 def _orientation_error(quaternions: Sequence[Array], angle: Array) -> Array:
-    """Return the greatest error of the bodies, (n,), rad.
+    """Return the greatest error of the bodies, (n,), rad, whose expected angle is about z.
 
-    Args:
-        quaternions: recorded x, y, z and w, each (bodies, n).
-        angle: expected about the z axis, (n,), rad.
+    The recorded quaternions are x, y, z and w, each (bodies, n).
     """
     x, y, z, w = quaternions
     sine, cosine = np.sin(0.5 * angle), np.cos(0.5 * angle)

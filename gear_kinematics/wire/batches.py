@@ -232,10 +232,7 @@ def decode_numbers(
 def encode(template: Template, stamps: Array, numbers: Sequence[Array | float]) -> list[bytes]:
     """Encode n messages, as `template.encode` does one by one.
 
-    Args:
-        template: the layout and the texts of all messages.
-        stamps: (n,), ns.
-        numbers: the numbers of all arrays, each as an array (n,) or a constant.
+    Stamps are (n,), ns; each of the numbers of all arrays is an array (n,) or a constant.
     """
     size = len(template.blank)
     table = np.frombuffer(len(stamps) * template.blank, np.uint8).reshape(len(stamps), size)
@@ -252,13 +249,8 @@ def join_joint_states(parts: Sequence[Sequence[bytes]]) -> list[bytes]:
     """Join messages sensor_msgs/JointState of the same stamps into one each.
 
     A joined message has the joints of all parts in their order. A field that no part has is empty;
-    one that some lack is NaN there.
-
-    Args:
-        parts: each with n messages, b'' where it has none.
-
-    Returns:
-        The n messages, b'' where no part has one.
+    one that some lack is NaN there. Each part has n messages; one that is missing, or has no part,
+    is b''.
     """
     count = len(parts[0])
     found = [[*JointStateBatch(part).contents()] for part in parts]
