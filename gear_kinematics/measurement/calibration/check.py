@@ -28,38 +28,23 @@ _MOST = 0.5  # share of the variance that makes an order what is left of the err
 class Judgement:
     """A calibration compared with a recording; arrays are (n,), of the measured angles, in rad."""
 
-    name: str
-    """Name of the recording."""
-    holds: bool
-    """Whether the error is less with the correction, and within its interval."""
-    fits: bool
-    """Whether it is within its interval."""
-    rms_before: float
-    """Root mean square error without the correction, rad."""
-    rms_after: float
-    """Root mean square error with the correction, rad."""
-    rms_before_with_delay: float
-    """Root mean square error without the correction if the delay is left in, rad."""
-    rms_after_with_delay: float
-    """Root mean square error with the correction if the delay is left in, rad."""
-    delay: Estimate | None
-    """Delay of the output's angles, s, taken out if it exceeds its ±; None if it is not known."""
-    within_interval: float
-    """Share of the samples."""
-    within_interval_uncertainty: float
-    """Expanded uncertainty (95 %) of that share."""
-    uncalibrated: float
-    """Share of samples in conditions that were not calibrated, or with an unknown history."""
+    name: str  # name of the recording
+    holds: bool  # whether the error is less with the correction, and within its interval
+    fits: bool  # whether it is within its interval
+    rms_before: float  # root mean square error without the correction, rad
+    rms_after: float  # root mean square error with the correction, rad
+    rms_before_with_delay: float  # `rms_before` if the delay is left in, rad
+    rms_after_with_delay: float  # `rms_after` if the delay is left in, rad
+    delay: Estimate | None  # of the output's angles, s; taken out if clear, None if unknown
+    within_interval: float  # share of the samples
+    within_interval_uncertainty: float  # expanded uncertainty (95 %) of that share
+    uncalibrated: float  # share of samples beyond what was calibrated, or of unknown history
     samples: int
-    left_order: tuple[float, str] | None
-    """Order that makes up most of the remaining error: amplitude, rad, and how often."""
+    left_order: tuple[float, str] | None  # most of what is left: amplitude, rad, and how often
     remarks: Sequence[str]
-    output: Array
-    """Ideal output angle."""
-    before: Array
-    """Measured minus ideal output angle less its mean, without the delay."""
-    after: Array
-    """Measured minus corrected output angle less its mean, without the delay."""
+    output: Array  # ideal output angle
+    before: Array  # measured minus ideal output angle less its mean, without the delay
+    after: Array  # measured minus corrected output angle less its mean, without the delay
 
 
 def judge(recording: Recording, encoders: Encoders, calibration: Calibration) -> Judgement:

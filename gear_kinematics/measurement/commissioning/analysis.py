@@ -45,14 +45,10 @@ class Request:
 
     rotor: Channel
     output: Channel
-    ratio: GearRatio | None = None
-    """Ratio of the gear, with its sign, to be confirmed."""
-    teeth: tuple[int, int] | None = None
-    """Teeth of ring gear and satellite, which have this ratio."""
-    zero_here: float | Literal['START', 'END'] | None = None
-    """Time at which the output is at its angle 0, by the stamps of the last recording, s."""
-    file: NodeParameters | None = None
-    """Parameters to be judged; their zeros are kept where they agree."""
+    ratio: GearRatio | None = None  # ratio of the gear, with its sign, to be confirmed
+    teeth: tuple[int, int] | None = None  # of ring gear and satellite, which have this ratio
+    zero_here: float | Literal['START', 'END'] | None = None  # moment of the last recording, s
+    file: NodeParameters | None = None  # to be judged; its zeros are kept where they agree
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,21 +65,14 @@ class Commissioning:
     """Result of a commissioning."""
 
     request: Request
-    joints: tuple[Joint, ...]
-    """One for each recording."""
-    longest: Joint
-    """Recording with the most travel, which determines the ratio."""
-    ratio: RatioEstimate | None
-    """Between the encoders; None where it cannot be estimated."""
-    between: GearRatio | None
-    """The exact ratio between the encoders; None where it is open, so that there is no file."""
-    answer: Observed
-    """The result."""
+    joints: tuple[Joint, ...]  # one for each recording
+    longest: Joint  # recording with the most travel, which determines the ratio
+    ratio: RatioEstimate | None  # between the encoders; None where it cannot be estimated
+    between: GearRatio | None  # the exact one between the encoders; None where it is open
+    answer: Observed  # the result
     values: tuple[Value, ...]
-    notes: tuple[Observed, ...]
-    """What is no parameter."""
-    questions: tuple[str, ...] = ()
-    """Clauses on fields of the rotor's messages that seem to be wrong."""
+    notes: tuple[Observed, ...]  # what is no parameter
+    questions: tuple[str, ...] = ()  # on fields of the rotor's messages that seem wrong
 
     def changes(self, parameters: NodeParameters) -> dict[str, tuple[Any, Any]]:
         """Return the old and the new value of each parameter that has to change, by name."""

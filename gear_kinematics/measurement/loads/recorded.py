@@ -42,18 +42,12 @@ class LoadTask:
     bag: Path
     parameters: NodeParameters
     rotor_topic: str | None = None
-    only_joint: bool = True
-    """Whether the only joint of the rotor's topic is taken, whatever it is called."""
-    cam_rating: float = math.nan
-    """C, N: the basic dynamic load rating of the bearing of a cam, for its life."""
-    slot_friction: float = math.nan
-    """μ of the slots, for their loss."""
-    by_default: bool = False
-    """Whether the parameters are those of the installed default file."""
-    sources: Sources | None = None
-    """Columns of a table that are named by options."""
-    debug: bool = False
-    """Whether to print tracebacks of unexpected errors to stderr."""
+    only_joint: bool = True  # whether a topic's only joint is taken, whatever its name
+    cam_rating: float = math.nan  # C, N: dynamic load rating of a cam's bearing, for its life
+    slot_friction: float = math.nan  # μ of the slots, for their loss
+    by_default: bool = False  # whether the parameters are those of the installed default file
+    sources: Sources | None = None  # columns of a table that are named by options
+    debug: bool = False  # whether to print tracebacks of unexpected errors to stderr
 
 
 class Moment(NamedTuple):
