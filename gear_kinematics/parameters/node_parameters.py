@@ -254,11 +254,7 @@ class NodeParameters:
 
     @property
     def mechanism(self) -> Mechanism:
-        """The mechanism.
-
-        Raises:
-            MechanismError: if there is none, or `gear_ratio` is of another gear.
-        """
+        """The mechanism; MechanismError if there is none, or `gear_ratio` is of another gear."""
         if self.gear_ratio:
             known = f'gear_ratio is {self.gear_ratio}: only the ratio of this gear is known'
             raise MechanismError([f'{known}, not its bodies'])

@@ -53,11 +53,7 @@ class Trajectory(NamedTuple):
             return solve(mechanism, self.angle, self.velocity, rotor_turns=self.turns)
 
     def between(self, start: float, end: float) -> Self:
-        """Select the samples between two times, s.
-
-        Raises:
-            ValueError: if there are none.
-        """
+        """Select the samples between two times, s; ValueError if there are none."""
         inside = (self.time >= start) & (self.time <= end)
         if not inside.any():
             there = f'they are from 0 s to {self.time[-1]:g} s'
