@@ -113,9 +113,8 @@ def results(
 ) -> dict[tuple[Path, str], processes.Report]:
     """Return the reports on tasks by their `bag` and the name of the actuator in `parameters`.
 
-    With `--jobs`, several processes compute them.
-
-    Several processes have one progress bar in the unit; otherwise, each recording has its own.
+    With `--jobs`, several processes compute them, with one progress bar in the unit; otherwise,
+    each recording has its own.
     """
     if options.jobs > 1 or options.scheduler:
         if options.scheduler:

@@ -32,9 +32,7 @@ def add_force(parser: argparse.ArgumentParser) -> None:
 def check_targets(options: argparse.Namespace, targets: Mapping[str, str | None]) -> None:
     """Check that files can be written and replace nothing else, before any other work.
 
-    Args:
-        options: the parsed arguments.
-        targets: paths by the name of the option or argument; '-' is stdout.
+    The targets are paths by the name of the option or argument; '-' is stdout.
 
     Raises:
         ValueError: if a file must not or cannot be written; the text names the first one.

@@ -32,11 +32,8 @@ def choose_joint(
 ) -> Channel:
     """Return the joint that is given, the only one on its usual topic, or the one the user names.
 
-    Args:
-        joints: the joints to choose from.
-        given: the given topic and name of the joint, as far as they are known.
-        role: role of the joint in the question and in errors.
-        hint: what else to do where there are several joints.
+    Topic and name are given as far as they are known. Questions and errors contain the role of
+    the joint, and `hint`, which says what else to do where there are several.
 
     Raises:
         ValueError: if there is none, or there are several and nobody to ask.
@@ -65,8 +62,7 @@ def choose_joint(
 def joints_of_arm(joints: Sequence[Channel], topic: str) -> list[Channel]:
     """Return the joints of the rotors of an arm: all on a given topic, or on the only one.
 
-    Raises:
-        ValueError: if there is none, or there are several topics.
+    ValueError: there is none, or there are several topics.
     """
     found = _candidates(joints, Channel(topic, ''), ROTOR_STATE)
     if len(topics := {joint.topic for joint in found}) == 1:

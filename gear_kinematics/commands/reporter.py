@@ -93,10 +93,8 @@ class Reporter:
     ) -> ExitCode:
         """Print the document, unless a form of it goes to stdout, and write the files.
 
-        Args:
-            document: the report.
-            configs: the parameter files that were used.
-            printed: whether to print the report; False if one line on stderr was enough.
+        `configs` are the parameter files that were used. It is not `printed` if one line on stderr
+        was enough.
 
         Returns:
             The exit code for the verdict.
