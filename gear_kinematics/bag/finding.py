@@ -129,12 +129,9 @@ def _may_hold(path: Path) -> bool:
 class Contents(NamedTuple):
     """The files of a recording, and what is known without opening them."""
 
-    files: list[Path]
-    """Files in the order of recording."""
-    topics: dict[str, Topic]
-    """Topics by name; empty without metadata.yaml."""
-    message_count: int | None
-    """Number of messages; None without metadata.yaml."""
+    files: list[Path]  # files in the order of recording
+    topics: dict[str, Topic]  # topics by name; empty without metadata.yaml
+    message_count: int | None  # number of messages; None without metadata.yaml
 
 
 def find_contents(path: Path) -> Contents:

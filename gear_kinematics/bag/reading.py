@@ -49,10 +49,8 @@ _TABLES = '; tables are read by calibrate, commission, loads and lost-motion'
 class TopicMessages:
     """Messages of one topic."""
 
-    data: list[bytes] = field(default_factory=list)
-    """Contents as CDR."""
-    received: list[int] = field(default_factory=list)
-    """Times of reception, ns."""
+    data: list[bytes] = field(default_factory=list)  # contents as CDR
+    received: list[int] = field(default_factory=list)  # times of reception, ns
 
 
 class Bag:
@@ -61,12 +59,9 @@ class Bag:
     A context manager, which ends unfinished reading on exit.
     """
 
-    topics: Mapping[str, str]
-    """Types by name, such as sensor_msgs/msg/JointState."""
-    not_cdr: frozenset[str]
-    """Topics whose messages are of another encoding."""
-    message_count: int | None
-    """Number of messages on all topics; None without metadata.yaml."""
+    topics: Mapping[str, str]  # types by name, such as sensor_msgs/msg/JointState
+    not_cdr: frozenset[str]  # topics whose messages are of another encoding
+    message_count: int | None  # number of messages on all topics; None without metadata.yaml
 
     def __init__(self, path: Path | str) -> None:
         """Read the topics; raises BagError if there is no readable bag."""

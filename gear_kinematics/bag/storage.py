@@ -18,8 +18,7 @@ Message = tuple[str, int, bytes]
 class Published(bytes):
     """CDR that was published at another time than it was received."""
 
-    time: int
-    """Time of publication, ns."""
+    time: int  # time of publication, ns
 
     @classmethod
     def at(cls, time: int, data: bytes) -> Self:
@@ -33,16 +32,12 @@ class Topic(NamedTuple):
     """The description of a topic in a bag; a missing text is empty."""
 
     name: str
-    type: str
-    """Type as ROS 2 writes it, such as sensor_msgs/msg/JointState."""
-    encoding: str
-    """Encoding of the messages: cdr, or an unsupported one."""
-    syntax: str = ''
-    """Syntax of the type definition: ros2msg, ros2idl, ros1msg or an unknown one."""
+    type: str  # type as ROS 2 writes it, such as sensor_msgs/msg/JointState
+    encoding: str  # encoding of the messages: cdr, or an unsupported one
+    syntax: str = ''  # syntax of the type definition: ros2msg, ros2idl, ros1msg or an unknown one
     definition: str = ''
     type_hash: str = ''
-    qos: Any = ''
-    """The offered QoS profiles, as a list or as YAML."""
+    qos: Any = ''  # the offered QoS profiles, as a list or as YAML
 
     @classmethod
     def of(cls, known: Mapping[str, Any]) -> Self:

@@ -22,8 +22,7 @@ from gear_kinematics.wire.topics import (
 
 _GAP = 5.0  # median periods; a longer period counts as a gap
 _WITH_STAMPS = {JOINT_STATE, POSE_ARRAY}
-_UNSET = {-1, 0}
-"""Stamps of messages that are cut off, and of those without one."""
+_UNSET = {-1, 0}  # stamps of messages that are cut off, and of those without one
 _FEWEST = 10  # messages from which a rate is computed
 _PARTS: Mapping[str, str] = {
     OUTPUT_ENCODER: 'encoder',
@@ -38,34 +37,23 @@ class TopicSummary(NamedTuple):
 
     name: str
     type: str
-    part: str
-    """`rotor`, `output`, `poses` or `encoder`, or empty."""
+    part: str  # `rotor`, `output`, `poses` or `encoder`, or empty
     messages: int
-    joints: tuple[str, ...]
-    """Joints of the first message, if the topic has joint states."""
-    rate: float | None
-    """Rate from the median period, Hz; None for too few messages."""
-    mean_rate: float | None
-    """Mean rate, Hz; it differs from `rate` where messages come in bursts."""
-    gaps: int
-    """Periods longer than five median ones."""
-    longest_gap: float
-    """Longest of these periods, s."""
-    of_others: int = 0
-    """Messages without the rotor's joint, which rate and gaps leave out."""
+    joints: tuple[str, ...]  # joints of the first message, if the topic has joint states
+    rate: float | None  # rate from the median period, Hz; None for too few messages
+    mean_rate: float | None  # mean rate, Hz; it differs from `rate` where messages come in bursts
+    gaps: int  # periods longer than five median ones
+    longest_gap: float  # longest of these periods, s
+    of_others: int = 0  # messages without the rotor's joint, which rate and gaps leave out
 
 
 class Summary(NamedTuple):
     """The contents of a recording."""
 
-    duration: float
-    """Time from the first to the last message, s."""
-    topics: tuple[TopicSummary, ...]
-    """All topics; those with a part come first."""
-    unclear: str
-    """Why the rotor's topic is not known, or empty."""
-    damage: str
-    """Where reading ended, if the recording is damaged."""
+    duration: float  # time from the first to the last message, s
+    topics: tuple[TopicSummary, ...]  # all topics; those with a part come first
+    unclear: str  # why the rotor's topic is not known, or empty
+    damage: str  # where reading ended, if the recording is damaged
 
 
 def summarise(

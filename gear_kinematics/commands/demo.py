@@ -21,8 +21,7 @@ from gear_kinematics.validation.task import Task, Tolerances
 from gear_kinematics.validation.validate_bag import validate_bag
 from gear_kinematics.wire.joint_reader import JointReader
 
-_TOLERANCE = 1e-12
-"""Tolerance: of angles in rad, of positions in units of the eccentricity."""
+_TOLERANCE = 1e-12  # of angles in rad, of positions in units of the eccentricity
 _BAG = 'servo_point_to_point'
 
 

@@ -25,8 +25,7 @@ from gear_kinematics.report.document import (
 )
 from gear_kinematics.shape.angles import arc, arc_seconds
 
-_NEIGHBOURS = 3
-"""Number of positions listed on either side of the nearest one."""
+_NEIGHBOURS = 3  # number of positions listed on either side of the nearest one
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

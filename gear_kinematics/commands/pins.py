@@ -18,8 +18,7 @@ SENSES = (
     'Seen against the z axis, angles, teeth and chassis holes count counterclockwise, ring holes '
     'clockwise, from 0 at the zero marks.'
 )
-_ZERO = Fraction(0)
-"""Setting of a ring gear whose tooth 0 and hole 0 are at the chassis's hole 0."""
+_ZERO = Fraction(0)  # setting of a ring gear whose tooth 0 and hole 0 are at the chassis's hole 0
 
 
 class Pins(NamedTuple):

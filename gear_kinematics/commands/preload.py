@@ -26,13 +26,11 @@ class _Answer(NamedTuple):
     """A preload, and the pins for it."""
 
     mechanism: Mechanism
-    names: tuple[str, str]
-    """Torques of branches A and B."""
+    names: tuple[str, str]  # torques of branches A and B
     backlash: float
     preload: Preload
     pins: Pins
-    pinned: Preload
-    """Preload of the nearest setting."""
+    pinned: Preload  # preload of the nearest setting
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -11,8 +11,7 @@ from urllib.parse import urlsplit
 
 from gear_kinematics.fleet.processes import Report, Work
 
-_PATIENCE = 30
-"""Seconds for the first worker, which some clusters start only for tasks."""
+_PATIENCE = 30  # seconds for the first worker, which some clusters start only for tasks
 
 
 def on_cluster(

@@ -14,8 +14,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any, Generic, NamedTuple, TypeVar
 
-_RETRIES = 2
-"""Further attempts at a recording whose process dies."""
+_RETRIES = 2  # further attempts at a recording whose process dies
 
 Task = TypeVar('Task')
 Report = TypeVar('Report')

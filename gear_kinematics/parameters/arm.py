@@ -25,8 +25,7 @@ from gear_kinematics.parameters.node_parameters import (
 from gear_kinematics.parameters.yaml_file import Dumper
 from gear_kinematics.wire.nearest import among, nearest
 
-_SPACING = 1.5
-"""Distance between neighbours in a URDF, in diameters of the largest ring gear."""
+_SPACING = 1.5  # distance between neighbours in a URDF, in diameters of the largest ring gear
 COMMON = 'actuators', 'executor', 'home_file'
 """Parameters of the node, which cannot differ between actuators."""
 

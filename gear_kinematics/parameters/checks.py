@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 from gear_kinematics.kinematics.rotor_turns import TURN
 
-_LEAST_RANGE = 0.5
-"""rad, of an encoder: ten times the noise that is expected of any."""
+_LEAST_RANGE = 0.5  # rad, of an encoder: ten times the noise that is expected of any
 
 
 def stiffness(values: Sequence[float]) -> None:

@@ -18,8 +18,7 @@ _GEAR = {'gear_ratio', 'ring_teeth', 'satellite_teeth', 'rotor_joint', 'rotor_di
          'rotor_zero', 'rotor_encoder', 'output_joint', 'calibration', 'home_file'}  # fmt: skip
 """Parameters that describe a gear, and hardly any other node has."""
 
-_FILES = 'calibration', 'home_file'
-"""Parameters that name files, relative to the parameter file."""
+_FILES = 'calibration', 'home_file'  # parameters that name files, relative to the parameter file
 
 
 class ConfigError(ValueError):

@@ -15,16 +15,13 @@ class Parameter:
     description: str
     minimum: float | None = None
     maximum: float | None = None
-    least: float = 0.0
-    """Least magnitude of a number, or of those in a list, that is not 0."""
+    least: float = 0.0  # least magnitude of a number, or of those in a list, that is not 0
     step: int = 0
     choices: tuple[str, ...] = ()
     read_only: bool = False
-    check: Callable[[Any], object] = bool
-    """Additional check, which raises ValueError."""
+    check: Callable[[Any], object] = bool  # additional check, which raises ValueError
     kind: type = float
-    items: type = str
-    """Type of the items of a list."""
+    items: type = str  # type of the items of a list
 
     def fault(self, name: str, value: Any) -> str | None:
         """Return the fault of a value, or None."""

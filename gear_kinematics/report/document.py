@@ -46,8 +46,7 @@ class Cell:
 
     text: str
     tone: Tone = Tone.PLAIN
-    unit: str = ''
-    """Unit of the value; the unit of a row's first cell applies to all its values."""
+    unit: str = ''  # unit of the value; the unit of a row's first cell applies to all its values
 
     @property
     def says(self) -> bool:
@@ -138,8 +137,7 @@ class Sentence:
 
     kind: Literal['error', 'finding']
     text: str
-    time: float | None = None
-    """Position on the x axis of the figure to which the sentence refers."""
+    time: float | None = None  # position on the x axis of the figure to which the sentence refers
 
 
 class Pen(StrEnum):
@@ -164,14 +162,11 @@ PENS = Pen.FIRST, Pen.SECOND, Pen.THIRD, Pen.FOURTH, Pen.FIFTH, Pen.SIXTH
 class Line:
     """A line of a panel."""
 
-    name: str
-    """Lines of the same name share an entry in the legend."""
+    name: str  # lines of the same name share an entry in the legend
     pen: Pen
     x: Array
-    y: Array
-    """NaN leaves a gap."""
-    points: bool = False
-    """Whether to draw only points."""
+    y: Array  # NaN leaves a gap
+    points: bool = False  # whether to draw only points
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -180,17 +175,12 @@ class Panel:
 
     title: str
     x_label: str
-    y_label: str
-    """Label of the y axis with its unit, as text."""
+    y_label: str  # label of the y axis with its unit, as text
     lines: tuple[Line, ...]
-    marks: tuple[tuple[float, str], ...] = ()
-    """Positions on the x axis, each with a text."""
-    levels: tuple[tuple[float, str], ...] = ()
-    """Positions on the y axis, each with a text."""
-    scale: Literal['linear', 'log'] = 'linear'
-    """Scale of the y axis."""
-    equal: bool = False
-    """Whether both axes have the same scale, as in a drawing."""
+    marks: tuple[tuple[float, str], ...] = ()  # positions on the x axis, each with a text
+    levels: tuple[tuple[float, str], ...] = ()  # positions on the y axis, each with a text
+    scale: Literal['linear', 'log'] = 'linear'  # scale of the y axis
+    equal: bool = False  # whether both axes have the same scale, as in a drawing
 
     @property
     def unit(self) -> str:
@@ -261,10 +251,8 @@ class Origin:
 
     version: str
     date: str
-    command: str
-    """Command as typed in a shell."""
-    configs: tuple[tuple[str, str], ...] = ()
-    """Parameter files with their SHA-256."""
+    command: str  # command as typed in a shell
+    configs: tuple[tuple[str, str], ...] = ()  # parameter files with their SHA-256
 
 
 @dataclass(frozen=True, eq=False, slots=True)

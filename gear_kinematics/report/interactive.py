@@ -13,10 +13,8 @@ from numpy.typing import ArrayLike
 from gear_kinematics.report.document import Line, Panel, Pen
 from gear_kinematics.report.mechanism import MovingMechanism
 
-_GAP = 0.2
-"""Ratio of the gap between panels to the height of a panel with its gap."""
-_LINE = 36
-"""Greatest number of characters in a line of text, so that it fits on a phone."""
+_GAP = 0.2  # ratio of the gap between panels to the height of a panel with its gap
+_LINE = 36  # greatest number of characters in a line of text, so that it fits on a phone
 
 
 def interactive(panels: Sequence[Panel], mechanism: MovingMechanism | None) -> dict[str, Any]:

@@ -7,8 +7,7 @@ MARK = 'made by gearkin'  # mark in comments of text files and in the metadata o
 _JSON = b'{\n  "made_by": "gearkin '
 _STARTS = (b'<!DOCTYPE html>', b'<?xml ', b'\x89PNG\r\n', b'GIF8', b'%PDF-')
 """First bytes of files in the other formats."""
-_SEARCHED = 2**16
-"""Number of bytes at either end of a file that are searched for the mark."""
+_SEARCHED = 2**16  # number of bytes at either end of a file that are searched for the mark
 
 
 def is_report(path: Path) -> bool:

@@ -12,13 +12,10 @@ from gear_kinematics.kinematics import Mechanism
 
 Array = NDArray[np.float64]
 
-_RADIUS = 500.0
-"""Radius of the drawing, in units so small that no screen resolves a tenth of one."""
+_RADIUS = 500.0  # radius of the drawing, in units so small that no screen resolves a tenth of one
 _VIEW = _RADIUS + 5.0
-_CENTRE = 7.0
-"""Radius of the dots that mark centres."""
-_SPEEDS = (1e-4, 1e-3, 1e-2, 1e-1, 1.0, 10.0, 100.0)
-"""Playing speeds relative to real time."""
+_CENTRE = 7.0  # radius of the dots that mark centres
+_SPEEDS = (1e-4, 1e-3, 1e-2, 1e-1, 1.0, 10.0, 100.0)  # playing speeds relative to real time
 _EASY_RATE = 360.0  # degrees of the rotor per second, which the eye can follow
 
 

@@ -20,8 +20,7 @@ from gear_kinematics.report.document import (
     Verdict,
 )
 
-_PADDING = 2
-"""Number of blank characters between two columns of a table."""
+_PADDING = 2  # number of blank characters between two columns of a table
 _VERDICT_STYLES = {
     None: '',
     Verdict.PASS: 'bold green',

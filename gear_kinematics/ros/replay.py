@@ -41,8 +41,7 @@ class Played:
     """Result of `play`."""
 
     messages: int = 0
-    worst_delay: float = 0.0
-    """Greatest delay of a message, s."""
+    worst_delay: float = 0.0  # greatest delay of a message, s
 
 
 def play(

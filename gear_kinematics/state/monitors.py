@@ -19,8 +19,7 @@ from gear_kinematics.wire.joint_reader import JOINT_MISSING
 
 _BEYOND_ANY_GEAR = 0.1  # rad
 
-_SOON = 0.1
-"""Time, s, after a report until which the next one repeats its rates and comparisons."""
+_SOON = 0.1  # time, s, after a report until which the next one repeats its rates and comparisons
 
 
 @dataclass(slots=True)

@@ -7,8 +7,7 @@ from typing import NamedTuple
 from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.parameters import NodeParameters
 
-_BLOCK = 20
-"""Errors whose median counts, so that single wrong readings of an encoder do not."""
+_BLOCK = 20  # errors whose median counts, so that single wrong readings of an encoder do not
 
 
 class Slip(NamedTuple):

@@ -33,8 +33,7 @@ Row = tuple[str, Template, Sequence[float]]
 class OutputMessages:
     """Computes the state of the output shaft at a sample and encodes its messages."""
 
-    topics: Collection[str] = (OUTPUT_STATE,)
-    """Topics whose messages are encoded."""
+    topics: Collection[str] = (OUTPUT_STATE,)  # topics whose messages are encoded
 
     def __init__(self, ratio: GearRatio, *, output_joint: str) -> None:
         self._ratio = ratio

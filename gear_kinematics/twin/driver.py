@@ -28,8 +28,7 @@ _FRESH = 0.02
 
 A stream of commands thus causes no steps, and the position of a single command is held."""
 _SEED = 0
-_SHARE = 0.9
-"""Share of the greatest speed that is commanded, to leave room for overshoot."""
+_SHARE = 0.9  # share of the greatest speed that is commanded, to leave room for overshoot
 
 
 class Command(NamedTuple):

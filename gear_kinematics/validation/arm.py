@@ -24,8 +24,7 @@ from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validator import Validator
 from gear_kinematics.wire.batches import FIELDS, JointStateBatch
 
-_BITS = 63
-"""Number of bits of a positive int64."""
+_BITS = 63  # number of bits of a positive int64
 _Fault = tuple[int | None, FindingCause, str, str]
 """An actuator or none, what is wrong, and with which field and joints."""
 

@@ -17,8 +17,7 @@ from gear_kinematics.validation.report import Finding
 _MAX_STEPS = 65_536
 """Changes that are kept; samples that wait for their outputs need the last few thousand."""
 
-_FEW = 64
-"""Number of outputs, from the first one on, that must all show another zero."""
+_FEW = 64  # number of outputs, from the first one on, that must all show another zero
 
 _STEP = np.dtype(
     [

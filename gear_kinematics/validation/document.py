@@ -49,8 +49,7 @@ from gear_kinematics.validation.report import (
 _SCHEMA = 'gear_kinematics/report'
 _VERSION = 1
 _TIME = 'time [s]'
-_LEAST_ERROR = 1e-18
-"""Error, in any unit, as which smaller errors and zeros are drawn."""
+_LEAST_ERROR = 1e-18  # error, in any unit, as which smaller errors and zeros are drawn
 
 Row = tuple[Cell, ...]
 

@@ -15,8 +15,7 @@ from gear_kinematics.wire.cdr import SECOND
 
 Array = NDArray[Any]
 
-_MAX_SAMPLES = 2000
-"""Samples of the record, which is halved when there are more."""
+_MAX_SAMPLES = 2000  # samples of the record, which is halved when there are more
 
 
 class Window:

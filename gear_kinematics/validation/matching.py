@@ -53,8 +53,7 @@ class Expectation(NamedTuple):
 
     gear: Gear
     tolerances: Tolerances
-    changes: CountChanges
-    """Changes of the rotor's count that the outputs show."""
+    changes: CountChanges  # changes of the rotor's count that the outputs show
 
     def tolerance(self, unit: str) -> float:
         """Return the tolerance of errors in a unit: a force acts at the eccentricity as lever."""

@@ -37,8 +37,7 @@ STATE_UNITS = dict(zip(FIELDS, ('rad', 'rad/s', 'N·m'), strict=True))
 class JointStateTopic(OutputTopic):
     """An output topic of JointStates with one joint; its fields are compared one by one."""
 
-    units: ClassVar[Mapping[str, str]]
-    """Units of the fields by their names."""
+    units: ClassVar[Mapping[str, str]]  # units of the fields by their names
     layout = staticmethod(joint_state_layout)
 
     def __init__(self, name: str, joint: str, expectation: Expectation) -> None:

@@ -33,21 +33,15 @@ class Finding:
 class FieldReport:
     """Comparison of one field of an output topic with the recomputed one."""
 
-    name: str
-    """Name, such as `position` of output_state, or `orientation` of body_poses."""
+    name: str  # name, such as `position` of output_state, or `orientation` of body_poses
     unit: str
-    tolerance: float
-    """Greatest accepted error, in `unit`."""
-    compared: int = 0
-    """Samples with a recorded and a recomputed value."""
-    non_finite: int = 0
-    """Samples whose recorded value is NaN or infinite, which fail."""
-    absent: int = 0
-    """Samples with the field in either the input or the output only."""
+    tolerance: float  # greatest accepted error, in `unit`
+    compared: int = 0  # samples with a recorded and a recomputed value
+    non_finite: int = 0  # samples whose recorded value is NaN or infinite, which fail
+    absent: int = 0  # samples with the field in either the input or the output only
     max_error: float = 0.0
     rms_error: float = 0.0
-    worst_stamp: int | None = None
-    """Stamp of the sample with `max_error`; None without any error."""
+    worst_stamp: int | None = None  # stamp of the sample with `max_error`; None without any error
     worst_rotor_angle: float | None = None
     first_non_finite: int | None = None
     first_absent: int | None = None
@@ -100,11 +94,9 @@ class TopicReport:
 class Gap:
     """A gap between messages of the rotor topic."""
 
-    stamp: int
-    """Stamp of the sample after the gap."""
+    stamp: int  # stamp of the sample after the gap
     seconds: float
-    turned: float
-    """Travel between the samples before and after it, rad."""
+    turned: float  # travel between the samples before and after it, rad
 
 
 @dataclass(frozen=True, slots=True)

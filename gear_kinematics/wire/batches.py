@@ -151,16 +151,11 @@ class JointStates:
 class PoseArrays:
     """n messages geometry_msgs/PoseArray."""
 
-    stamp: Array
-    """(n,), time of the header, ns."""
-    malformed: Array
-    """(n,): whether it is no such message, or has another number of poses."""
-    frame_ids: tuple[bytes, ...]
-    """The frames that occur."""
-    frame: Array
-    """(n,): index of the frame in `frame_ids`."""
-    poses: Array
-    """(n, poses, 7), float64: x y z and quaternion x y z w."""
+    stamp: Array  # (n,), time of the header, ns
+    malformed: Array  # (n,): whether it is no such message, or has another number of poses
+    frame_ids: tuple[bytes, ...]  # the frames that occur
+    frame: Array  # (n,): index of the frame in `frame_ids`
+    poses: Array  # (n, poses, 7), float64: x y z and quaternion x y z w
 
 
 def decode_joint_states(messages: Sequence[bytes], joint: str) -> JointStates:

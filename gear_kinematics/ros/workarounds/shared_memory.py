@@ -9,8 +9,7 @@ import os
 _PLACE = '/dev/shm'  # noqa: S108, where Linux keeps shared memory
 _TRACING = 2 * os.sysconf('SC_PAGE_SIZE')
 """Bytes that LTTng uses without reserving them when rclpy is imported."""
-_PARTICIPANT = 2**20
-"""Bytes; Fast DDS reserves 650 KiB for a participant."""
+_PARTICIPANT = 2**20  # bytes; Fast DDS reserves 650 KiB for a participant
 
 
 class SharedMemoryError(RuntimeError):
