@@ -102,28 +102,19 @@ class Calibration:
         CalibrationError: if a number is out of range.
     """
 
-    made_by: str
-    """Program that wrote the file, and its version."""
-    created: str
-    """Date and time of the calibration, ISO 8601."""
+    made_by: str  # program that wrote the file, and its version
+    created: str  # date and time of the calibration, ISO 8601
     recordings: tuple[UsedRecording, ...]
-    gear_ratio: Fraction
-    """Signed, exact gear ratio i."""
-    ring_teeth: int | None
-    """Number of teeth zk; None if only the ratio is known."""
-    satellite_teeth: int | None
-    """Number of teeth zs; None if only the ratio is known."""
-    constant: float
-    """Constant part of the deviation, rad."""
+    gear_ratio: Fraction  # signed, exact gear ratio i
+    ring_teeth: int | None  # number of teeth zk; None if only the ratio is known
+    satellite_teeth: int | None  # number of teeth zs; None if only the ratio is known
+    constant: float  # constant part of the deviation, rad
     orders: tuple[Order, ...]
     hysteresis: tuple[Stop, ...]
     compliance: Compliance | None
-    covariance: tuple[tuple[float, ...], ...]
-    """Covariance of the coefficients: cos and sin of each order, each stop, the compliance."""
-    half_width: float
-    """Half width of the 95 % interval within `spans`, rad."""
-    outside_half_width: float
-    """Half width of the 95 % interval outside `spans`, rad; at least `half_width`."""
+    covariance: tuple[tuple[float, ...], ...]  # of cos and sin of orders, stops, and compliance
+    half_width: float  # half width of the 95 % interval within `spans`, rad
+    outside_half_width: float  # half width of the 95 % interval outside `spans`, rad
     spans: Spans
     validation: Prediction
 

@@ -19,14 +19,10 @@ class ErrorStatistics(NamedTuple):
     """Statistics of the transmission error; None where there are no samples."""
 
     samples: int = 0
-    mean: float | None = None
-    """Mean error, rad."""
-    peak_to_peak: float | None = None
-    """Greatest minus least error, rad."""
-    reversals: Reversals | None = None
-    """Lost motion and delay; None unless both directions cover the same angles."""
-    calibration: CalibrationFit | None = None
-    """Fit of the calibration; None without one."""
+    mean: float | None = None  # mean error, rad
+    peak_to_peak: float | None = None  # greatest minus least error, rad
+    reversals: Reversals | None = None  # lost motion and delay; None without common angles
+    calibration: CalibrationFit | None = None  # fit of the calibration; None without one
 
 
 class ErrorWindow:

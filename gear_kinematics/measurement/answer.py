@@ -73,11 +73,9 @@ class Limits:
     """Acceptance limits: greatest angles, rad, and least stiffness; None means no limit."""
 
     hysteresis: float | None = None
-    lost_motion: float | None = None
-    """At ±3 % of the rated torque, or on reversals where there are no ramps."""
+    lost_motion: float | None = None  # at ±3 % of the rated torque, or on reversals without ramps
     backlash: float | None = None
-    stiffness: float | None = None
-    """N·m/rad, in the highest range of torque."""
+    stiffness: float | None = None  # N·m/rad, in the highest range of torque
 
     def judge(self, report: LostMotion) -> Iterator[LimitCheck]:
         """Judge a recording by each limit, at the end of the interval that speaks against it."""

@@ -119,17 +119,12 @@ class Change:
     quantity: Quantity
     first: str
     second: str
-    before: float
-    """Geometric mean, SI."""
+    before: float  # geometric mean, SI
     after: float
-    interval: tuple[float, ...]
-    """Limits of after / before, with a probability of `COVERAGE`; none if they are unknown."""
-    probability: float | None
-    """Probability of as much by chance; None if unknown."""
-    repeated: bool
-    """Whether these are by the scatter between recordings, else by that within them."""
-    significant: bool = False
-    """Among all changes of its family."""
+    interval: tuple[float, ...]  # limits of after / before with `COVERAGE`; none if unknown
+    probability: float | None  # probability of as much by chance; None if unknown
+    repeated: bool  # whether these are by the scatter between recordings, else by that within them
+    significant: bool = False  # among all changes of its family
 
     @property
     def judgement(self) -> str:

@@ -145,14 +145,10 @@ class Term(NamedTuple):
     """A term of the model."""
 
     name: str
-    cause: str
-    """Likely cause, in words; empty where none is."""
-    entry: Order | Stop | Compliance
-    """Entry in a calibration file; the coefficients are 0 until they are fitted."""
-    unit: float = 1.0
-    """The greatest value of its columns, or their standard deviation."""
-    is_trend: bool = False
-    """Whether it is known over the recorded output angles only."""
+    cause: str  # likely cause, in words; empty where none is
+    entry: Order | Stop | Compliance  # the coefficients are 0 until they are fitted
+    unit: float = 1.0  # the greatest value of its columns, or their standard deviation
+    is_trend: bool = False  # whether it is known over the recorded output angles only
 
     @property
     def cycles(self) -> Fraction | None:
