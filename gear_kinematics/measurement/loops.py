@@ -237,5 +237,4 @@ def _mean_rows(torque: Array, noise: float) -> int:
 
 def _line(values: Array) -> Array:
     rows = np.arange(len(values)) - 0.5 * (len(values) - 1)
-    fitted: Array = np.mean(values) + rows @ values / (rows @ rows) * rows
-    return fitted
+    return np.asarray(np.mean(values) + rows @ values / (rows @ rows) * rows)

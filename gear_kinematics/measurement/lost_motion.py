@@ -33,18 +33,14 @@ class LostMotion:
         """The figures of a summary, to which limits apply; without a value where unknown."""
         found, motion = self.figures, self.transmission
         moving = found or motion
+        lost = moving.lost_motion if moving else None
         top = found.stiffness[-1] if found and found.stiffness else None
         ends = f' {number(top.low)} to {number(top.high)} N·m' if top else ''
         return (
             Measured(HYSTERESIS, 'rad', found.hysteresis if found else None),
             Measured('backlash', 'rad', found.backlash if found else None),
             Measured('friction', 'N·m', found.friction if found else None),
-            Measured(
-                LOST_MOTION,
-                'rad',
-                moving.lost_motion if moving else None,
-                '' if found else ' on reversals',
-            ),
+            Measured(LOST_MOTION, 'rad', lost, '' if found else ' on reversals'),
             Measured('stiffness', 'N·m/rad', top.slope if top else None, ends),
             Measured('transmission accuracy', 'rad', motion.forward if motion else None),
         )

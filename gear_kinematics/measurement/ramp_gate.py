@@ -163,5 +163,4 @@ def longest(time: Array, *, timed: bool) -> Observed:
 def usual(values: Array) -> Array:
     """Values (n,) without stray ones."""
     windows = sliding_window_view(np.pad(values, _WINDOW // 2, 'edge'), _WINDOW)
-    medians: Array = np.median(windows, axis=1)
-    return medians
+    return np.asarray(np.median(windows, axis=1))

@@ -39,14 +39,12 @@ class RotorMotion(NamedTuple):
     @property
     def seconds(self) -> Array:
         """Times from the first sample, s, or sample numbers."""
-        seconds: Array = (self.stamp - self.stamp[0]) / SECOND
-        return seconds
+        return np.asarray((self.stamp - self.stamp[0]) / SECOND)
 
     @property
     def turned(self) -> Array:
         """Rotor angle from the whole turns of the first sample, rad."""
-        turned: Array = (self.turns - self.turns[0]) * TURN + self.angle
-        return turned
+        return np.asarray((self.turns - self.turns[0]) * TURN + self.angle)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -114,8 +112,7 @@ class Encoders:
     @property
     def _after(self) -> Array:
         """(n,): index of the next rotor sample, or of the last."""
-        after: Array = np.minimum(self.before + 1, len(self.rotor.stamp) - 1)
-        return after
+        return np.asarray(np.minimum(self.before + 1, len(self.rotor.stamp) - 1))
 
     @property
     def interpolated(self) -> float:
@@ -127,8 +124,7 @@ class Encoders:
     def at_measured(self, values: Array) -> Array:
         """Interpolate a quantity of the rotor to the measured angles."""
         before = values[self.before]
-        interpolated: Array = before + self.share * (values[self._after] - before)
-        return interpolated
+        return np.asarray(before + self.share * (values[self._after] - before))
 
     def position(self) -> tuple[Array, Array]:
         """Rotor angle at the measured angles: whole turns and the rest, rad."""
@@ -141,8 +137,7 @@ class Encoders:
 
     def ideal(self, ratio: Fraction) -> Array:
         """Ideal output angle of the rotor samples, rad, from the whole turns of the first one."""
-        output: Array = self.rotor.turned * (ratio.denominator / ratio.numerator)
-        return output
+        return self.rotor.turned * (ratio.denominator / ratio.numerator)
 
     def error_step(self, ratio: Fraction) -> Step:
         """The step of the error, rad."""
@@ -162,8 +157,7 @@ class Encoders:
         late = np.clip(at + 0.5 * _SPEED_WINDOW, time[self._after], time[-1])
         ideal = self.ideal(ratio)
         travel = np.interp(late, time, ideal) - np.interp(early, time, ideal)
-        speed: Array = travel / np.maximum(late - early, 1.0 / SECOND)
-        return speed
+        return np.asarray(travel / np.maximum(late - early, 1.0 / SECOND))
 
     def torque(self, ratio: Fraction) -> Array | None:
         """Torque at the output, N·m, at the measured angles; None if it has gaps."""

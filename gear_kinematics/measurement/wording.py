@@ -21,11 +21,6 @@ def plus_minus(estimate: Estimate | None, scale: float = 1.0) -> str:
     return f'{value} ± {spread}' if spread else value
 
 
-def arc_minutes(estimate: Estimate | None) -> str:
-    """Format an angle in arc minutes with its uncertainty."""
-    return plus_minus(estimate, ARC_MINUTES)
-
-
 def rounded(estimate: Estimate, scale: float) -> tuple[str, str]:
     """Format a value and its uncertainty, which is empty if unknown."""
     value, spread = estimate.value * scale, estimate.uncertainty

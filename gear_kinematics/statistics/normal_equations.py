@@ -64,15 +64,13 @@ class NormalEquations:
         places, ridge = list(chosen), np.array(_RIDGE)
         if self.noise is not None:
             ridge = np.maximum(self.noise / self._scale[places] ** 2, _ROUNDING)
-        matrices: Array = self.products[fits, places][:, :, places] + ridge * np.eye(len(places))
-        return matrices
+        return np.asarray(self.products[fits, places][:, :, places] + ridge * np.eye(len(places)))
 
     def solve(self, chosen: Sequence[int], fits: slice = _ALL) -> Array:
         """Coefficients of the chosen columns, (fits, chosen)."""
         places = list(chosen)
         solution = np.linalg.solve(self.regular(places, fits), self.products[fits, places, -1:])
-        coefficients: Array = solution[:, :, 0] * self._scale[-1] / self._scale[places]
-        return coefficients
+        return np.asarray(solution[:, :, 0] * self._scale[-1] / self._scale[places])
 
     def first_order(self, chosen: Sequence[int]) -> Array:
         """Coefficients as of `solve`, but without each block by its influence, to first order.
@@ -88,13 +86,11 @@ class NormalEquations:
     def spreads(self, chosen: Sequence[int]) -> Array:
         """Standard uncertainties of the chosen coefficients by noise that is white, (chosen,)."""
         variances = np.diagonal(np.linalg.inv(self.regular(chosen, _WHOLE)[0]))
-        spreads: Array = np.sqrt((self.noise or 0.0) * variances) / self._scale[list(chosen)]
-        return spreads
+        return np.asarray(np.sqrt((self.noise or 0.0) * variances) / self._scale[list(chosen)])
 
     def errors(self, chosen: Sequence[int]) -> Array:
         """Sum of the squared residuals of each block, predicted without its fold, rad²."""
         coefficients, places = self.solve(chosen)[1 + self._fold], [*chosen, -1]
         factors = np.column_stack([-coefficients, np.ones(len(coefficients))])
         products = self._blocks[:, places][:, :, places]
-        errors: Array = np.einsum('bi,bij,bj->b', factors, products, factors)
-        return errors
+        return np.asarray(np.einsum('bi,bij,bj->b', factors, products, factors))

@@ -12,7 +12,7 @@ from gear_kinematics.measurement.envelope import envelope
 from gear_kinematics.measurement.json_values import plain
 from gear_kinematics.measurement.recording import Array
 from gear_kinematics.measurement.sentences import Observation, Observed
-from gear_kinematics.measurement.wording import ARC_MINUTES, arc_minutes, plus_minus
+from gear_kinematics.measurement.wording import ARC_MINUTES, plus_minus
 from gear_kinematics.report.document import (
     Cell,
     Document,
@@ -50,7 +50,7 @@ def document(fit: Fit, target: str) -> Document:
     terms = Table.of_items(
         {
             'term': lambda term: term.name,
-            'amplitude [arcmin]': lambda term: arc_minutes(term.amplitude),
+            'amplitude [arcmin]': lambda term: plus_minus(term.amplitude, ARC_MINUTES),
             'cycles per rotor turn': lambda term: str(term.cycles or ''),
             'likely cause': lambda term: term.cause,
         },

@@ -180,18 +180,14 @@ def columns_of(terms: Sequence[Term]) -> list[list[int]]:
     return [list(islice(columns, len(term.coefficients))) for term in terms]
 
 
-def output_cycles(ratio: Fraction) -> Fraction:
-    """Turns of the output in a turn of the rotor, without its sign."""
-    return (1 / abs(ratio)).limit_denominator(_LARGEST_DENOMINATOR)
-
-
-def bodies(output: Fraction, mechanism: Mechanism | None) -> dict[str, Fraction]:
+def bodies(ratio: Fraction, mechanism: Mechanism | None) -> dict[str, Fraction]:
     """The bodies of a gear, and the cycles per turn of the rotor with which they repeat.
 
-    In a turn of the rotor, the output turns 1/abs(i) times, which is `output`. In a mechanism, the
-    cam turns 1 + 1/abs(i) times against the satellite, as do its mesh and the Oldham coupling, and
-    teeth mesh zk times.
+    In a turn of the rotor, the output turns 1/abs(i) times. In a mechanism, the cam turns
+    1 + 1/abs(i) times against the satellite, as do its mesh and the Oldham coupling, and teeth
+    mesh zk times.
     """
+    output = (1 / abs(ratio)).limit_denominator(_LARGEST_DENOMINATOR)
     cycles = {'rotor': Fraction(1), 'output': output}
     if mechanism:
         cycles = {'teeth': Fraction(mechanism.ring_teeth), **cycles, 'satellite': 1 + output}
@@ -211,7 +207,7 @@ def known_orders(
     """
     travel = max(float(np.ptp(s.rotor_turns)) for s in samples)
     found: dict[Fraction, Term] = {}
-    for body, unit in bodies(output_cycles(ratio), mechanism).items():
+    for body, unit in bodies(ratio, mechanism).items():
         most, cause = _BODIES[body]
         for multiple in range(1, most + 1):
             name, cycles = f'{body} × {multiple}', multiple * unit

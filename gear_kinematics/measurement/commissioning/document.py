@@ -35,9 +35,7 @@ _INDENT = '    '
 
 def actuator_file(result: Commissioning, name: str = default_config().name) -> str:
     """Return the text of a parameter file of a name; ValueError if the ratio is open."""
-    if not result.between:
-        raise ValueError(str(result.answer))
-    command = start_command(result.request.rotor.topic, name, result.request.output.topic)
+    command = _start(result, name)
     return '\n'.join(
         [
             *_comment(f'{_found(result)} SI units: m, rad, s. Start the node with'),
@@ -59,15 +57,20 @@ def write_file(result: Commissioning, path: Path, actuator: str = '') -> str:
     Raises:
         ValueError: if the ratio is open, or the file cannot be written.
     """
-    if not result.between:
-        raise ValueError(str(result.answer))
-    command = start_command(result.request.rotor.topic, path.name, result.request.output.topic)
+    command = _start(result, path.name)
     if actuator:
         lines = [*_comment(_found(result)), *_values(result)]
         add_actuators(path, {actuator: lines}, arm_head(command))
     else:
         write_new(path, actuator_file(result, path.name))
     return command
+
+
+def _start(result: Commissioning, name: str) -> str:
+    """Return the command that starts the node with a file; ValueError if the ratio is open."""
+    if not result.between:
+        raise ValueError(str(result.answer))
+    return start_command(result.request.rotor.topic, name, result.request.output.topic)
 
 
 def _found(result: Commissioning) -> str:
