@@ -3,7 +3,6 @@
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
-from itertools import islice
 from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple, Self
@@ -40,8 +39,7 @@ class Topics(NamedTuple):
     @classmethod
     def in_namespace_of(cls, rotor: str) -> Self:
         """The topics of the node in the namespace of the rotor's topic."""
-        namespace, _, _ = rotor.rpartition('/')
-        return cls(rotor, f'{namespace}/{OUTPUT_STATE}', f'{namespace}/{BODY_POSES}')
+        return cls(rotor, *in_namespace([OUTPUT_STATE, BODY_POSES], rotor).values())
 
 
 def find_topics(
@@ -122,12 +120,8 @@ def outputs_of(bag: Bag, rotor: str) -> Topics:
 
 def only_joint(bag: Bag, topic: str, joint: str) -> str:
     """Return the joint to read on a topic of joint states: the only one, or else the given one."""
-    found = set[str]()
-    with suppress(BagError):
-        for _, _, data in islice(bag.messages([topic]), _JUDGED):
-            with suppress(MalformedMessageError):
-                found.update(joints_of(data))
-    return found.pop() if len(found) == 1 else joint
+    found = joints_on(bag, [topic])[topic]
+    return found[0] if len(found) == 1 else joint
 
 
 def joints_on(bag: Bag, topics: Sequence[str]) -> dict[str, list[str]]:
@@ -173,9 +167,9 @@ def missing_encoder(bag: Bag) -> str:
     return f'no {OUTPUT_ENCODER}; name its topic with --encoder-topic{hint}'
 
 
-def in_namespace(names: Iterable[str], output: str = Topics().output) -> dict[str, str]:
-    """Return the names of the node's topics in the namespace of the topic of output_state."""
-    namespace, _, _ = output.rpartition('/')
+def in_namespace(names: Iterable[str], other: str = Topics().output) -> dict[str, str]:
+    """Return the names of the node's topics in the namespace of another topic of it."""
+    namespace, _, _ = other.rpartition('/')
     return {name: f'{namespace}/{name}' for name in names}
 
 
