@@ -12,42 +12,13 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from gear_kinematics.parameters import PARAMETERS, NodeParameters, default_value
-from gear_kinematics.parameters.arm import (
-    COMMON,
-    actuators_of,
-    faults_in,
-    full_name,
-    unknown_parameters,
-)
+from gear_kinematics.parameters.arm import COMMON, actuators_of, faults_in, full_name
 from gear_kinematics.parameters.body_parameters import branch_parameters
 from gear_kinematics.parameters.parameter import Parameter as Declaration
 from gear_kinematics.ros.workarounds.private import given_parameters
 
 _QOS_DEPTH = re.compile(r'qos_overrides\..+\.depth')
 _MAX_DEPTH = 2**31 - 1  # messages; the middleware counts them in 32 bits
-
-
-def _declared(
-    node: Node,
-    others: Mapping[str, Declaration],
-    default: Callable[[str], Any],
-    shared: Mapping[str, Declaration],
-) -> dict[str, Any]:
-    """Declare the parameters of a node with one actuator; returns the values by name."""
-    # rclpy ignores undeclared parameters, and has no public access to them.
-    given = given_parameters(node)
-    for name in given.keys() & shared.keys():
-        fault = shared[name].fault(name, given[name].value)
-        if fault and 'quote it' in fault:
-            raise ValueError(fault)
-    _declare(node, shared, default)
-    branches = node.get_parameter('branches').value
-    _declare(node, branch_parameters(branches), default)
-    _declare(node, others, default)
-    if faults := unknown_parameters(given, {'': branches}, others):
-        raise ValueError('; '.join(faults))
-    values = {name: p.value for name, p in node.get_parameters_by_prefix('').items()}
-    return {name: [] if value is None else value for name, value in values.items()}
 
 
 def declared_actuators(
@@ -63,15 +34,18 @@ def declared_actuators(
     `default` gives a default value by name, and `shared` declares those of gear_state_publisher.
 
     Raises:
-        ParameterException: if a value has a wrong type, or is refused.
-        ValueError: if a parameter that the node does not have was given, or values or names of an
-            arm are refused; the text lists them all.
+        ParameterException: if a value of `others` is refused.
+        ValueError: if a parameter that the node does not have was given, or a value or a name is
+            refused; the text lists them all.
     """
+    # rclpy ignores undeclared parameters, and has no public access to them.
     given = {name: _plain(each.value) for name, each in given_parameters(node).items()}
-    if not given.get('actuators'):
-        return actuators_of(_declared(node, others, default, shared))
     if faults := faults_in(given, others):
         raise ValueError('; '.join(faults))
+    if not given.get('actuators'):
+        branches = given.get('branches', default('branches'))
+        known = {**shared, **branch_parameters(branches)}
+        given = {name: default(name) for name in known} | given
     actuators = actuators_of(given)
     values: dict[str, Any] = {}
     for name, parameters in actuators.items():
