@@ -19,6 +19,7 @@ from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.fields import Array, Occurrences
 from gear_kinematics.validation.load_topics import LoadTopic
 from gear_kinematics.validation.matching import WINDOW
+from gear_kinematics.validation.output_topics import JointStateTopic
 from gear_kinematics.validation.report import BagReport, Finding
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validator import Validator
@@ -142,11 +143,12 @@ class ArmValidator:
         for k, validator in enumerate(validators):
             withholds = validator.task.parameters.unreferenced_outputs == 'withhold'
             for output in validator.outputs:
-                if isinstance(output, LoadTopic):
-                    joints[output.name] |= dict.fromkeys(output.joints, k)
-                elif output.joints:
+                if isinstance(output, JointStateTopic):
                     joints[output.name] = outputs
-                    needed[output.name] |= set() if withholds else {k}
+                else:
+                    joints[output.name] |= dict.fromkeys(output.joints, k)
+                if not (isinstance(output, LoadTopic) or withholds):
+                    needed[output.name].add(k)
         count = len(validators)
         others = count < len(validators[0].task.parameters.actuators)
         self._joined = {

@@ -118,6 +118,7 @@ class FindingCause(Enum):
     NO_POSES = 'no poses are recorded: {output} alone is compared'
     POSES_UNJUDGED = '{poses} is not judged: only the ratio of the gear is known'
     CORRECTION_UNJUDGED = 'the corrected output is not judged: {why}'
+    NOT_COMPARED = 'recorded, but not compared: {topics}'
     INDEPENDENT = '{independent.text}'
 
 

@@ -57,6 +57,8 @@ class Expectation(NamedTuple):
 
     def tolerance(self, unit: str) -> float:
         """Return the tolerance of errors in a unit: a force acts at the eccentricity as lever."""
+        if unit == 'm/s':
+            return self.tolerances.velocity
         if unit == 'N' and isinstance(self.gear, Mechanism):
             return self.tolerances.effort / self.gear.eccentricity
         return self.tolerances.of(unit)

@@ -16,6 +16,7 @@ from gear_kinematics.validation.matching import Expectation, OutputTopic, rotor_
 from gear_kinematics.validation.report import Finding
 from gear_kinematics.wire.batches import (
     FIELDS,
+    JointStateBatch,
     PoseArrays,
     decode_joint_states,
     decode_pose_arrays,
@@ -214,6 +215,56 @@ class BodyPoses(OutputTopic):
             FieldSamples(np.where(samples['turns_known'], finite_or_infinite(error), np.nan))
             for error in (position, orientation)
         ]
+
+
+class MechanismStates(OutputTopic):
+    """mechanism_joint_states; the error of a message is the largest of its joints."""
+
+    layout = staticmethod(joint_state_layout)
+
+    def __init__(
+        self, name: str, joints: Sequence[str], mechanism: Mechanism, expectation: Expectation
+    ) -> None:
+        units = {'angle': 'rad', 'slide': 'm', 'velocity': 'rad/s', 'slide velocity': 'm/s'}
+        super().__init__(name, '', expectation, units)
+        self.joints = [joint.encode() for joint in joints]
+        self._mechanism = mechanism
+
+    def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
+        batch = messages if isinstance(messages, JointStateBatch) else JointStateBatch(messages)
+        stamp, malformed, count = batch.heads[0], np.ones(len(batch), bool), len(self.joints)
+        self._values = np.full((2, len(batch), count), np.nan)
+        self._moving = np.zeros(len(batch), bool)
+        names = tuple(self.label.encode() + joint for joint in self.joints)
+        own = batch.narrowed(self.joints) if self.shared else batch
+        for rows, found, _, fields in own.contents():
+            sizes = [field.shape[1] for field in fields]
+            if found == names and sizes in ([count, 0, 0], [count, count, 0]):
+                malformed[rows] = False
+                for values, field in zip(self._values, fields[: 1 + bool(sizes[1])], strict=False):
+                    values[rows] = field
+                absent = np.isnan(self._values[1, rows]).all(axis=1)
+                self._moving[rows] = ~absent if self.shared else sizes[1] > 0
+        return stamp, malformed
+
+    def _compare(self, rows: Array | slice, samples: Window) -> Sequence[FieldSamples]:
+        rotor, velocity = rotor_angle(samples), samples['velocity']
+        state = solve(self._mechanism, samples['angle'], velocity, rotor_turns=samples['turns'])
+        wanted, there = ~np.isnan(velocity), self._moving[rows]
+        one_sided, branches = np.flatnonzero(wanted != there), len(self._mechanism.branches)
+        slides = slice(1 + branches, 1 + 2 * branches)
+        found = list[FieldSamples]()
+        for recorded, known, given, output, sliding, unmatched in (
+            (0, samples['turns_known'], rotor, state.output_angle, state.satellite_slide, []),
+            (1, wanted & there, velocity, state.output_velocity,
+             state.satellite_slide_velocity, one_sided),
+        ):  # fmt: skip
+            expected = [given, *[output - given] * branches, *sliding.T, output]
+            error = finite_or_infinite(np.abs(self._values[recorded, rows].T - expected))
+            error[:, ~known] = np.nan
+            for each in (np.delete(error, slides, axis=0), error[slides]):
+                found.append(FieldSamples(each.max(axis=0), np.asarray(unmatched, np.intp)))
+        return found
 
 
 def _orientation_error(quaternions: Sequence[Array], angle: Array) -> Array:

@@ -3,7 +3,7 @@
 
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
@@ -37,6 +37,7 @@ from gear_kinematics.wire.cdr import MalformedMessageError, messages_lost
 from gear_kinematics.wire.topics import (
     BODY_POSES,
     CORRECTED_TOPICS,
+    JOINT_STATES,
     LOAD_TOPICS,
     OUTPUT_ENCODER,
     TOPICS,
@@ -44,6 +45,7 @@ from gear_kinematics.wire.topics import (
 )
 
 _LOSSES = 'rosbag2_interfaces/msg/MessagesLostEvent'  # of recorders since Lyrical
+_OF_BODIES = JOINT_STATES, *LOAD_TOPICS  # further topics, if the bodies of the gear are known
 _BATCH = 8192  # messages of a live node that are validated together
 
 
@@ -143,7 +145,7 @@ def _judged(
         own = Topics() if known else Topics(poses='')
         validator = Validator(live, own, further, encoder=encoder and f'/{OUTPUT_ENCODER}')
     else:
-        judged = *CORRECTED_TOPICS, *(LOAD_TOPICS if known else ())
+        judged = *CORRECTED_TOPICS, *(_OF_BODIES if known else ())
         further = find_in_namespace(bag, judged, topics.output)
         names = (*topics, *further.values(), *filter(None, [encoder]))
         batches = bag.batches(names, progress)
@@ -164,7 +166,7 @@ def _judged(
         report = replace(report, findings=(taken, *report.findings))
     elif not play:
         report = _explained(report, task, bag, topics)
-    return report
+    return report if play else report.adding(*_not_compared(bag, topics, validator.topics))
 
 
 def _judged_arm(task: Task, bag: Bag, progress: ReportProgress | None) -> BagReport:
@@ -180,10 +182,10 @@ def _judged_arm(task: Task, bag: Bag, progress: ReportProgress | None) -> BagRep
     validators, proofs = list[Validator](), list[Independent | None]()
     for each in task.actuators:
         parameters = each.parameters
-        loads = LOAD_TOPICS if isinstance(parameters.gear, Mechanism) else ()
+        bodies = _OF_BODIES if isinstance(parameters.gear, Mechanism) else ()
         names = {
             name: f'{namespace}/{topic_of(parameters.actuator, name)}'
-            for name in (BODY_POSES, *CORRECTED_TOPICS, *loads)
+            for name in (BODY_POSES, *CORRECTED_TOPICS, *bodies)
         }
         own = {n: topic for n, topic in names.items() if bag.topics.get(topic) == TOPICS[n].type}
         of = topics._replace(poses=each.poses_topic or own.pop(BODY_POSES, ''))
@@ -206,7 +208,9 @@ def _judged_arm(task: Task, bag: Bag, progress: ReportProgress | None) -> BagRep
             arm.reports(damage, lost), proofs, task.actuators, strict=True
         )
     ]
-    return arm.report(task, reports).adding(*_losses(lost, recorded))
+    actuators = [each.parameters.actuator for each in task.actuators]
+    left_out = _not_compared(bag, topics, recorded, *actuators)
+    return arm.report(task, reports).adding(*_losses(lost, recorded), *left_out)
 
 
 def _explained(report: BagReport, task: Task, bag: Bag, topics: Topics) -> BagReport:
@@ -229,6 +233,22 @@ def _losses(lost: Counter[str], topics: Iterable[str]) -> Iterator[Finding]:
     for topic in topics:
         if lost[topic]:
             yield Finding(FindingCause.RECORDER_LOST, topic, count=lost[topic])
+
+
+def _not_compared(
+    bag: Bag, topics: Topics, compared: Collection[str], *actuators: str
+) -> Iterator[Finding]:
+    """Yield which recorded topics of the node are not compared."""
+    names = {
+        topic_of(actuator, name): topic.type
+        for actuator in ('', *actuators)
+        for name, topic in TOPICS.items()
+        if topic.publisher == 'node'
+    }
+    own = zip(in_namespace(names, topics.output).values(), names.values(), strict=True)
+    left = [topic for topic, kind in own if bag.topics.get(topic) == kind]
+    if left := [topic for topic in left if topic not in compared]:
+        yield Finding(FindingCause.NOT_COMPARED, values={'topics': left})
 
 
 def _recorded_losses(bag: Bag) -> Counter[str]:

@@ -25,13 +25,13 @@ from gear_kinematics.validation.count_changes import CountChanges, first_number
 from gear_kinematics.validation.fields import Array, Window
 from gear_kinematics.validation.load_topics import LoadTopic
 from gear_kinematics.validation.matching import SAMPLES, WINDOW, Expectation, OutputTopic
-from gear_kinematics.validation.output_topics import BodyPoses, OutputState
+from gear_kinematics.validation.output_topics import BodyPoses, MechanismStates, OutputState
 from gear_kinematics.validation.recorder import Completeness, RecordedInputs
 from gear_kinematics.validation.report import BagReport, Finding
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.turn_references import TurnReferences
 from gear_kinematics.wire.cdr import MalformedMessageError
-from gear_kinematics.wire.topics import LOAD_TOPICS
+from gear_kinematics.wire.topics import JOINT_STATES, LOAD_TOPICS
 
 _FRAME = 'stator'
 _TOPICS = Topics()
@@ -54,8 +54,8 @@ class Validator:
         Args:
             task: how to validate it.
             topics: names of the topics; that of poses that are not recorded is empty.
-            further: the recorded ones of CORRECTED_TOPICS and LOAD_TOPICS, each with its name in
-                the recording.
+            further: the recorded ones of CORRECTED_TOPICS, LOAD_TOPICS and JOINT_STATES, each with
+                its name in the recording.
             encoder: the topic of an encoder at the output that references the rotor, if recorded.
 
         Raises:
@@ -97,6 +97,9 @@ class Validator:
             if topic in LOAD_TOPICS:
                 self._loads = self._loads or LoadEstimator(parameters)
                 groups.append([LoadTopic(topic, name, self._loads, self._expectation)])
+            elif topic == JOINT_STATES and isinstance(gear, Mechanism):
+                names = parameters.joint_names
+                groups.append([MechanismStates(name, names, gear, self._expectation)])
             elif self._corrector:
                 groups.append([CORRECTED[topic](name, joint, self._expectation)])
         self._groups = []
@@ -307,7 +310,7 @@ class Validator:
         rotor = self._topics.rotor
         if self._topics.poses and not self.poses:
             yield Finding(FindingCause.POSES_UNJUDGED, values={'poses': self._topics.poses})
-        elif isinstance(self._gear, Mechanism) and not self.poses:
+        elif isinstance(self._gear, Mechanism) and self.outputs == [self.output]:
             yield Finding(FindingCause.NO_POSES, values={'output': self.output.name})
         yield from self._findings
         yield from self._changes.notes()

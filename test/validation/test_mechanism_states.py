@@ -1,0 +1,116 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""mechanism_joint_states in recordings: the node's pass, and each joint that differs is found."""
+
+import made_bags
+import numpy as np
+import pytest
+import validating
+from arm_recordings import OUTPUT, ROTOR, config, inputs
+from node_loop import answered
+from shipped_bags import BAGS, JOINT_STATE, read_bag, write_bag
+from validating import field_of, topic_of
+
+from gear_kinematics.kinematics import matrix_method
+from gear_kinematics.parameters.arm import load_actuators
+from gear_kinematics.report.document import Verdict
+from gear_kinematics.state.arm_state import ArmState
+from gear_kinematics.state.gear_state import GearState
+from gear_kinematics.validation import explain, output_topics
+from gear_kinematics.validation.validate_bag import validate
+
+STATES = 'mechanism_joint_states'
+TOPIC = f'/{STATES}'
+MARKERS, ERRORS = '/shoulder/markers', '/transmission_error'
+LAST = 100
+"""Number of a message with the joints of both mechanisms."""
+JOINTS = 'rotor', 'satellite_a', 'satellite_b', 'oldham_a', 'oldham_b', 'output_shaft'
+
+
+def judged(messages, parameters):
+    return validating.validate(messages, parameters, further={STATES: TOPIC})
+
+
+@pytest.mark.parametrize('bag', ['servo_point_to_point', 'driver_faults'])
+def test_what_a_node_publishes_agrees_with_the_matrix_method(bag, config, monkeypatch):
+    """Some messages of the faulty driver have no velocity."""
+    monkeypatch.setattr(output_topics, 'solve', matrix_method.solve)
+    messages = answered(config, read_bag(BAGS / bag), topics=[STATES])
+    report = judged(messages, config)
+    assert report.verdict == Verdict.PASS, explain(report)
+    found = topic_of(report, TOPIC)
+    assert found.compared == found.messages > 1000
+    compared = {field.name: field.compared for field in found.fields}
+    assert compared['angle'] == compared['slide'] == found.messages
+    output = field_of(report, OUTPUT, 'velocity').compared
+    assert compared['velocity'] == compared['slide velocity'] == output > 1000
+
+
+def changed(data: bytes, name: str, joint: int) -> bytes:
+    """Flip one bit, in the exponent, of a joint's value in a field."""
+    message = made_bags.JAZZY.deserialize_cdr(data, JOINT_STATE)
+    values = getattr(message, name).copy()
+    values.view(np.int64)[joint] ^= 1 << 62
+    setattr(message, name, values)
+    return bytes(made_bags.JAZZY.serialize_cdr(message, JOINT_STATE))
+
+
+@pytest.mark.parametrize('joint', range(len(JOINTS)), ids=JOINTS)
+@pytest.mark.parametrize('name', ['position', 'velocity'])
+def test_one_bit_of_any_joint_is_found(name, joint, config):
+    messages = answered(config, read_bag(BAGS / 'servo_point_to_point')[:900], topics=[STATES])
+    row = max(k for k, message in enumerate(messages) if message[0] == TOPIC)
+    messages[row] = *messages[row][:2], changed(messages[row][2], name, joint)
+    report = judged(messages, config)
+    assert report.verdict == Verdict.FAIL
+    names = {'position': ('angle', 'slide'), 'velocity': ('velocity', 'slide velocity')}[name]
+    wrong = [field.name for field in topic_of(report, TOPIC).fields if not field.passed]
+    assert wrong == [names['oldham' in JOINTS[joint]]]
+
+
+def arm(path, edit=lambda _, data: data):
+    """A recording of an arm of two mechanisms and a ratio, with two topics of other kinds."""
+    actuators = {'shoulder.gear_ratio': '', 'elbow.gear_ratio': '', 'elbow.ring_teeth': 90}
+    actuators = load_actuators(config(path / 'arm.yaml', **actuators))
+    state = ArmState({name: GearState(each) for name, each in actuators.items()})
+    state.choose([OUTPUT[1:], STATES])
+    messages = [(MARKERS, 0, b''), (ERRORS, 0, b'')]
+    for stamp, joints in inputs(40):
+        data = joints.encode(stamp)
+        messages.append((ROTOR, stamp, data))
+        for topic, answer in state.encode(state.rotor(data, int)[0]):
+            given = edit(len(messages), answer) if topic == STATES else answer
+            messages.append((f'/{topic}', stamp + 1, given))
+    types = dict.fromkeys((ROTOR, OUTPUT, TOPIC, ERRORS), JOINT_STATE) | {
+        MARKERS: 'visualization_msgs/msg/MarkerArray'
+    }
+    return validate(write_bag(path / 'bag', messages, types), path / 'arm.yaml')
+
+
+def test_joints_of_an_arm_are_compared_each_and_other_topics_are_named(tmp_path):
+    report = arm(tmp_path)
+    assert report.passed, explain(report)
+    assert f'recorded, but not compared: {ERRORS}, {MARKERS}' in explain(report)
+    compared = [
+        [topic.compared for topic in each.topics if topic.topic == TOPIC]
+        for each in report.actuators
+    ]
+    assert compared == [[40], [40], []]
+
+
+@pytest.mark.parametrize('edit', ['a bit', 'no joint'])
+def test_a_fault_of_one_joint_of_an_arm_is_that_of_its_actuator(edit, tmp_path):
+    def edited(number, data):
+        if number != LAST:
+            return data
+        if edit == 'a bit':
+            return changed(data, 'velocity', len(JOINTS) + 3)
+        message = made_bags.JAZZY.deserialize_cdr(data, JOINT_STATE)
+        for field in ('name', 'position', 'velocity'):
+            setattr(message, field, getattr(message, field)[: len(JOINTS)])
+        return bytes(made_bags.JAZZY.serialize_cdr(message, JOINT_STATE))
+
+    report = arm(tmp_path, edited)
+    assert [each.verdict for each in report.actuators] == ['pass', 'fail', 'pass']
+    text = explain(report.actuators[1])
+    assert TOPIC in text
+    assert ('slide velocity: error' if edit == 'a bit' else 'the joint is missing') in text
