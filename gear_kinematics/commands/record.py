@@ -2,6 +2,7 @@
 """`gearkin record`: what the running nodes hear and publish, as a recording."""
 
 import argparse
+from contextlib import suppress
 from pathlib import Path
 
 from gear_kinematics.commands import ExitCode, arguments, bags
@@ -15,7 +16,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('out', type=Path, metavar='OUT', help='folder to create')
     arguments.add_config(
         parser,
-        default='none; a copy of FILE is kept in OUT, for validate',
+        default='those of the running node; a copy is kept in OUT, for validate',
         chosen=f'record this node alone, such as /left/{NODE}, with its parameters in FILE '
         '(default: all nodes)',
         actuator=arguments.ALL,
@@ -31,17 +32,22 @@ def run(options: argparse.Namespace) -> ExitCode:
     # These need ROS, unlike most commands, and the last one rosbags.
     from gear_kinematics.ros.live import replay_node  # noqa: PLC0415
     from gear_kinematics.ros.replay import stopped_by_signals  # noqa: PLC0415
+    from gear_kinematics.watch.gear import parameters_of  # noqa: PLC0415
     from gear_kinematics.watch.recorder import Recorder  # noqa: PLC0415
     from gear_kinematics.watch.text import show_recording  # noqa: PLC0415, isort: skip
     from gear_kinematics.bag.writing import BagWriter  # noqa: PLC0415, an extra
 
     with stopped_by_signals() as stopped, BagWriter(options.out) as bag:
-        for name, content in files.items():
-            bag.add_file(name, content)
         with replay_node('') as node:
             loads = bool(options.config and any(each.preload for each in configs.values()))
             recorder = Recorder(node, bag, options.node, loads=loads)
             show_recording(recorder, Console(), stopped)
+            if not files and len(recorder.gears) == 1:
+                with suppress(OSError):  # the calibration may be on another computer
+                    if running := parameters_of(node, *recorder.gears):
+                        files = bags.files_of(options, running, None)
+        for name, content in files.items():
+            bag.add_file(name, content)
         heard = recorder.heard
         missing = listed(sorted(recorder.inputs - heard.keys()))
         if not recorder.inputs & heard.keys():
@@ -59,6 +65,6 @@ def run(options: argparse.Namespace) -> ExitCode:
         print('the computer is too busy to record every message')
     if missing:
         print(f'nothing came on {missing}')
-    given = '' if options.config else ' --config FILE, with the parameter file of the node'
+    given = '' if files else ' --config FILE, with the parameter file of the node'
     print(f'prove it: gearkin validate {options.out}{given}')
     return ExitCode.DONE

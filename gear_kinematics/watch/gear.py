@@ -10,6 +10,7 @@ from itertools import count
 from typing import Any, NamedTuple, Self
 
 from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter, parameter_value_to_python
 from rclpy.parameter_client import AsyncParameterClient
@@ -73,6 +74,19 @@ class Answer(NamedTuple):
 def homing_client(node: Node, name: str, actuator: str) -> Any:
     """Return a client of `~/home` of the node with a full name, or of an actuator of it."""
     return node.create_client(Trigger, '/'.join(filter(None, (name, actuator, 'home'))))
+
+
+def parameters_of(node: Node, name: str) -> Mapping[str, NodeParameters]:
+    """Ask a gear node for the parameters of its actuators; none if it does not answer in time."""
+    gear, end = GearNode(node, name), time.monotonic() + 2.0 * _PATIENCE
+    executor = SingleThreadedExecutor(context=node.context)
+    executor.add_node(node)
+    while not gear.arm and time.monotonic() < end:
+        gear.look(Graph(node), shown=False)
+        gear.poll()
+        executor.spin_once(timeout_sec=0.1)
+    executor.shutdown()
+    return gear.arm
 
 
 class GearNode:

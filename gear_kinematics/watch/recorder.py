@@ -37,6 +37,8 @@ class Recorder:
         self._left_out = {topics.JOINT_STATES, *(() if loads else topics.LOAD_TOPICS)}
         self.heard: dict[str, Polled] = {}
         """The topics on which messages have come."""
+        self.gears: set[str] = set()
+        """Full names of the gear nodes."""
         self.inputs: set[str] = set()
         """The topics to which the gear nodes subscribe."""
         self._node, self._bag = node, bag
@@ -51,6 +53,7 @@ class Recorder:
         """Look for topics, and write the messages that have arrived; to be called often."""
         for gear in Graph(self._node).gears:
             if gear == self._wanted or not self._wanted:
+                self.gears.add(gear)
                 self._look(*gear.rpartition('/')[::2])
         messages: list[Message] = []
         for topic, (kind, polled) in self._open.items():

@@ -12,6 +12,7 @@ from watching import ENCODER, JUDGED, MOTOR, NAMESPACE, NODE, driving, gearkin, 
 
 from gear_kinematics.bag import Bag
 from gear_kinematics.commands.cli import main
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.watch import recorder as module
 from gear_kinematics.watch.polled import Taken
 from gear_kinematics.watch.recorder import Recorder
@@ -21,18 +22,17 @@ from gear_kinematics.wire.topics import JOINT_STATE
 @pytest.mark.live
 @pytest.mark.slow
 def test_what_a_node_hears_and_publishes_is_recorded_as_it_is_named(tmp_path, capsys):
-    config = tmp_path / 'shoulder.yaml'
-    config.write_text('/**: {ros__parameters: {rotor_joint: m1}}', 'utf-8')
-    with gearkin(
-        tmp_path, 'record', 'monday', '--node', NODE, '--config', str(config)
-    ) as recording:
+    with (
+        contextlib.ExitStack() as beside,
+        gearkin(tmp_path, 'record', 'monday', '--node', NODE) as recording,
+    ):
         recording.wait_for('waiting for a gear_state_publisher')
-        with node(tmp_path):
-            recording.wait_for('recording /diagnostics')
-            with driving():
-                recording.wait_for(rf'recording .*{MOTOR}')
-                recording.wait_for(rf'recording .*{NAMESPACE}/output_state')
-                capsys.readouterr()
+        beside.enter_context(node(tmp_path))
+        recording.wait_for('recording /diagnostics')
+        with driving():
+            recording.wait_for(rf'recording .*{MOTOR}')
+            recording.wait_for(rf'recording .*{NAMESPACE}/output_state')
+            capsys.readouterr()
     assert recording.process.returncode == 0
     assert re.search(rf' {ENCODER}: \d+ messages, [1-9]\d+ Hz\n', recording.text())
     assert recording.text().endswith('prove it: gearkin validate monday\n')
@@ -41,6 +41,8 @@ def test_what_a_node_hears_and_publishes_is_recorded_as_it_is_named(tmp_path, ca
             MOTOR, ENCODER, '/diagnostics',
             *(f'{NAMESPACE}/{topic}' for topic in ('output_state', 'body_poses', 'referenced')),
         }  # fmt: skip
+    kept = NodeParameters.load(tmp_path / 'monday' / 'actuator.yaml')
+    assert (kept.rotor_joint, kept.home_max_speed) == ('m1', 10.0)
     main(['validate', str(tmp_path / 'monday')])
     assert re.search(JUDGED, said := capsys.readouterr().out), said
 
