@@ -227,28 +227,30 @@ class RotorInput:
         self, rows: Array, stamps: Array, values: Array, received: Array, rejected: Array
     ) -> RotorSamples:
         turns, angle = split_turns(values[:, 0])
-        velocity = self.velocity_field.believed(stamps, values, 0.5 * self.plausibility.noise)
-        zero_turns, zero_angle = self.zero
         direction = self._parameters.rotor_direction
-        samples = RotorSamples(
+        field, finest = self.velocity_field, 0.5 * self.plausibility.noise
+        velocity = field.believed(stamps[:-1], values[:-1], finest)
+        efforts = self.effort_field.all_believed(values[:, 0], values[:, 2])
+        if len(stamps):
+            _, repeats = order(stamps)
+            self.duplicates += repeats + bool(self.last and stamps[0] == self.last.stamp)
+            # The last one is processed singly, to update the state for the next messages.
+            self.last = None
+            last = self._take_row(int(stamps[-1]), values[-1].tolist()).velocity
+            velocity = np.append(velocity, math.nan if last is None else direction * last)
+        zero_turns, zero_angle = self.zero
+        return RotorSamples(
             stamps,
             direction * (turns - zero_turns) + 0.0,  # turns that are int have no -0.0
             direction * (angle - zero_angle),
             direction * velocity,
-            self._torque_factor * self.effort_field.all_believed(values[:, 0], values[:, 2]),
+            self._torque_factor * efforts,
             rows,
             received,
             np.full(len(stamps), self.segment),
             np.full(len(stamps), self.referenced),
             rejected,
         )
-        if len(stamps):
-            _, repeats = order(stamps)
-            self.duplicates += repeats + bool(self.last and stamps[0] == self.last.stamp)
-            # The last one is also processed singly, to update the state for the next messages.
-            self.last = None
-            self._take_row(int(stamps[-1]), values[-1].tolist())
-        return samples
 
     def _one_by_one(
         self, rows: Array, stamps: Array, values: Array, received: Array, rejected: Array
@@ -296,8 +298,9 @@ class RotorInput:
             if verdict is Belief.IMPLAUSIBLE:
                 raise RejectedInputError(IMPLAUSIBLE)
             self.turns.lose()
-        if stamp < self.velocity_field.quiet_until:
+        if stamp < (field := self.velocity_field).quiet_until:
             self.turns.update(position, stamp, velocity)
+            field.add(velocity)
         else:
             velocity = self._compare(stamp, position, velocity)
         if effort is not None and not self.effort_field.real:
@@ -316,10 +319,10 @@ class RotorInput:
         field = self.velocity_field
         self.turns.update(position, stamp, None if field.contradicts else velocity)
         if stamp < field.due:
+            field.add(velocity)
             return None
         position = self._unwrapped(position)
-        given = math.nan if velocity is None else velocity
-        field.note(stamp, position, given, 0.5 * self.plausibility.noise)
+        field.note(stamp, position, velocity, 0.5 * self.plausibility.noise)
         return None if field.contradicts else velocity
 
     def _unwrapped(self, position: float) -> float:

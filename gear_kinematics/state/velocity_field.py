@@ -1,5 +1,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Compares the velocities in a driver's messages with the slope of its positions."""
+"""Compares the velocities in a driver's messages with the slope of its positions.
+
+What is compared is the mean of the velocities of all messages between two positions: a single one
+may be that of a step of a coarse encoder, or of a vibration.
+"""
 
 import math
 from bisect import bisect_left
@@ -11,7 +15,7 @@ import numpy as np
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.wire.batches import Array, once_for_joints
 
-SPAN = 100_000_000  # ns, between the readings that are compared; four of them decide
+SPAN = 100_000_000  # ns, between the readings that are compared; four times that decides
 _PAUSE = 10 * SPAN  # after velocities that were found right
 _READINGS = 4
 _STRIDES = 1, 4, 16
@@ -22,6 +26,8 @@ _AGREES = 0.25  # of the slope: delays of filters and the rest of the accelerati
 _ALIKE = 0.1  # of a factor that has a name
 _TRAVEL = 3.0  # rad, at least, in a comparison
 _STEPS = 20  # of the encoder, at least, in a comparison
+_FEWEST = 10  # turns between readings in a comparison of an unsteady motion
+_ALIGNED = 0.95  # the square of a correlation from which a factor explains the velocities
 
 
 class VelocityMeaning(StrEnum):
@@ -65,7 +71,14 @@ class VelocityField:
         """Forget the readings, but not what was found."""
         self.due = 0  # ns, the stamp from which on the next reading is wanted
         self.quiet_until = 0  # ns: `due`, or 0 while the velocities are not to be used
+        self.total, self.count = 0.0, 0  # of the velocities since the last reading
         self._readings: list[tuple[int, float, float]] = []
+        """Each stamp, ns, its position, rad, and the mean velocity since the one before, rad/s."""
+        self._begin_block()
+
+    def _begin_block(self) -> None:
+        self._turns = 0  # between readings, and what is known of them
+        self._path = self._squares = self._velocity_squares = self._products = 0.0
 
     @property
     def meaning(self) -> Fact | None:
@@ -82,33 +95,72 @@ class VelocityField:
         Stamps, (n,), are in ns; values, (n, 3), are position, velocity and effort; `finest` is the
         smallest step of the encoder, rad. Velocities that contradict the positions become NaN.
         """
-        velocity, start = values[:, 1].copy(), 0
+        velocity, start, noted = values[:, 1].copy(), 0, 0
         times = _listed(stamps)
-        while (row := bisect_left(times, self.due, start)) < len(times):
+        while (row := bisect_left(times, self.due, noted)) < len(times):
+            self._add(values[noted:row, 1])
             if self.contradicts:
                 velocity[start:row] = np.nan
-            start = row
+            start, noted = row, row + 1
             position, given, _ = values[row].tolist()
-            self.note(times[row], position, given, finest)
+            self.note(times[row], position, None if math.isnan(given) else given, finest)
+        self._add(values[noted:, 1])
         if self.contradicts:
             velocity[start:] = np.nan
         return velocity
 
-    def note(self, stamp: int, position: float, velocity: float, finest: float) -> None:
-        """Take a reading: ns, rad, rad/s or NaN, and the smallest step of the encoder, rad."""
+    def _add(self, velocities: Array) -> None:
+        """Add velocities of messages between readings, NaN for none, as one by one."""
+        given = velocities[~np.isnan(velocities)]
+        self.total = float(np.cumsum(np.append(self.total, given))[-1])
+        self.count += len(given)
+
+    def add(self, velocity: float | None) -> None:
+        """Take the velocity of a message, rad/s, without comparing it yet."""
+        if velocity is not None:
+            self.total, self.count = self.total + velocity, self.count + 1
+
+    def note(self, stamp: int, position: float, velocity: float | None, finest: float) -> None:
+        """Take a reading: ns, rad, rad/s if given, and the smallest step of the encoder, rad."""
         self.due = stamp + SPAN
         readings = self._readings
-        if math.isnan(velocity) or (readings and stamp > readings[-1][0] + 2 * SPAN):
+        self.add(velocity)
+        if not self.count or (readings and stamp > readings[-1][0] + 2 * SPAN):
             readings.clear()
-        if not math.isnan(velocity):
-            readings.append((stamp, position, velocity))
-            self._moved |= velocity != 0.0
-        del readings[: -1 - (_READINGS - 1) * _STRIDES[-1]]
         travel = max(_TRAVEL, _STEPS * finest)
+        if self.count:
+            mean, self.total, self.count = self.total / self.count, 0.0, 0
+            self._moved |= mean != 0.0
+            readings.append((stamp, position, mean))
+            if len(readings) > 1:
+                self._follow(travel)
+        del readings[: -1 - (_READINGS - 1) * _STRIDES[-1]]
         for stride in _STRIDES:
             if self._compare(travel, stride):
                 break
         self.quiet_until = 0 if self.contradicts else self.due
+
+    def _follow(self, travel: float) -> None:
+        """Decide on a motion of more than `travel`, rad, however unsteady, of the latest readings.
+
+        Only a factor that has a name counts: delays of filters make any of the others.
+        """
+        (before, start, _), (stamp, end, velocity) = self._readings[-2:]
+        turn, expected = end - start, velocity * (stamp - before) * 1e-9
+        self._turns += 1
+        self._path += abs(turn)
+        self._squares += turn * turn
+        self._velocity_squares += expected * expected
+        self._products += turn * expected
+        if self._turns >= _FEWEST and self._path >= travel:
+            least = _ALIGNED * self._squares * self._velocity_squares
+            if self._products * self._products >= least > 0.0:
+                factor = self._products / self._squares
+                if self._meaning_of(factor) is not VelocityMeaning.UNKNOWN:
+                    self._decide(factor)
+            self._begin_block()
+        elif self._turns > _READINGS * _STRIDES[-1]:
+            self._begin_block()
 
     def _compare(self, travel: float, stride: int) -> bool:
         """Decide on the latest readings; False if they moved by less than `travel`, rad."""
@@ -126,7 +178,7 @@ class VelocityField:
         time, slow, far = (last - first) * 1e-9, stride > 1, abs(end - start) >= travel
         if slow and not far:
             return False
-        velocities = [velocity for _, _, velocity in readings]
+        velocities = [velocity for _, _, velocity in readings[1:]]
         mean = sum(velocities) / len(velocities)
         if not far and abs(mean) * time < travel:
             return False
@@ -145,15 +197,7 @@ class VelocityField:
 
     def _decide(self, factor: float) -> None:
         """Change the finding if two comparisons in a row find the same."""
-        found = VelocityMeaning.UNKNOWN
-        if factor == 0.0:
-            found = VelocityMeaning.ZERO
-        elif abs(factor - 1.0) <= _AGREES:
-            found = VelocityMeaning.RIGHT
-        else:
-            for name, known in self._factors.items():
-                if abs(factor - known) <= _ALIKE * abs(known):
-                    found = name
+        found = self._meaning_of(factor)
         if found is self._candidate:
             if self.decided is None:
                 self.decided = self._readings[-1][0]
@@ -162,6 +206,17 @@ class VelocityField:
             if not self.contradicts:
                 self.due += _PAUSE
         self._candidate = found
+
+    def _meaning_of(self, factor: float) -> VelocityMeaning:
+        """Return what velocities are that are a multiple of the right ones."""
+        if factor == 0.0:
+            return VelocityMeaning.ZERO
+        if abs(factor - 1.0) <= _AGREES:
+            return VelocityMeaning.RIGHT
+        for name, known in self._factors.items():
+            if abs(factor - known) <= _ALIKE * abs(known):
+                return name
+        return VelocityMeaning.UNKNOWN
 
 
 @once_for_joints

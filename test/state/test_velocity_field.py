@@ -67,14 +67,32 @@ def test_wrong_velocities_of_a_slow_rotor_are_named(factor, speed, meaning):
     assert (found and found.values['meaning']) == meaning
 
 
-@pytest.mark.parametrize(('motion', 'meaning'), [
-    (lambda t: 4.0 * math.sin(t), '0'),
-    (lambda t: 100.0 * (t > 4.0) + 0.1 * math.sin(t), None),  # a jump of the encoder near rest
+def stop_and_go(t):
+    """Turn by 0.5 rad within 20 ms, ten times a second."""
+    return 0.5 * math.floor(10.0 * t) + min(0.5, 25.0 * (t - math.floor(10.0 * t) / 10.0))
+
+
+COUNT = 2.0 * math.pi / 128.0
+
+
+@pytest.mark.parametrize(('motion', 'factor', 'meaning'), [
+    (lambda t: 4.0 * math.sin(t), 0.0, '0'),
+    (lambda t: 100.0 * (t > 4.0) + 0.1 * math.sin(t), 0.0, None),  # a jump near rest
+    (lambda t: 4.0 * math.sin(4.0 * t), -1.0, 'the velocity with the opposite sign'),
+    (lambda t: 4.0 * math.sin(4.0 * t), 30.0 / math.pi, 'rpm'),
+    # Each right only on average: the readings compared see but one phase, or one count or none.
+    (stop_and_go, 1.0, None),
+    (lambda t: t + 0.05 * math.sin(100.0 * math.pi * t), 1.0, None),
+    (lambda t: COUNT * math.floor(15.0 * t / COUNT), 1.0, None),
 ])  # fmt: skip
-def test_velocities_of_0_throughout_an_unsteady_slow_motion_are_named(motion, meaning):
-    rotor = RotorInput(SETTINGS)
-    for k in range(800):
-        data = rotor_bytes(k * SECOND // 100 + 1, position=[motion(k / 100)], velocity=[0.0])
+def test_velocities_are_judged_by_their_mean_however_unsteady_the_motion_is(
+    motion, factor, meaning
+):
+    rotor, rate = RotorInput(SETTINGS), 500
+    for k in range(4000):
+        before, position = motion((k - 1) / rate), motion(k / rate)
+        velocity = [factor * (position - before) * rate]
+        data = rotor_bytes(SECOND + k * SECOND // rate, position=[position], velocity=velocity)
         with suppress(RejectedInputError):
             rotor.accept(data, int)
     found = rotor.velocity_field.meaning
