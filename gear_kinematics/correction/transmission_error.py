@@ -19,14 +19,14 @@ _DEPTH = 8192  # number of samples of each kind that are kept
 class ErrorSample(NamedTuple):
     """The transmission error at the stamp of a measured angle."""
 
-    stamp: int  # stamp of the measured angle, ns
-    error: float  # measured minus ideal output angle, rad
+    stamp: int  #: stamp of the measured angle, ns
+    error: float  #: measured minus ideal output angle, rad
     turns: int
-    ideal: float  # remainder of the ideal output angle 2π `turns` + `ideal`, rad
-    direction: int  # of the output: 1, -1, or 0 until far enough from a reversal
-    speed: float  # rate of the ideal output angle, rad/s
-    deviation: float = 0.0  # deviation of the calibrated from the ideal output angle, rad
-    half_width: float = math.nan  # of the calibration's interval, rad; NaN without one
+    ideal: float  #: remainder of the ideal output angle 2π `turns` + `ideal`, rad
+    direction: int  #: of the output: 1, -1, or 0 until far enough from a reversal
+    speed: float  #: rate of the ideal output angle, rad/s
+    deviation: float = 0.0  #: deviation of the calibrated from the ideal output angle, rad
+    half_width: float = math.nan  #: of the calibration's interval, rad; NaN without one
 
 
 class Direction:

@@ -26,7 +26,7 @@ class RotorState(NamedTuple):
     """State of a rotor, in floats or arrays."""
 
     turns: Any
-    angle: Any  # rad, in [-π, π], beyond the turns
+    angle: Any  #: rad, in [-π, π], beyond the turns
     velocity: Any
     effort: Any
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 TURN = 2.0 * math.pi
-TURN_TAIL = 2.4492935982947064e-16  # 2π - TURN: the rounding error of TURN
+TURN_TAIL = 2.4492935982947064e-16  #: 2π - TURN: the rounding error of TURN
 LARGEST_ANGLE = 2**51 * TURN
 """Angle, rad. Up to it, 2^51 turns, `split_turns` finds the right turn: the two roundings of its
 quotient add up to at most 3/8 of a turn, less than the half that rounding to the nearest allows.
@@ -30,7 +30,7 @@ _TURN_LOW = TURN - _TURN_HIGH
 _EXACT_TURN = Fraction(TURN) + Fraction(TURN_TAIL)  # 2π to 32 digits
 _WHOLE = 1e-6  # relative difference of a period from the whole turns that are meant
 _NOISE = 0.05  # rad, greatest noise of any encoder
-BELOW_HALF = math.nextafter(math.pi, 0.0)  # rad; any smaller angle is 0 turns, however rounded
+BELOW_HALF = math.nextafter(math.pi, 0.0)  #: rad; any smaller angle is 0 turns, however rounded
 
 
 class RotorPosition(NamedTuple):

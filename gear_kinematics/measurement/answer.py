@@ -63,7 +63,7 @@ def _of_ramps(figures: GearFigures) -> Observed:
 class LimitCheck(NamedTuple):
     """Whether a recording is shown to keep to a limit."""
 
-    limit: str  # name of the limit
+    limit: str  #: name of the limit
     holds: bool
     why: Observed
 
@@ -73,9 +73,9 @@ class Limits:
     """Acceptance limits: greatest angles, rad, and least stiffness; None means no limit."""
 
     hysteresis: float | None = None
-    lost_motion: float | None = None  # at ±3 % of the rated torque, or on reversals without ramps
+    lost_motion: float | None = None  #: at ±3 % of the rated torque, or on reversals without ramps
     backlash: float | None = None
-    stiffness: float | None = None  # N·m/rad, in the highest range of torque
+    stiffness: float | None = None  #: N·m/rad, in the highest range of torque
 
     def judge(self, report: LostMotion) -> Iterator[LimitCheck]:
         """Judge a recording by each limit, at the end of the interval that speaks against it."""

@@ -23,7 +23,7 @@ from gear_kinematics.measurement.middle_line import (
 from gear_kinematics.report.document import number
 from gear_kinematics.statistics.uncertainty import Component, Estimate, resolution
 
-LOST_MOTION_SHARE = 0.03  # lost motion is measured between ± this share of the rated torque
+LOST_MOTION_SHARE = 0.03  #: lost motion is measured between ± this share of the rated torque
 STIFFNESS_SHARES = (0.15, 0.5)
 """Limits between the ranges of stiffness, as shares of the rated torque."""
 _LEAST_RANGE = 1.5
@@ -38,7 +38,7 @@ class MeasuredStiffness:
 
     low: float
     high: float
-    slope: Estimate  # N·m/rad, the mean of both signs of torque
+    slope: Estimate  #: N·m/rad, the mean of both signs of torque
 
 
 @dataclass(frozen=True, eq=False, slots=True)

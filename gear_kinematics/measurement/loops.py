@@ -19,7 +19,7 @@ _MIN_SIGNAL_TO_NOISE = 5.0
 _MIN_SHARE = 0.01  # share of the largest torque that a half cycle has to exceed
 _EQUAL_TORQUES = 3.0  # standard deviations of the noise within which two torques count as equal
 _SMOOTHED = 0.01  # share of a ramp's amplitude to which a moving mean reduces the noise
-ALIKE = 1.5  # ratio up to which ramps count as of one amplitude, in a recording and among several
+ALIKE = 1.5  #: ratio up to which ramps count as of one amplitude, in a recording and among several
 _ROUNDING = 1e-9
 """Relative differences of torques that are rounding errors, as where a torque stands still."""
 _COMPLETE = 0.9  # share of the amplitude that both halves of a complete loop reach on both sides
@@ -33,10 +33,10 @@ class RampError(ValueError):
 class HalfLoop:
     """Half of a hysteresis loop: from a torque peak to the opposite one."""
 
-    torque: Array  # (n,), N·m, strictly monotonic
-    angle: Array  # (n,), rad, at these torques
-    noise: float  # N·m, standard deviation of a reading of the torque
-    blur: float  # N·m, the same after smoothing
+    torque: Array  #: (n,), N·m, strictly monotonic
+    angle: Array  #: (n,), rad, at these torques
+    noise: float  #: N·m, standard deviation of a reading of the torque
+    blur: float  #: N·m, the same after smoothing
 
     @property
     def start(self) -> float:
@@ -107,10 +107,10 @@ class Loop(NamedTuple):
 class Ramps:
     """Ramps of one amplitude."""
 
-    amplitude: float  # N·m, the mean
+    amplitude: float  #: N·m, the mean
     loops: tuple[Loop, ...]
-    pulls: tuple[tuple[HalfLoop, HalfLoop], ...]  # to the positive and to the negative peak
-    sides: tuple[tuple[HalfLoop, HalfLoop], ...]  # to a peak and back from it, in order of time
+    pulls: tuple[tuple[HalfLoop, HalfLoop], ...]  #: to the positive and to the negative peak
+    sides: tuple[tuple[HalfLoop, HalfLoop], ...]  #: to a peak and back from it, in order of time
 
     @property
     def halves(self) -> list[HalfLoop]:

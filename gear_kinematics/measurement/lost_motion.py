@@ -22,11 +22,11 @@ class LostMotion:
 
     name: str
     recording: Recording
-    gear_ratio: GearRatio  # with which it was read
-    figures: GearFigures | None = None  # None where there are no torque ramps
-    measured: bool = False  # whether an encoder measured the output, else taken to be locked
+    gear_ratio: GearRatio  #: with which it was read
+    figures: GearFigures | None = None  #: None where there are no torque ramps
+    measured: bool = False  #: whether an encoder measured the output, else taken to be locked
     transmission: TransmissionFigures | None = None
-    wrong_ratio: Observed | None = None  # what is wrong with the ratio, if anything shows
+    wrong_ratio: Observed | None = None  #: what is wrong with the ratio, if anything shows
 
     @property
     def main_figures(self) -> tuple[Measured, ...]:

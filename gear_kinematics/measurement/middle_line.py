@@ -38,7 +38,7 @@ _MIDDLE, _DEAD = 2.0 / 3.0, 0.15
 """A dead band yields over this share of its width at less than this share of the stiffness beside
 it. Simulated: a fifth takes a soft middle of 60 in 300 N·m/rad for play, a tenth misses one of ten
 plays of 10′ where friction takes up half of the torque."""
-MOST_FRICTION = 0.8  # share of the torque beyond which friction hardly lets the spring be loaded
+MOST_FRICTION = 0.8  #: share of the torque beyond which friction hardly lets the spring be loaded
 _MOST_COMPLIANT = 1.5
 """Ratio of the compliances of small and large ramps from which on the small ones are in a soft
 middle: springs that bend by less keep a backlash of 0 and of 10′ in their intervals."""
@@ -52,8 +52,8 @@ class Backlash(NamedTuple):
     """The backlash that a recording leaves room for, rad."""
 
     low: float
-    high: float | None  # None where nothing bounds it
-    cause: Cause  # why it has no value
+    high: float | None  #: None where nothing bounds it
+    cause: Cause  #: why it has no value
 
     @property
     def value(self) -> Estimate | None:
@@ -69,7 +69,7 @@ class MiddleLine:
     """Middle line of a loop, in the order of the angle: (n,) each, rad and N·m."""
 
     angle: Array
-    load: Array  # non-decreasing
+    load: Array  #: non-decreasing
     friction: Array
 
     @classmethod

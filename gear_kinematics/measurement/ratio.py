@@ -38,9 +38,9 @@ class RatioEstimate:
     """A gear ratio as it was measured."""
 
     measured: Estimate
-    candidates: tuple[Fraction, ...]  # what may be the ratio, by denominator; or what is taken
-    taken: GearRatio | None = None  # simplest fraction that may be the ratio, if not by chance
-    advice: Observed | None = None  # what to record to tell the ratio; None if it is taken
+    candidates: tuple[Fraction, ...]  #: what may be the ratio, by denominator; or what is taken
+    taken: GearRatio | None = None  #: simplest fraction that may be the ratio, if not by chance
+    advice: Observed | None = None  #: what to record to tell the ratio; None if it is taken
 
     def fits(self, ratio: Fraction) -> bool:
         """Return whether this may be the true ratio."""

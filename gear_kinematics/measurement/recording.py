@@ -30,11 +30,11 @@ class RecordingError(ValueError):
 class RotorMotion(NamedTuple):
     """The rotor's samples in the order of time, (n,) each."""
 
-    stamp: Array  # ns; if time was not recorded, one second a sample
+    stamp: Array  #: ns; if time was not recorded, one second a sample
     turns: Array
-    angle: Array  # rad: the rotor angle φ2 is 2π turns + angle
-    effort: Array | None = None  # N·m; NaN where missing, None if it was not recorded
-    segment: Array | None = None  # changes where the motion before is unknown; None: nowhere
+    angle: Array  #: rad: the rotor angle φ2 is 2π turns + angle
+    effort: Array | None = None  #: N·m; NaN where missing, None if it was not recorded
+    segment: Array | None = None  #: changes where the motion before is unknown; None: nowhere
 
     @property
     def seconds(self) -> Array:
@@ -51,11 +51,11 @@ class RotorMotion(NamedTuple):
 class Loading:
     """Angles under torque, (n,) each, in the order of their sampling."""
 
-    torque: Array  # N·m, at the output
-    angle: Array  # rad, at the output: the twist of the gear, from an arbitrary zero
-    angle_step: Step  # rad at the output, between readings of the angle
-    measured: bool  # whether an encoder measured the output, else taken to be locked
-    seconds: Array | None = None  # s, from the first sample; None if time was not recorded
+    torque: Array  #: N·m, at the output
+    angle: Array  #: rad, at the output: the twist of the gear, from an arbitrary zero
+    angle_step: Step  #: rad at the output, between readings of the angle
+    measured: bool  #: whether an encoder measured the output, else taken to be locked
+    seconds: Array | None = None  #: s, from the first sample; None if time was not recorded
 
     @property
     def moments(self) -> Array:
@@ -91,13 +91,13 @@ class Encoders:
     """Measured output angles, each with the motion of the rotor up to it."""
 
     rotor: RotorMotion
-    timed: bool  # whether stamps are times
-    before: Array  # (n,): index of the last rotor sample before each measured angle
-    share: Array  # (n,): share of the way from there to the next rotor sample
-    measured: Array  # (n,), rad
-    rotor_step: Step  # rad of the rotor, between readings of its encoder
-    output_step: Step  # rad, between readings of the output's encoder
-    unmatched: Mapping[str, int] = field(default_factory=dict)  # without a rotor angle, by cause
+    timed: bool  #: whether stamps are times
+    before: Array  #: (n,): index of the last rotor sample before each measured angle
+    share: Array  #: (n,): share of the way from there to the next rotor sample
+    measured: Array  #: (n,), rad
+    rotor_step: Step  #: rad of the rotor, between readings of its encoder
+    output_step: Step  #: rad, between readings of the output's encoder
+    unmatched: Mapping[str, int] = field(default_factory=dict)  #: without a rotor angle, by cause
 
     @property
     def duration(self) -> float:
@@ -215,14 +215,14 @@ class Recording:
 
     path: Path
     name: str
-    columns: tuple[str, ...]  # descriptions of the data that were read
-    rows: int  # number of samples read
+    columns: tuple[str, ...]  #: descriptions of the data that were read
+    rows: int  #: number of samples read
     encoders: Encoders | None = None
-    locked: Loading | None = None  # angles under torque without an encoder at the output
-    remarks: tuple[Observed, ...] = ()  # what was left out or assumed
-    damage: str | None = None  # at which reading ended
-    faults: tuple[Observed, ...] = ()  # what cannot be true, such as a slip, each with its moment
-    rotor_messages: TopicMessages | None = None  # the first of a bag that is read as recorded
+    locked: Loading | None = None  #: angles under torque without an encoder at the output
+    remarks: tuple[Observed, ...] = ()  #: what was left out or assumed
+    damage: str | None = None  #: at which reading ended
+    faults: tuple[Observed, ...] = ()  #: what cannot be true, such as a slip, each with its moment
+    rotor_messages: TopicMessages | None = None  #: the first of a bag that is read as recorded
 
     @property
     def computed(self) -> Observed | None:

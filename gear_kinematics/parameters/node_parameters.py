@@ -22,7 +22,7 @@ from gear_kinematics.parameters.files import ConfigError, default_values
 from gear_kinematics.parameters.parameter import Parameter, declared_in, parameter
 from gear_kinematics.share import share_directory
 
-NODE = 'gear_state_publisher'  # the default name of the node
+NODE = 'gear_state_publisher'  #: the default name of the node
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,7 +33,7 @@ class NodeParameters:
     `a.cam_phase`. Values in the bounds can still describe no mechanism: see `gear`.
     """
 
-    actuator: str = ''  # which of `actuators` it is; '' without
+    actuator: str = ''  #: which of `actuators` it is; '' without
     ring_teeth: int = parameter('Teeth of the ring gears, zk', 2, 100_000, read_only=True)
     satellite_teeth: int = parameter('Teeth of the satellites, zs', 1, 99_999, read_only=True)
     eccentricity: float = parameter('Eccentricity of the cams, m', 1e-6, 1.0, read_only=True)
@@ -140,7 +140,7 @@ class NodeParameters:
     shaft_stiffness: float = parameter(
         'Stiffness between both arms, N·m/rad; 0: rigid', 0.0, 1e12, read_only=True, least=1e-3
     )
-    loads: Bodies  # in ROS, each of its values is a parameter, such as `loads.rotor_inertia`
+    loads: Bodies  #: in ROS, each of its values is a parameter, such as `loads.rotor_inertia`
     frame_prefix: str = parameter('Prefix of every frame id and joint name')
     markers_rate: float = parameter(
         'Highest rate of markers, Hz; 0: none', 0.0, 1000.0, read_only=True

@@ -18,7 +18,7 @@ from gear_kinematics.wire.cdr import SECOND
 
 Array = NDArray[np.float64]
 
-MOST_TURNS = 1000  # rotor turns at a constant speed; animations cannot show more
+MOST_TURNS = 1000  #: rotor turns at a constant speed; animations cannot show more
 _PER_TURN = 360  # samples
 _ROUNDING = 1e-9  # relative excess by which the last interval may pass the end
 
@@ -26,10 +26,10 @@ _ROUNDING = 1e-9  # relative excess by which the last interval may pass the end
 class Trajectory(NamedTuple):
     """The rotor angle φ2 over time; arrays (n,)."""
 
-    time: Array  # time from the start, s, ascending
-    turns: Array  # whole turns of the rotor
-    angle: Array  # angle beyond the turns, rad: φ2 is 2π turns + angle
-    velocity: Array  # rate of φ2, rad/s
+    time: Array  #: time from the start, s, ascending
+    turns: Array  #: whole turns of the rotor
+    angle: Array  #: angle beyond the turns, rad: φ2 is 2π turns + angle
+    velocity: Array  #: rate of φ2, rad/s
 
     @classmethod
     def at_constant_speed(cls, speed: float, turns: int) -> Self:

@@ -32,7 +32,7 @@ class Tone(StrEnum):
     """Emphasis of a value."""
 
     PLAIN = ''
-    NONE = 'none'  # for a count of zero, which is left out among others
+    NONE = 'none'  #: for a count of zero, which is left out among others
     NOTABLE = 'notable'
     BAD = 'bad'
 
@@ -46,7 +46,7 @@ class Cell:
 
     text: str
     tone: Tone = Tone.PLAIN
-    unit: str = ''  # unit of the value; the unit of a row's first cell applies to all its values
+    unit: str = ''  #: unit of the value; the unit of a row's first cell applies to all its values
 
     @property
     def says(self) -> bool:
@@ -66,9 +66,9 @@ def _cell(value: str | Cell) -> Cell:
 class Layout(StrEnum):
     """Layout of a table if there is room for it."""
 
-    ROWS = 'rows'  # below headings
-    INLINE = 'inline'  # a single row, as labelled values side by side
-    LINES = 'lines'  # a single row, as labelled values, one per line
+    ROWS = 'rows'  #: below headings
+    INLINE = 'inline'  #: a single row, as labelled values side by side
+    LINES = 'lines'  #: a single row, as labelled values, one per line
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +137,7 @@ class Sentence:
 
     kind: Literal['error', 'finding']
     text: str
-    time: float | None = None  # position on the x axis of the figure to which the sentence refers
+    time: float | None = None  #: position on the x axis of the figure to which the sentence refers
 
 
 class Pen(StrEnum):
@@ -162,11 +162,11 @@ PENS = Pen.FIRST, Pen.SECOND, Pen.THIRD, Pen.FOURTH, Pen.FIFTH, Pen.SIXTH
 class Line:
     """A line of a panel."""
 
-    name: str  # lines of the same name share an entry in the legend
+    name: str  #: lines of the same name share an entry in the legend
     pen: Pen
     x: Array
-    y: Array  # NaN leaves a gap
-    points: bool = False  # whether to draw only points
+    y: Array  #: NaN leaves a gap
+    points: bool = False  #: whether to draw only points
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -175,12 +175,12 @@ class Panel:
 
     title: str
     x_label: str
-    y_label: str  # label of the y axis with its unit, as text
+    y_label: str  #: label of the y axis with its unit, as text
     lines: tuple[Line, ...]
-    marks: tuple[tuple[float, str], ...] = ()  # positions on the x axis, each with a text
-    levels: tuple[tuple[float, str], ...] = ()  # positions on the y axis, each with a text
-    scale: Literal['linear', 'log'] = 'linear'  # scale of the y axis
-    equal: bool = False  # whether both axes have the same scale, as in a drawing
+    marks: tuple[tuple[float, str], ...] = ()  #: positions on the x axis, each with a text
+    levels: tuple[tuple[float, str], ...] = ()  #: positions on the y axis, each with a text
+    scale: Literal['linear', 'log'] = 'linear'  #: scale of the y axis
+    equal: bool = False  #: whether both axes have the same scale, as in a drawing
 
     @property
     def unit(self) -> str:
@@ -223,19 +223,19 @@ class Case:
 class Section:
     """The report on one recording, or on one mechanism."""
 
-    name: str  # name of the section, which may be empty if it is the only one
-    tables: tuple[Table, ...]  # tables, of which the first describes the subject of the report
+    name: str  #: name of the section, which may be empty if it is the only one
+    tables: tuple[Table, ...]  #: tables, of which the first describes the subject of the report
     verdict: Verdict | None = None
     findings: tuple[Sentence, ...] = ()
-    remarks: tuple[str, ...] = ()  # notes on the interpretation of the values
+    remarks: tuple[str, ...] = ()  #: notes on the interpretation of the values
     figure: Figure | None = None
     mechanism: MovingMechanism | None = None
-    below: Figure | None = None  # on a page, below the other figure and the mechanism
-    key: Table | None = None  # table that a page shows above the figure
-    leads: bool = False  # whether a page begins with it, such as a comparison of the others
+    below: Figure | None = None  #: on a page, below the other figure and the mechanism
+    key: Table | None = None  #: table that a page shows above the figure
+    leads: bool = False  #: whether a page begins with it, such as a comparison of the others
     cases: tuple[Case, ...] = ()
-    answer: str = ''  # the result in one line
-    elapsed: float = 0.0  # duration of the check, s
+    answer: str = ''  #: the result in one line
+    elapsed: float = 0.0  #: duration of the check, s
 
     @property
     def image(self) -> Figure | None:
@@ -251,20 +251,20 @@ class Origin:
 
     version: str
     date: str
-    command: str  # command as typed in a shell
-    configs: tuple[tuple[str, str], ...] = ()  # parameter files with their SHA-256
+    command: str  #: command as typed in a shell
+    configs: tuple[tuple[str, str], ...] = ()  #: parameter files with their SHA-256
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Document:
     """A whole report."""
 
-    title: str  # title such as `gearkin validate`
+    title: str  #: title such as `gearkin validate`
     sections: tuple[Section, ...]
-    data: Mapping[str, Any] = field(default_factory=dict)  # contents of the JSON
+    data: Mapping[str, Any] = field(default_factory=dict)  #: contents of the JSON
     verdict: Verdict | None = None
-    summary: Table | None = None  # a row for each section; shown if there are several
-    totals: str = ''  # summary of the sections in one line
+    summary: Table | None = None  #: a row for each section; shown if there are several
+    totals: str = ''  #: summary of the sections in one line
     origin: Origin | None = None
 
     def of_failed(self) -> Self:

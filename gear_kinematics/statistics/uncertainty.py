@@ -10,7 +10,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-COVERAGE = 0.95  # coverage probability of expanded uncertainties
+COVERAGE = 0.95  #: coverage probability of expanded uncertainties
 _NORMAL = 1.959963984540054
 """The quantile of Student's distribution for infinitely many degrees of freedom."""
 _FEWEST = 3  # groups of blocks from which a standard error is estimated
@@ -21,7 +21,7 @@ _MAX_DEGREES = 10_000  # of freedom; the quantile is within 1.3e-4 of the normal
 class Component:
     """One source of uncertainty."""
 
-    standard: float  # its contribution to the standard uncertainty of the value
+    standard: float  #: its contribution to the standard uncertainty of the value
     degrees_of_freedom: float = math.inf
 
 
@@ -30,8 +30,8 @@ class Estimate:
     """A measured quantity."""
 
     value: float
-    standard: float | None  # standard uncertainty, in the unit of the value; None without repeats
-    degrees_of_freedom: float  # effective degrees of freedom of the standard uncertainty
+    standard: float | None  #: standard uncertainty, in the unit of the value; None without repeats
+    degrees_of_freedom: float  #: effective degrees of freedom of the standard uncertainty
     repeats: int
 
     @classmethod

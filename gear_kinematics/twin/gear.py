@@ -44,9 +44,9 @@ _BRACED = 2  # branches, which have a shaft between their arms
 class LoadingCurve:
     """Torque and friction of a gear over its wind-up, interpolated linearly and extrapolated."""
 
-    wind_up: tuple[float, ...]  # wind-up angles, rad, ascending; 0 is one of them
-    torque: tuple[float, ...]  # torques, N·m, non-decreasing; 0 at 0 rad
-    friction: tuple[float, ...]  # friction torques, N·m
+    wind_up: tuple[float, ...]  #: wind-up angles, rad, ascending; 0 is one of them
+    torque: tuple[float, ...]  #: torques, N·m, non-decreasing; 0 at 0 rad
+    friction: tuple[float, ...]  #: friction torques, N·m
 
     def at(self, wind_up: float) -> tuple[float, float]:
         """Torque and friction, N·m, at a wind-up, rad; friction is constant beyond the ends."""

@@ -21,27 +21,27 @@ class Finding:
     """Something found in a recording; `findings.sentence` puts it into words."""
 
     cause: FindingCause
-    topic: str = ''  # topic, or topic and field; empty if its values name them
-    stamp: int | None = None  # the moment that it is about
-    count: int = 0  # how many messages or values are concerned
-    values: Mapping[str, Any] = field(default_factory=dict)  # by their names in the sentence
-    fails: bool = False  # whether the bag fails because of it, whatever the other numbers are
-    explains: bool = False  # whether it explains why the bag fails
+    topic: str = ''  #: topic, or topic and field; empty if its values name them
+    stamp: int | None = None  #: the moment that it is about
+    count: int = 0  #: how many messages or values are concerned
+    values: Mapping[str, Any] = field(default_factory=dict)  #: by their names in the sentence
+    fails: bool = False  #: whether the bag fails because of it, whatever the other numbers are
+    explains: bool = False  #: whether it explains why the bag fails
 
 
 @dataclass(frozen=True, slots=True)
 class FieldReport:
     """Comparison of one field of an output topic with the recomputed one."""
 
-    name: str  # name, such as `position` of output_state, or `orientation` of body_poses
+    name: str  #: name, such as `position` of output_state, or `orientation` of body_poses
     unit: str
-    tolerance: float  # greatest accepted error, in `unit`
-    compared: int = 0  # samples with a recorded and a recomputed value
-    non_finite: int = 0  # samples whose recorded value is NaN or infinite, which fail
-    absent: int = 0  # samples with the field in either the input or the output only
+    tolerance: float  #: greatest accepted error, in `unit`
+    compared: int = 0  #: samples with a recorded and a recomputed value
+    non_finite: int = 0  #: samples whose recorded value is NaN or infinite, which fail
+    absent: int = 0  #: samples with the field in either the input or the output only
     max_error: float = 0.0
     rms_error: float = 0.0
-    worst_stamp: int | None = None  # stamp of the sample with `max_error`; None without any error
+    worst_stamp: int | None = None  #: stamp of the sample with `max_error`; None without any error
     worst_rotor_angle: float | None = None
     first_non_finite: int | None = None
     first_absent: int | None = None
@@ -70,18 +70,18 @@ class TopicReport:
 
     topic: str
     messages: int
-    compared: int  # messages matched with an input
-    missing: int  # number of inputs without their message
-    extra: int  # messages without an input
-    duplicates: int  # messages with the stamp of the last; no failure if the input has them too
-    out_of_order: int  # with an earlier stamp than the last, unless the input restarts there
+    compared: int  #: messages matched with an input
+    missing: int  #: number of inputs without their message
+    extra: int  #: messages without an input
+    duplicates: int  #: messages with the stamp of the last; no failure if the input has them too
+    out_of_order: int  #: with an earlier stamp than the last, unless the input restarts there
     fields: tuple[FieldReport, ...]
-    wrong: int = 0  # compared messages with a field that does not pass
+    wrong: int = 0  #: compared messages with a field that does not pass
     first_missing: int | None = None
     first_extra: int | None = None
     first_out_of_order: int | None = None
-    faults: tuple[Finding, ...] = ()  # others, such as wrong frame ids or joint names
-    left_out: dict[str, int] = field(default_factory=dict)  # unpaired by the recorder, by cause
+    faults: tuple[Finding, ...] = ()  #: others, such as wrong frame ids or joint names
+    left_out: dict[str, int] = field(default_factory=dict)  #: unpaired by the recorder, by cause
 
     @property
     def passed(self) -> bool:
@@ -94,9 +94,9 @@ class TopicReport:
 class Gap:
     """A gap between messages of the rotor topic."""
 
-    stamp: int  # stamp of the sample after the gap
+    stamp: int  #: stamp of the sample after the gap
     seconds: float
-    turned: float  # travel between the samples before and after it, rad
+    turned: float  #: travel between the samples before and after it, rad
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,24 +107,24 @@ class InputReport:
     joint: str
     messages: int = 0
     valid: int = 0
-    rejected: dict[str, int] = field(default_factory=dict)  # numbers of rejected messages by cause
-    of_others: int = 0  # messages of other joints on a shared topic, neither valid nor rejected
+    rejected: dict[str, int] = field(default_factory=dict)  #: rejected messages by cause
+    of_others: int = 0  #: messages of other joints on a shared topic, neither valid nor rejected
     duplicates: int = 0
     zero_stamps: int = 0
-    unnormalised_stamps: int = 0  # with a second or more of nanoseconds; they are normalised
+    unnormalised_stamps: int = 0  #: with a second or more of nanoseconds; they are normalised
     resets: int = 0
     first_stamp: int | None = None
-    rate: float = 0.0  # rate from the median period, Hz
-    duration: float = 0.0  # time from the first to the last stamp, s
-    gaps: int = 0  # gaps longer than 5 median periods
-    jumps: int = 0  # gaps in which the rotor could have turned half a turn or more unseen
-    jumped: str = ''  # the last jump of the encoder; '' if there was none
-    velocity_is: str = ''  # what velocities that contradict the positions seem to be; or ''
-    beyond_limits: str = ''  # speed and acceleration beyond their limits, in words; or ''
-    overspeed: int = 0  # steps faster than `max_rotor_speed`
-    max_speed: float = 0.0  # greatest speed between two positions, rad/s
-    longest_gaps: tuple[Gap, ...] = ()  # the longest gaps, at most ten, longest first
-    referenced: bool = True  # whether the turns of the encoder were known throughout
+    rate: float = 0.0  #: rate from the median period, Hz
+    duration: float = 0.0  #: time from the first to the last stamp, s
+    gaps: int = 0  #: gaps longer than 5 median periods
+    jumps: int = 0  #: gaps in which the rotor could have turned half a turn or more unseen
+    jumped: str = ''  #: the last jump of the encoder; '' if there was none
+    velocity_is: str = ''  #: what velocities that contradict the positions seem to be; or ''
+    beyond_limits: str = ''  #: speed and acceleration beyond their limits, in words; or ''
+    overspeed: int = 0  #: steps faster than `max_rotor_speed`
+    max_speed: float = 0.0  #: greatest speed between two positions, rad/s
+    longest_gaps: tuple[Gap, ...] = ()  #: the longest gaps, at most ten, longest first
+    referenced: bool = True  #: whether the turns of the encoder were known throughout
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,10 +12,10 @@ from gear_kinematics.parameters import NodeParameters
 class Tolerances(NamedTuple):
     """Greatest accepted errors, one for each quantity."""
 
-    angle: float = 1e-9  # rad, of angles and orientations
-    position: float = 1e-9  # m
-    velocity: float = 1e-9  # rad/s
-    effort: float = 1e-9  # N·m
+    angle: float = 1e-9  #: rad, of angles and orientations
+    position: float = 1e-9  #: m
+    velocity: float = 1e-9  #: rad/s
+    effort: float = 1e-9  #: N·m
 
     def of(self, unit: str) -> float:
         """Return the tolerance of errors in a unit."""

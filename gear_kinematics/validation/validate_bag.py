@@ -291,4 +291,4 @@ def _lost(task: Task, cause: str) -> BagReport:
     return unusable(task.bag, f'{task.bag}: {cause}', task.config)
 
 
-WORK = Work(validate_bag, _lost)  # for `fleet.processes`
+WORK = Work(validate_bag, _lost)  #: for `fleet.processes`

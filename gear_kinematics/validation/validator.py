@@ -36,7 +36,7 @@ from gear_kinematics.wire.topics import JOINT_STATES, LOAD_TOPICS
 _FRAME = 'stator'
 _TOPICS = Topics()
 _NONE: Mapping[str, str] = MappingProxyType({})
-Batch = Mapping[str, TopicMessages]  # messages by the names of their topics
+Batch = Mapping[str, TopicMessages]  #: messages by the names of their topics
 
 
 class Validator:

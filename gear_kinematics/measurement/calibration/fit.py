@@ -52,25 +52,25 @@ class FittedTerm:
     """A term of the calibration, as the report shows it."""
 
     name: str
-    cycles: Fraction | None  # cycles of an order per turn of the rotor
-    radius: float | None  # radius of a stop operator, rad
-    amplitude: Estimate  # rad; that of a stop operator or of the wind-up has a sign
-    cause: str  # likely cause, in words
+    cycles: Fraction | None  #: cycles of an order per turn of the rotor
+    radius: float | None  #: radius of a stop operator, rad
+    amplitude: Estimate  #: rad; that of a stop operator or of the wind-up has a sign
+    cause: str  #: likely cause, in words
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Fit:
     """The result; arrays are (n,), of the used samples of all recordings, in rad."""
 
-    calibration: Calibration  # with a mean deviation of zero, and the errors of samples left out
-    helps: bool  # whether the error falls by more than a standard error, and its interval holds
+    calibration: Calibration  #: with a mean deviation of zero, and the errors of samples left out
+    helps: bool  #: whether the error falls by more than a standard error, and its interval holds
     terms: tuple[FittedTerm, ...]
     recordings: Sequence[Recording]
-    delays: Sequence[Estimate | None]  # of the output's angles, s; None if not separable
-    refused: Mapping[str, Observed]  # terms that the recordings cannot determine, with the cause
-    output: Array  # ideal output angle
-    before: Array  # error without the correction; zero and delay are taken out
-    after: Array  # error with the correction that was fitted without the sample's part
+    delays: Sequence[Estimate | None]  #: of the output's angles, s; None if not separable
+    refused: Mapping[str, Observed]  #: terms that the recordings cannot determine, with the cause
+    output: Array  #: ideal output angle
+    before: Array  #: error without the correction; zero and delay are taken out
+    after: Array  #: error with the correction that was fitted without the sample's part
 
 
 def fit(
