@@ -79,12 +79,18 @@ def find_step(readings: Array) -> Step:
     # In an unknown unit, the resolution does not show: try all, from coarse to fine.
     finest = max(recorded, _ROUNDING * float(np.max(np.spacing(np.abs(levels)))))
     coarser = math.ceil(math.log2(max(1.0, np.ptp(levels) / finest)))
-    best, nearest = 0.0, _FITS / _BETTER
+    best, nearest, tried = 0.0, _FITS / _BETTER, {0.0}
     for resolution in finest * 2.0 ** np.arange(coarser, -1, -1):
-        step, distance = _fitted(levels, readings, _common_divisor(levels, resolution))
+        divisor = _common_divisor(levels, resolution)
+        if divisor in tried:
+            continue
+        tried.add(divisor)
+        step, distance = _fitted(levels, readings, divisor)
         # Any finer step fits; it has to fit better.
-        if nearest > _EXACT and distance < _BETTER * nearest:
+        if distance < _BETTER * nearest:
             best, nearest = step, distance
+        if nearest <= _EXACT:
+            break
     return Step(best or recorded, best > 0.0)
 
 
@@ -130,8 +136,6 @@ def _fitted(levels: Array, readings: Array, step: float) -> tuple[float, float]:
     In steps; infinite if they are no levels of an encoder.
     """
     none = 0.0, math.inf
-    if not step:
-        return none
     numbers = np.cumsum(np.round(np.diff(levels, prepend=levels[0]) / step))
     step, zero = np.polyfit(numbers, levels, 1).tolist()
     distance = float(np.std(levels - zero - step * numbers)) / step

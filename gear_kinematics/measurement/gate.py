@@ -166,8 +166,9 @@ def _frozen(still: Array, other: Array) -> NDArray[np.bool_]:
     """Find rows of equal readings of one shaft, rad, while the other moves far."""
     ends = np.flatnonzero(np.diff(still, prepend=np.nan, append=np.nan))
     found = np.zeros(len(still), bool)
-    for begin, end in pairwise(ends.tolist()):
-        if end - begin >= _STAYS and np.ptp(other[begin:end]) > _FROZEN:
+    (long,) = np.nonzero(np.diff(ends) >= _STAYS)
+    for begin, end in zip(ends[long].tolist(), ends[long + 1].tolist(), strict=True):
+        if np.ptp(other[begin:end]) > _FROZEN:
             found[begin:end] = True
     return found
 

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
+from scipy.ndimage import median_filter
 
 from gear_kinematics.measurement.recording import Array, Loading
 from gear_kinematics.measurement.sentences import NAMED, Observation, Observed
@@ -162,5 +162,4 @@ def longest(time: Array, *, timed: bool) -> Observed:
 
 def usual(values: Array) -> Array:
     """Values (n,) without stray ones."""
-    windows = sliding_window_view(np.pad(values, _WINDOW // 2, 'edge'), _WINDOW)
-    return np.asarray(np.median(windows, axis=1))
+    return np.asarray(median_filter(values, _WINDOW, mode='nearest'))

@@ -25,7 +25,7 @@ from gear_kinematics.measurement.columns import (
 from gear_kinematics.measurement.commissioning.encoder_range import count_wraps, signed, unwrapped
 from gear_kinematics.measurement.commissioning.joint import other_unit
 from gear_kinematics.measurement.dialects import TableFile
-from gear_kinematics.measurement.encoder_step import Step, find_step, step_of
+from gear_kinematics.measurement.encoder_step import Step, find_step
 from gear_kinematics.measurement.formats import open_table
 from gear_kinematics.measurement.gate import output_by_rotor
 from gear_kinematics.measurement.recording import (
@@ -179,6 +179,8 @@ class _Samples:
                     values[role] = signed(values[role], found[role].scale)
             gaps = 0 if apart else np.cumsum(np.diff(chosen, prepend=chosen[0]) > _GAP)
             self.series |= dict.fromkeys(roles, _Series(stamp, values, gaps + 0 * stamp))
+        angles = (role for role in found if role != 'torque')
+        self._shown = {role: find_step(self.series[role].values[role]) for role in angles}
         base = self.series['output' if 'output' in found else 'angle']
         self.used = len(base.stamp)
         self.said = [f'time [{clock.unit}] from {clock.name}'] if clock else []
@@ -190,7 +192,7 @@ class _Samples:
         """Positions without the wraps of an encoder with a period, rad, or with one that shows."""
         series = self.series[role]
         values, seconds = series.values[role], (series.stamp - series.stamp[0]) / SECOND
-        return unwrapped(values, seconds, find_step(values), period)
+        return unwrapped(values, seconds, self._shown[role], period)
 
     def torque_at(self, at: _Series) -> Array:
         """Torque at the output, N·m, at the stamps of other samples."""
@@ -203,11 +205,10 @@ class _Samples:
         """Steps of the encoders by role; ValueError if what is assumed of a unit cannot be."""
         steps = {}
         for role, column in self.found.items():
-            values = self.series[role].values[role]
             if role != 'torque':
                 of_output = role == 'output'
                 known = self._sources.output_counts if of_output else self._sources.rotor_counts
-                steps[role] = step_of(known, values)
+                steps[role] = Step(TURN / known, seen=False) if known else self._shown[role]
             cause = '' if column.unit else self._against(role, steps.get(role))
             if cause:
                 option = f"as in --torque-column '{column.name} [Nmm]'"

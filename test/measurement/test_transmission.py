@@ -6,9 +6,11 @@ import pytest
 from gear_recordings import Samples, write_csv, write_recording
 from simulated_encoders import START, TURN, Drive, even_strokes, stepped
 
+from gear_kinematics.correction.transmission_error import Direction
 from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import RecordingError
+from gear_kinematics.measurement.two_encoders import directions
 
 MS = 10**6
 PLAY = 3e-3
@@ -98,3 +100,16 @@ def test_twist_is_measured_with_both_encoders(tmp_path, config):
     assert figures.stiffness[-1].slope.value == pytest.approx(gear_stiffness, rel=0.01)
     assert figures.hysteresis.value == pytest.approx(2.0 * friction / gear_stiffness, rel=0.02)
     assert report.transmission is not None
+
+
+@pytest.mark.parametrize(('travel', 'starts'), [(0.0, ()), (3.0, (0, 5000)), (20.5, (7, 4096))])
+def test_directions_of_a_recording_are_those_that_a_node_finds(travel, starts):
+    path = np.cumsum(np.random.default_rng(2).integers(-3, 4, 9000)).astype(float)
+    one_by_one = Direction(travel)
+    expected = []
+    for row, step in enumerate(np.diff(path, prepend=path[0]).tolist()):
+        if row in starts:
+            one_by_one.reset()
+        expected.append(one_by_one.move(step))
+    assert len(set(expected)) == 1 + 2 * (travel > 0.0)
+    np.testing.assert_array_equal(directions(path, travel, starts), expected)

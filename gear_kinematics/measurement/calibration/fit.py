@@ -114,16 +114,17 @@ def _result(
     delays: Sequence[Estimate | None],
     refused: Mapping[str, Observed],
 ) -> Fit:
-    samples, deviation = model.samples, model.values() @ model.coefficients[0]
+    samples, values = model.samples, model.values()
+    deviation = values @ model.coefficients[0]
     constant = -float(deviation.mean())
-    before, after, width, coverage = model.checked()
+    before, after, width, coverage = model.checked(values)
     entries, terms, trends = [], [], 0.0
     for term, columns in zip(model.terms, model.columns, strict=True):
         fits = model.coefficients[:, columns]
         sizes = np.hypot(*fits.T) if len(columns) > 1 else fits[:, 0]
         amplitude = jackknife(term.unit * sizes, together=TOGETHER)
-        values: dict[str, Any] = dict(zip(term.coefficients, fits[0].tolist(), strict=True))
-        entries.append(replace(term.entry, **values))
+        fitted: dict[str, Any] = dict(zip(term.coefficients, fits[0].tolist(), strict=True))
+        entries.append(replace(term.entry, **fitted))
         radius = getattr(term.entry, 'radius', None)
         terms.append(FittedTerm(term.name, term.cycles, radius, amplitude, term.cause))
         trends += amplitude.value * term.is_trend

@@ -95,8 +95,10 @@ class GearModel:
             ]
         )
 
-    def checked(self) -> tuple[Array, Array, float, float]:
+    def checked(self, values: Array) -> tuple[Array, Array, float, float]:
         """Predict parts of the samples as a check does, with a zero and a delay of their own.
+
+        `values` are those that the method of this name returns.
 
         The parts are recordings or, of a single one, every other block, so that both have the
         same angles: a trend is not known at others.
@@ -110,7 +112,7 @@ class GearModel:
         fits = equations.solve(range(self._products.shape[-1] - 1))[1:, : self._common]
         own = np.concatenate([s.own_values(s.used) for s in self.samples])
         before = np.concatenate([s.error[s.used] for s in self.samples])
-        after = before - np.einsum('nc,nc->n', self.values(), fits[fold])
+        after = before - np.einsum('nc,nc->n', values, fits[fold])
         for rows in (fold == part for part in set(parts)):
             for errors in (before, after):
                 errors[rows] -= own[rows] @ np.linalg.lstsq(own[rows], errors[rows], rcond=None)[0]

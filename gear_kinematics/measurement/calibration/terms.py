@@ -18,6 +18,7 @@ from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.recording import Array, Encoders, Recording
 from gear_kinematics.measurement.sentences import Observation, Observed
+from gear_kinematics.measurement.two_encoders import play_bounds
 from gear_kinematics.measurement.wording import ARC_MINUTES
 from gear_kinematics.report.document import number
 
@@ -40,7 +41,6 @@ _CYCLES = 2.0  # cycles of an order that a recording must contain
 _RADII = 2.0 ** (np.arange(-28, 9) / 4.0)
 """Radii of stop operators as shares of the width of the error: 1/128 to 4, 19 % apart."""
 _KNOWN = 0.8  # share of the samples at which the state of a stop operator must be known
-_CHUNK = 4096  # points, so that their arrays fit into the processor's cache
 _LARGEST_DENOMINATOR = 2**16  # of an order; a ratio that was fitted may have a longer one
 
 
@@ -108,37 +108,23 @@ class Samples:
             same.
         """
         if radius not in self._stops:
-            parts = [_play_bounds(points, radius) for points in self._motions]
-            plays = np.concatenate(parts, axis=1)[:, self._last_point]
-            least, most = np.clip(plays, self._travel - radius, self._travel + radius)
-            states = self._travel - 0.5 * (least + most)
-            self._stops[radius] = states, most - least <= _SAME * radius
+            parts = [play_bounds(points, radius) for points in self._motions]
+            plays = np.concatenate(parts, axis=1)
+            low, high = self._travel - radius, self._travel + radius
+            least = np.clip(plays[0][self._last_point], low, high)
+            middle, same = least.copy(), np.ones(len(least), bool)
+            # From some point of a motion on, both are the same.
+            (rest,) = np.nonzero((plays[0] != plays[1])[self._last_point])
+            most = np.clip(plays[1][self._last_point[rest]], low[rest], high[rest])
+            middle[rest] = 0.5 * (least[rest] + most)
+            same[rest] = most - least[rest] <= _SAME * radius
+            self._stops[radius] = self._travel - middle, same
         return self._stops[radius]
 
     def own_values(self, at: Array) -> Array:
         """Columns of the recording's own unknowns at some samples: zero and delay."""
         speed = self.speed[at] if self.tells_delay else np.zeros(len(at))
         return np.column_stack([np.ones(len(at)), -speed])
-
-
-def _play_bounds(x: Array, radius: float) -> Array:
-    """The least and the greatest play, (2, n), of an operator that follows x, (n,), rad.
-
-    Its play is unknown before. Clipping to one interval and then to another is clipping to one
-    interval again, so that all steps are composed in log2 n passes, without rounding.
-    """
-    parts, before = [], np.array([[-np.inf], [np.inf]])
-    for start in range(0, len(x), _CHUNK):
-        part = x[start : start + _CHUNK]
-        low, high = part - radius, part + radius
-        step = 1
-        while step < len(part):
-            bounds = low[step:].copy(), high[step:].copy()
-            low[step:], high[step:] = np.clip(low[:-step], *bounds), np.clip(high[:-step], *bounds)
-            step *= 2
-        parts.append(np.clip(before, low, high))
-        before = parts[-1][:, -1:]
-    return np.concatenate(parts, axis=1)
 
 
 class Term(NamedTuple):
