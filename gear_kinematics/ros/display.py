@@ -6,7 +6,6 @@ from collections.abc import Mapping
 
 from rclpy.clock import Clock, ClockType
 from rclpy.event_handler import QoSPublisherMatchedInfo
-from rclpy.node import Node
 from rclpy.serialization import serialize_message
 from std_msgs.msg import String
 from visualization_msgs.msg import MarkerArray
@@ -14,7 +13,7 @@ from visualization_msgs.msg import MarkerArray
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.arm import arm_urdf
 from gear_kinematics.ros.markers import Markers
-from gear_kinematics.ros.outputs import Outputs, latched
+from gear_kinematics.ros.outputs import PublishingNode, latched
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.topics import topic_of
 
@@ -22,14 +21,12 @@ from gear_kinematics.wire.topics import topic_of
 class Display:
     """Publishes the URDF after every change, and the markers while they have viewers."""
 
-    def __init__(
-        self, node: Node, actuators: Mapping[str, NodeParameters], outputs: Outputs
-    ) -> None:
+    def __init__(self, node: PublishingNode, actuators: Mapping[str, NodeParameters]) -> None:
         """Show the actuators with these parameters, whose bodies are known."""
-        self._outputs, self._description = outputs, ''
-        outputs.create(topics.ROBOT_DESCRIPTION, String, latched())
+        self._node, self._description = node, ''
+        node.open_output(topics.ROBOT_DESCRIPTION, String, latched())
         self.markers = {
-            name: MarkerOutput(node, topic_of(name, topics.MARKERS), each.markers_rate, outputs)
+            name: MarkerOutput(node, topic_of(name, topics.MARKERS), each.markers_rate)
             for name, each in actuators.items()
             if each.markers_rate
         }
@@ -41,7 +38,7 @@ class Display:
             return
         self._description = description
         message = serialize_message(String(data=description))
-        self._outputs.send([(topics.ROBOT_DESCRIPTION, message)])
+        self._node.send([(topics.ROBOT_DESCRIPTION, message)])
         for name, output in self.markers.items():
             of = actuators[name]
             output.shown = Markers(of.mechanism, module=of.module, frame_prefix=of.frame_prefix)
@@ -52,11 +49,11 @@ class MarkerOutput:
 
     shown: Markers
 
-    def __init__(self, node: Node, topic: str, rate: float, outputs: Outputs) -> None:
-        self._topic, self._outputs = topic, outputs
+    def __init__(self, node: PublishingNode, topic: str, rate: float) -> None:
+        self._topic, self._node = topic, node
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.timer = node.create_timer(1.0 / rate, self.publish, clock=steady, autostart=False)
-        outputs.create(topic, MarkerArray, latched(), self._on_viewers)
+        node.open_output(topic, MarkerArray, latched(), self._on_viewers)
 
     def _on_viewers(self, event: QoSPublisherMatchedInfo) -> None:
         """Run the timer of the markers while there are subscribers; resend for a new one."""
@@ -70,4 +67,4 @@ class MarkerOutput:
     def publish(self) -> None:
         """Publish the markers if they are due."""
         if message := self.shown.due(time.monotonic()):
-            self._outputs.send([(self._topic, message)])
+            self._node.send([(self._topic, message)])

@@ -32,7 +32,7 @@ from gear_kinematics.ros.drivers import DEPTH, DriverInput
 from gear_kinematics.ros.homing import Homing, restored
 from gear_kinematics.ros.node_parameters import declared_actuators, fault_of
 from gear_kinematics.ros.other_gears import OtherGears
-from gear_kinematics.ros.outputs import Outputs, PublishingNode, latched
+from gear_kinematics.ros.outputs import PublishingNode, latched
 from gear_kinematics.state.arm_state import ArmState
 from gear_kinematics.state.monitors import Connections
 from gear_kinematics.state.state_messages import state_messages
@@ -84,18 +84,17 @@ class GearStatePublisher(PublishingNode):
         self._referenced: bool | None = None  # as it was published last
         self._connections = Connections()
 
-        self._outputs = Outputs(self, self._note_subscribers, self._note_unsent)
         self._topics = self._arm.topics
         for topic, base in self._topics.items():
             message_type = _MESSAGE_TYPES[topics.TOPICS[base].type]
-            self._outputs.create(topic, message_type, QoSProfile(depth=DEPTH))
-        self._note_subscribers()
+            self.open_output(topic, message_type, QoSProfile(depth=DEPTH))
+        self.note_subscribers()
         for topic in dict.fromkeys(topic_of(name, topics.REFERENCED) for name in ('', *given)):
-            self._outputs.create(topic, Bool, latched())
-        self._outputs.create(topics.DIAGNOSTICS, DiagnosticArray, QoSProfile(depth=10))
+            self.open_output(topic, Bool, latched())
+        self.open_output(topics.DIAGNOSTICS, DiagnosticArray, QoSProfile(depth=10))
         self._display: Display | None = None
         if shown := self._shown():
-            self._display = Display(self, shown, self._outputs)
+            self._display = Display(self, shown)
             self._display.update(shown)
         self.add_post_set_parameters_callback(self._configure)
         self._homing = Homing(self, home_file, self._actuators, zeros)
@@ -136,9 +135,10 @@ class GearStatePublisher(PublishingNode):
         topic = self._rotor_driver.subscription.topic_name
         self.get_logger().info(f'listening on {topic} for {"; ".join(texts)}')
 
-    def _note_subscribers(self, _event: object = None) -> None:
+    def note_subscribers(self, _event: object = None) -> None:
         """Let only the outputs with subscribers be computed."""
-        self._arm.choose(self._outputs.subscribed(self._topics))
+        heard = [each for each in self._topics if self.outputs[each].get_subscription_count()]
+        self._arm.choose(heard)
 
     def _check_parameters(self, changed: list[Parameter]) -> SetParametersResult:
         """Refuse values that are invalid beyond type and range, which rclpy checks."""
@@ -212,7 +212,7 @@ class GearStatePublisher(PublishingNode):
             self._driver_log.heard({name: state.sample for name, state in answered})
         if changed:
             self._publish_referenced(changed)
-        self._outputs.send(self._arm.encode(answered))
+        self.send(self._arm.encode(answered))
         if self._arm.finds_turns and (found := self._found_turns(answered)):
             self._publish_referenced(found)
 
@@ -236,9 +236,7 @@ class GearStatePublisher(PublishingNode):
         every = all(each.referenced for each in self._actuators.values())
         if every is not self._referenced:
             values[topics.REFERENCED] = self._referenced = every
-        self._outputs.send(
-            (topic, serialize_message(Bool(data=value))) for topic, value in values.items()
-        )
+        self.send((topic, serialize_message(Bool(data=value))) for topic, value in values.items())
         if known:
             self._publish_diagnostics()
 
@@ -249,14 +247,14 @@ class GearStatePublisher(PublishingNode):
             self._actuators[name].state.encoder_monitor.last_input = now
         for name, rejection in rejections:
             self._warn_of(topics.OUTPUT_ENCODER, name, rejection)
-        self._outputs.send(self._arm.encode_errors(errors))
+        self.send(self._arm.encode_errors(errors))
         if found := self._found_turns(errors):
             self._publish_referenced(found)
 
-    def _note_unsent(self, publisher: Publisher, error: Exception) -> None:
-        # For example, with history keep_all and a blocked subscriber.
+    def note_unsent(self, publisher: Publisher, error: Exception) -> None:
+        """Count a message that was not sent, as with keep_all and a blocked subscriber."""
         self._connections.unsent += 1
-        self._warn(f'{publisher.topic_name} not sent: {error}')
+        super().note_unsent(publisher, error)
 
     def _now(self) -> int:
         return int(self.get_clock().now().nanoseconds)
@@ -283,12 +281,12 @@ class GearStatePublisher(PublishingNode):
     def _publish_diagnostics(self) -> None:
         reports = self._arm.report(time.monotonic(), self._connections)
         message = serialize_message(diagnostic_array(self, reports))
-        self._outputs.send([(topics.DIAGNOSTICS, message)])
+        self.send([(topics.DIAGNOSTICS, message)])
 
     def _look_at_graph(self) -> None:
         """Check the connections with other nodes, and log new faults."""
         inputs = (driver.subscription for driver in self._drivers)
-        publishers = self._outputs.publishers.values()
+        publishers = self.outputs.values()
         states = [topic for topic, base in self._topics.items() if base in topics.STATE_TOPICS]
         found = find_faults(self, inputs, publishers, states, self._other_gears.clash)
         for fault in found:

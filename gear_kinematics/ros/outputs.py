@@ -1,9 +1,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The outputs of a node: its publishers, by topic, and its warnings."""
+"""A node with its publishers, by topic, and its warnings."""
 
 import re
 import time
 from collections.abc import Callable, Iterable
+from typing import Any
 
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.duration import Duration
@@ -25,52 +26,48 @@ def latched() -> QoSProfile:
     return QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
-class Outputs:
-    """Creates the publishers of a node, and publishes on them."""
+class PublishingNode(Node):  # type: ignore[misc]  # rclpy has no types
+    """A node with publishers of serialised messages, which warns at most once a second."""
 
-    def __init__(
-        self,
-        node: Node,
-        on_subscribers: Callable[[QoSPublisherMatchedInfo], None],
-        on_failure: Callable[[Publisher, Exception], None],
-    ) -> None:
-        """Start without publishers.
+    _next_warning = 0.0
+    """s of a steady clock. The logger's own throttle takes 0.3 ms for each text that it drops."""
 
-        `on_subscribers` is called when a subscriber has come or gone, `on_failure` with the
-        publisher of a message that was not sent, and the error.
-        """
-        self.publishers: dict[str, Publisher] = {}
+    def __init__(self, name: str, **options: Any) -> None:
+        """Start without publishers."""
+        self.outputs: dict[str, Publisher] = {}
+        """The publishers by topic."""
         self._senders: dict[str, Callable[[bytes], None]] = {}
-        self._node = node
-        self._on_subscribers = on_subscribers
-        self._on_failure = on_failure
+        super().__init__(name, **options)
 
-    def create(
+    def open_output(
         self,
         topic: str,
         message_type: type,
         qos: QoSProfile,
         on_subscribers: Callable[[QoSPublisherMatchedInfo], None] | None = None,
     ) -> None:
-        """Create the publisher on a topic, perhaps with another callback than the common one."""
-        publisher = self._node.create_publisher(
+        """Create the publisher on a topic; `on_subscribers` replaces `note_subscribers`."""
+        publisher = self.create_publisher(
             message_type,
             topic,
             qos,
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             event_callbacks=PublisherEventCallbacks(
                 incompatible_qos=lambda _: None,  # the next report names the subscriber
-                matched=on_subscribers or self._on_subscribers,
+                matched=on_subscribers or self.note_subscribers,
             ),
         )
-        self.publishers[topic] = publisher
+        self.outputs[topic] = publisher
         # `Publisher.publish` of rclpy 7.1 checks the type and holds the handle, which takes longer
         # than encoding the message; other releases may lack this.
         self._senders[topic] = getattr(publisher.handle, 'publish_raw', publisher.publish)
 
-    def subscribed(self, topics: Iterable[str]) -> list[str]:
-        """Return those of the topics that have subscribers."""
-        return [topic for topic in topics if self.publishers[topic].get_subscription_count()]
+    def note_subscribers(self, _event: QoSPublisherMatchedInfo) -> None:
+        """Take note that a subscriber has come or gone."""
+
+    def note_unsent(self, publisher: Publisher, error: Exception) -> None:
+        """Take note of a message that was not sent."""
+        self._warn(f'{publisher.topic_name} not sent: {error}')
 
     def send(self, messages: Iterable[tuple[str, bytes]]) -> None:
         """Publish serialised messages, given with their topics, and report failures."""
@@ -79,15 +76,7 @@ class Outputs:
             try:
                 self._senders[topic](message)
             except rclpy_implementation.RCLError as error:
-                self._on_failure(self.publishers[topic], error)
-
-
-class PublishingNode(Node):  # type: ignore[misc]  # rclpy has no types
-    """A node whose outputs can be waited for, and which warns at most once a second."""
-
-    _outputs: Outputs
-    _next_warning = 0.0
-    """s of a steady clock. The logger's own throttle takes 0.3 ms for each text that it drops."""
+                self.note_unsent(self.outputs[topic], error)
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set parameters; the reason of a refusal names the parameter and types."""
@@ -107,7 +96,7 @@ class PublishingNode(Node):  # type: ignore[misc]  # rclpy has no types
     def wait_for_delivery(self, timeout: float) -> None:
         """Wait until reliable subscribers have received all outputs; `timeout` is in s."""
         deadline = time.monotonic() + timeout
-        for publisher in self._outputs.publishers.values():
+        for publisher in self.outputs.values():
             left = max(0.0, deadline - time.monotonic())
             publisher.wait_for_all_acked(Duration(seconds=left))
 

@@ -14,7 +14,6 @@ from typing import Any, Self
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
 from rclpy.parameter import Parameter
-from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
@@ -25,7 +24,7 @@ from gear_kinematics.parameters.arm import by_actuator, full_name, labelled
 from gear_kinematics.parameters.files import require_any
 from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.ros.node_parameters import declared_actuators, fault_of
-from gear_kinematics.ros.outputs import Outputs, PublishingNode
+from gear_kinematics.ros.outputs import PublishingNode
 from gear_kinematics.twin import parameters as twin
 from gear_kinematics.twin.driver import Command, Driver
 from gear_kinematics.twin.fast_model import FastModel
@@ -74,14 +73,13 @@ class GearSimulator(PublishingNode):
         ]
         rate = next(iter(own.values())).rate
         self._period = round(SECOND / rate)
-        self._outputs = Outputs(self, lambda _: None, self._note_unsent)
         qos = QoSProfile(depth=DEPTH)
         self._encoders = []
         for topic, joints, read in (
             (topics.ROTOR_STATE, [gear.joint or 'rotor' for gear in self._gears], Driver.rotor),
             (topics.OUTPUT_ENCODER, [gear.output_joint for gear in self._gears], Driver.output),
         ):
-            self._outputs.create(topic, JointState, qos)
+            self.open_output(topic, JointState, qos)
             template = JointStateTemplate(joints, velocity=True, effort=True)
             self._encoders.append((topic, template, read))
         self.create_subscription(JointState, topics.ROTOR_COMMAND, self._on_command, qos)
@@ -123,7 +121,7 @@ class GearSimulator(PublishingNode):
                     self._warn(labelled(gear.name, gear.model.notice))
                     gear.model.notice = ''
             stamp, drivers = max(self._due + self._offset, 0), [g.driver for g in self._gears]
-            self._outputs.send(
+            self.send(
                 (topic, template.encode(stamp, [*chain(*zip(*map(read, drivers), strict=True))]))
                 for topic, template, read in self._encoders
                 if not drivers[0].drops()
@@ -176,9 +174,6 @@ class GearSimulator(PublishingNode):
         if not gear.preload:
             left = f'the output has a play of {1e3 * -gear.interference:.2f} mrad'
         return _told(response, f'the flanks wore off by {1e3 * angle:.2f} mrad: {left}')
-
-    def _note_unsent(self, publisher: Publisher, error: Exception) -> None:
-        self._warn(f'{publisher.topic_name} not sent: {error}')
 
 
 @dataclass(slots=True)

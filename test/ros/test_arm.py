@@ -31,7 +31,7 @@ def sent(make, monkeypatch):
     def start(**values):
         node, last = make('arm', **ARM | values), {}
         node._arm.choose(node._topics)
-        monkeypatch.setattr(node._outputs, 'send', last.update)
+        monkeypatch.setattr(node, 'send', last.update)
         return SimpleNamespace(node=node, last=last)
 
     return start

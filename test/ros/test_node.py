@@ -155,7 +155,7 @@ def test_parameters_set_together_take_effect_with_the_next_message_or_not_at_all
     make, monkeypatch
 ):
     node, published, settings = make('changed'), [], Settings()
-    monkeypatch.setattr(node._outputs, 'send', published.extend)
+    monkeypatch.setattr(node, 'send', published.extend)
     node._actuators[''].state.choose(STATES)
     random = Random(6)  # noqa: S311, no secret
     seen = set()
@@ -283,7 +283,7 @@ def test_message_that_the_middleware_refuses_is_counted_and_the_others_go_on(
 
 def test_status_is_named_after_the_node_and_found_by_the_aggregator(node, monkeypatch):
     published = []
-    monkeypatch.setattr(node._outputs, 'send', published.extend)
+    monkeypatch.setattr(node, 'send', published.extend)
     node._on_output_encoder(rotor_bytes(1, position=[1.0]))
     node._report()
     [(_, data)] = published
@@ -394,7 +394,7 @@ def test_description_and_markers_follow_the_prefix_and_are_sent_when_they_change
     make, monkeypatch
 ):
     node, published = make('described'), []
-    monkeypatch.setattr(node._outputs, 'send', published.extend)
+    monkeypatch.setattr(node, 'send', published.extend)
     node.set_parameters([Parameter('rotor_zero', value=1.0)])
     assert not published
     node.set_parameters([Parameter('frame_prefix', value='arm_')])
@@ -419,7 +419,7 @@ def test_of_a_gear_with_only_a_ratio_the_output_alone_is_published(make, monkeyp
     bodies = {'body_poses', 'mechanism_joint_states', 'robot_description', 'markers'}
     assert not {f'/ratio/{name}' for name in bodies} & topics
     published = []
-    monkeypatch.setattr(node._outputs, 'send', published.extend)
+    monkeypatch.setattr(node, 'send', published.extend)
     node._actuators[''].state.choose(['output_state', 'corrected_state'])
     node._on_rotor_state(rotor_bytes(1, position=[1457.0]))
     assert node._homing.answer(None, SimpleNamespace()).success
@@ -451,7 +451,7 @@ def test_nothing_is_compared_before_there_is_an_encoder_or_a_reference(make, mon
 def test_outputs_of_unknown_turns_are_marked_or_withheld(make, monkeypatch, outputs):
     node = make('marked', rotor_encoder='single_turn', unreferenced_outputs=outputs)
     published = []
-    monkeypatch.setattr(node._outputs, 'send', published.extend)
+    monkeypatch.setattr(node, 'send', published.extend)
     node._actuators[''].state.choose(['output_state'])
 
     def topics_after(stamp, position=1.0):

@@ -238,7 +238,7 @@ def test_an_arm_follows_one_command_and_tells_all_joints_in_one_message(context)
     overrides = [Parameter(name, value=value) for name, value in given.items()]
     node = GearSimulator(context=context, namespace='/arm', parameter_overrides=overrides)
     sent, warnings = {}, []
-    node._outputs.send, node._warn = sent.update, warnings.append
+    node.send, node._warn = sent.update, warnings.append
     command = JointState(name=['wrist_motor', 'tool', 'elbow_motor'], position=[10.0, 1.0, 2.5])
     node._on_command(command)
     for gear in node._gears:
@@ -279,7 +279,7 @@ def test_motion_that_is_not_that_of_the_gear_is_a_warning(notice):
         _compare_clocks=lambda: None,
         _gears=[SimulatedGear('', 'rotor', 'output', model, driver)],
         _offset=0,
-        _outputs=SimpleNamespace(send=tuple),
+        send=tuple,
         _encoders=(),
         _warn=warnings.append,
     )
