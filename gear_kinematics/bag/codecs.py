@@ -125,11 +125,9 @@ class ReadLimits:
 class Codec(NamedTuple):
     """A kind of compression."""
 
-    magic: bytes
-    """First bytes of a frame. CDR differs, as it begins with a zero."""
+    magic: bytes  # first bytes of a frame; CDR begins with a zero
     decompress: Decompressor
-    open: Callable[[IO[bytes]], Any]
-    """Opens a compressed file for reading."""
+    open: Callable[[IO[bytes]], Any]  # opens a compressed file for reading
 
 
 CODECS: Mapping[str, Codec] = {

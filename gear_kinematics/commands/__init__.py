@@ -14,7 +14,5 @@ class ExitCode(IntEnum):
     """Exit codes of `gearkin`."""
 
     DONE = 0
-    FAILED = 1
-    """A check failed."""
-    UNUSABLE = 2
-    """The input or the arguments are unusable; stderr has one line on the cause."""
+    FAILED = 1  # a check failed
+    UNUSABLE = 2  # the input or the arguments are unusable; stderr has one line on the cause
