@@ -14,24 +14,20 @@ _TINY = 1e-9  # uncertainty below which small values have an exponent instead of
 
 
 def plus_minus(estimate: Estimate | None, scale: float = 1.0) -> str:
-    """Format a quantity with its uncertainty, both to the second digit of the uncertainty."""
+    """Format a quantity with its uncertainty if it is known, both to the second digit of that."""
     if estimate is None:
         return ''
-    value, spread = rounded(estimate, scale)
-    return f'{value} ± {spread}' if spread else value
-
-
-def rounded(estimate: Estimate, scale: float) -> tuple[str, str]:
-    """Format a value and its uncertainty, which is empty if unknown."""
     value, spread = estimate.value * scale, estimate.uncertainty
+    if spread is None:
+        return number(value, 4)
     if not spread:
-        return number(value, 4), '' if spread is None else '0'
+        return f'{number(value, 4)} ± 0'
     spread *= scale
     if spread < max(abs(value) * _EXACT, _TINY):
-        return number(value, 6), number(spread, 2)
+        return f'{number(value, 6)} ± {number(spread, 2)}'
     decimals = max(0, 1 - math.floor(math.log10(spread)))
     # Zero must have no sign.
-    return f'{round(value, decimals) + 0.0:.{decimals}f}', f'{spread:.{decimals}f}'
+    return f'{round(value, decimals) + 0.0:.{decimals}f} ± {spread:.{decimals}f}'
 
 
 def shown(value: str | float | None) -> str:

@@ -15,7 +15,7 @@ from gear_kinematics.measurement.measured import Measured
 from gear_kinematics.measurement.middle_line import Backlash
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.sentences import Cause, Observation
-from gear_kinematics.measurement.wording import rounded
+from gear_kinematics.measurement.wording import plus_minus
 from gear_kinematics.report.document import Tone
 from gear_kinematics.statistics.uncertainty import Component, Estimate
 
@@ -154,18 +154,18 @@ def test_figures_that_their_uncertainty_exceeds_stand_out():
 @pytest.mark.parametrize(
     ('value', 'spread', 'written'),
     [
-        (93.3456, 1.3789, ('93.3', '1.4')),
-        (0.00123456, 0.000021, ('0.001235', '0.000021')),
-        (-0.004, 0.5, ('0.00', '0.50')),
-        (531.7, 134.2, ('532', '134')),
-        (2.0, 0.0, ('2', '0')),
-        (1 / 3, 1e-13, ('0.333333', '1e-13')),
-        (3e-15, 4.4e-14, ('3e-15', '4.4e-14')),
+        (93.3456, 1.3789, '93.3 ± 1.4'),
+        (0.00123456, 0.000021, '0.001235 ± 0.000021'),
+        (-0.004, 0.5, '0.00 ± 0.50'),
+        (531.7, 134.2, '532 ± 134'),
+        (2.0, 0.0, '2 ± 0'),
+        (1 / 3, 1e-13, '0.333333 ± 1e-13'),
+        (3e-15, 4.4e-14, '3e-15 ± 4.4e-14'),
     ],
 )
 def test_values_are_written_to_the_second_digit_of_their_uncertainty(value, spread, written):
     normal = Estimate.of_mean([value] * 9, Component(spread / 1.959964))
-    assert rounded(normal, 1.0) == written
+    assert plus_minus(normal) == written
 
 
 def test_lost_motion_is_not_told_where_its_uncertainty_says_nothing(shared_path, config):
