@@ -207,15 +207,15 @@ def backlash_of(
     )
     stiffness = 1.0 / float(np.mean(side[:, 1]))
     reading = resolution(step) + resolution(_spacing(ramps)) / stiffness
-    whole, bend = _mean(side[:, 0]), _mean(far[:, 0] - near[:, 0])
+    whole, bend = Estimate.of_mean(side[:, 0]), Estimate.of_mean(far[:, 0] - near[:, 0])
     bent = abs(bend.value) > bend.expanded + reading
     if bent:
-        beyond = _mean(near[:, 0] - _EXTRAPOLATED * (far[:, 0] - near[:, 0]))
-        guesses = [(e.value, e.expanded) for e in (whole, _mean(near[:, 0]), beyond)]
+        beyond = Estimate.of_mean(near[:, 0] - _EXTRAPOLATED * (far[:, 0] - near[:, 0]))
+        guesses = [(e.value, e.expanded) for e in (whole, Estimate.of_mean(near[:, 0]), beyond)]
     else:
         guesses = [(whole.value, math.hypot(whole.expanded, _HIDDEN * bend.expanded))]
     # A gear that speeds up in a gap takes more torque there, as if it were loaded at its ends.
-    more = _mean([line.friction_of_gap() for line in lines])
+    more = Estimate.of_mean([line.friction_of_gap() for line in lines])
     moved = reading
     if more.value > more.expanded:
         moved += _MOVED_BY_GAP * more.value / stiffness
@@ -223,12 +223,12 @@ def backlash_of(
     high = max(value + spread for value, spread in guesses) + moved
     soft = stiffness * _MOST_COMPLIANT < loaded
     if soft:
-        wide = _mean([line.width(light) for line in lines])
+        wide = Estimate.of_mean([line.width(light) for line in lines])
         low, high = 0.0, max(high, wide.value + wide.expanded)
     high = min(max(high, step), most)
     if low <= 0.0:
         return Backlash(0.0, high, Cause.SOFT if soft else Cause.BENT if bent else Cause.NONE)
-    within = _mean([line.stiffness_within(_MIDDLE * whole.value) for line in lines])
+    within = Estimate.of_mean([line.stiffness_within(_MIDDLE * whole.value) for line in lines])
     if within.value + within.expanded > _DEAD * stiffness:
         return Backlash(0.0, high, Cause.SOFT)
     return Backlash(min(low, high), high, Cause.BENT if bent else Cause.NONE)
@@ -277,7 +277,3 @@ def _reach(lines: Sequence[MiddleLine], ramps: Ramps) -> float:
     margin = _ANGLES // 40
     reached = (min(float(line.load[-margin]), -float(line.load[margin])) for line in lines)
     return min(ramps.amplitude - _friction(lines), *reached)
-
-
-def _mean(values: Sequence[float] | Array) -> Estimate:
-    return Estimate.of_mean([float(value) for value in values])

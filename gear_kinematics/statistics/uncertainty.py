@@ -10,7 +10,9 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-COVERAGE = 0.95  #: coverage probability of expanded uncertainties
+Values = Sequence[float] | NDArray[np.float64]
+
+COVERAGE = 0.95  # coverage probability of expanded uncertainties
 _NORMAL = 1.959963984540054
 """The quantile of Student's distribution for infinitely many degrees of freedom."""
 _FEWEST = 3  # groups of blocks from which a standard error is estimated
@@ -35,12 +37,12 @@ class Estimate:
     repeats: int
 
     @classmethod
-    def of_mean(cls, values: Sequence[float], *others: Component) -> Self:
+    def of_mean(cls, values: Values, *others: Component) -> Self:
         """Estimate a quantity from at least one repeat, and components that all repeats share."""
         return cls.of_sum([(1.0, values)], *others)
 
     @classmethod
-    def of_sum(cls, terms: Sequence[tuple[float, Sequence[float]]], *others: Component) -> Self:
+    def of_sum(cls, terms: Sequence[tuple[float, Values]], *others: Component) -> Self:
         """Estimate a sum of quantities, each with a factor and its own repeats, at least one.
 
         The standard uncertainties of the means (GUM 4.2.3) and the other components are combined
@@ -92,7 +94,7 @@ def combined(parts: Sequence[Component]) -> tuple[float, float]:
     return standard, 1.0 / spread if spread else math.inf
 
 
-def deviation(values: Sequence[float]) -> float:
+def deviation(values: Values) -> float:
     """Experimental standard deviation (GUM 4.2.2), without squares that overflow."""
     return math.hypot(*(np.asarray(values) - np.mean(values))) / math.sqrt(len(values) - 1)
 
@@ -114,9 +116,7 @@ def standard_error(
     return max(errors)
 
 
-def jackknife(
-    fits: Sequence[float] | NDArray[np.float64], *others: Component, together: Sequence[int] = (1,)
-) -> Estimate:
+def jackknife(fits: Values, *others: Component, together: Sequence[int] = (1,)) -> Estimate:
     """Estimate a quantity from the scatter of Tukey's pseudo-values.
 
     (B. Efron, C. Stein, Annals of Statistics 9 (1981) 586)
