@@ -72,21 +72,14 @@ class Sources:
     rotor: str | None = None
     output: str | None = None
     time: str | None = None
-    unit: str | None = None
-    """Unit of all angles, one of ANGLE_UNITS; None: by their names, or rad."""
-    on_rotor: bool = False
-    """Whether angle and torque are the rotor's, unless their names say the output's."""
-    rotor_counts: int | None = None
-    """Counts per turn of the encoder of the rotor, or of the angle column."""
-    output_counts: int | None = None
-    """Counts per turn of the encoder of the output."""
-    as_recorded: bool = False
-    """Whether wraps and counts stay what they are, where counts per turn are not given, and the
-    messages of the rotor are kept."""
+    unit: str | None = None  # unit of all angles, one of ANGLE_UNITS; None: by their names, or rad
+    on_rotor: bool = False  # whether angle and torque are the rotor's, unless named the output's
+    rotor_counts: int | None = None  # per turn of the encoder of the rotor, or of the angle column
+    output_counts: int | None = None  # per turn of the output's encoder
+    as_recorded: bool = False  # whether wraps and unknown counts stay, and rotor messages are kept
     rotor_topic: str | None = None
     encoder_topic: str | None = None
-    command: str = 'gearkin lost-motion'
-    """Words of a command line, before the recording, for advice."""
+    command: str = 'gearkin lost-motion'  # words before the recording, for advice
 
 
 class Column(NamedTuple):

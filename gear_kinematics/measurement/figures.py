@@ -46,26 +46,15 @@ class GearFigures:
     """Figures of a gear: angles in rad, torques in N·m."""
 
     rated_torque: float
-    angle_step: float
-    """rad at the output, between readings of the encoder; 0 if unknown."""
-    ramps: tuple[Ramps, ...]
-    """From small to large: those with friction are from the smallest, the others from the
-    largest."""
-    hysteresis: Estimate
-    """The width of the curve at zero torque."""
-    friction: Estimate | None
-    """Half the width of the curve in torque; None without a complete loop."""
-    middle_line: MiddleLine
-    """The mean of the largest ramps."""
-    backlash: Backlash
-    """What all ramps together leave room for."""
-    lost_motion: Estimate | None
-    """Between the middles of the curve at ± `LOST_MOTION_SHARE` of the rated torque; None if the
-    ramps are too small."""
-    stiffness: tuple[MeasuredStiffness, ...]
-    """In the ranges that the ramps cover, while the torque increases in magnitude."""
-    overall: Estimate | None
-    """N·m/rad, the slope of a straight line through each whole side of the loop."""
+    angle_step: float  # rad at the output, between readings of the encoder; 0 if unknown
+    ramps: tuple[Ramps, ...]  # ascending; the first give figures with friction, the last others
+    hysteresis: Estimate  # the width of the curve at zero torque
+    friction: Estimate | None  # half the width in torque, N·m; None without a complete loop
+    middle_line: MiddleLine  # the mean of the largest ramps
+    backlash: Backlash  # what all ramps together leave room for
+    lost_motion: Estimate | None  # at ± `LOST_MOTION_SHARE` of the rated torque, if ramps reach it
+    stiffness: tuple[MeasuredStiffness, ...]  # in the ranges covered, as the torque increases
+    overall: Estimate | None  # N·m/rad: slope of a line through each whole side of the loop
 
     @property
     def held_by_friction(self) -> bool:
