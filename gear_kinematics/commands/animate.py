@@ -16,8 +16,7 @@ from gear_kinematics.report.image import check_image
 
 _SPEED = 2.0 * TURN  # rad/s: fast enough for the output, slow enough for the rotor
 _FPS = 20
-_MOST_FRAMES = 2000
-"""Greatest number of frames, all of which are in memory until the last one is drawn."""
+_MOST_FRAMES = 2000  # greatest number, all in memory until the last one is drawn
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -23,8 +23,7 @@ EXTRAS = {
     'distributed': 'cluster',
 }
 """The extra that installs a package; setup.py defines the extras."""
-_MESSAGES = '_msgs', '_srvs', '_interfaces'
-"""Suffixes of the names of further packages of the extra `ros`."""
+_MESSAGES = '_msgs', '_srvs', '_interfaces'  # endings of further packages of the extra `ros`
 
 
 def remedy(error: ImportError) -> str:

@@ -15,8 +15,7 @@ import yaml
 from gear_kinematics.kinematics import Gear, GearRatio, Mechanism
 from gear_kinematics.parameters.yaml_file import Dumper, read_yaml
 
-SCHEMA = 'gear_kinematics/calibration/1'
-"""Value that identifies calibration files and their version."""
+SCHEMA = 'gear_kinematics/calibration/1'  # identifies calibration files and their version
 UNITS = {'angle': 'rad', 'torque': 'N·m', 'speed': 'rad/s', 'time': 's'}
 """The units of all numbers in a file."""
 _GREATEST = 1e30  # far above any number of a real gear

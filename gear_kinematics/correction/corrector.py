@@ -15,8 +15,7 @@ from gear_kinematics.wire.cdr import SECOND
 
 Array = NDArray[Any]
 
-MAX_GAP = SECOND
-"""Gap between samples, ns, after which the hysteresis is unknown, as motion was missed."""
+MAX_GAP = SECOND  # ns between samples after which the hysteresis is unknown: motion was missed
 _SAMPLING = SECOND // 10
 """Gap between samples, ns, beyond which the motion is not followed, whatever their usual period.
 

@@ -20,13 +20,10 @@ from gear_kinematics.statistics.uncertainty import Estimate, jackknife
 
 Array = NDArray[np.float64]
 
-_BLOCKS = 20
-"""Blocks of angles. Errors within a block may be correlated, those of blocks are not."""
+_BLOCKS = 20  # blocks of angles; errors within a block may be correlated, those of blocks are not
 _LEAST = 3  # least number of blocks that a straight line and its scatter need
-_SPREAD = 0.01
-"""Least standard deviation of the speed, relative to its mean, that makes a delay measurable."""
-_STEADY = 0.02
-"""Greatest share of the speed's variance that may be noise; it makes the delay too small."""
+_SPREAD = 0.01  # least standard deviation of the speed over its mean to make a delay measurable
+_STEADY = 0.02  # greatest share of noise in the speed's variance; it makes the delay too small
 
 
 @dataclass(frozen=True, slots=True)

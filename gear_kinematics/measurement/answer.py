@@ -15,8 +15,7 @@ from gear_kinematics.measurement.sentences import Cause, Observation, Observed
 
 _SMALLER = 0.7  # share of their amplitude to which smaller ramps are worth recording
 _TOLD = 0.25  # share of the whole motion by which a ± leaves nothing to be told
-_UNEQUAL = 0.18
-"""Difference of the peaks of a torque, of their sum, that none of 37 real recordings has."""
+_UNEQUAL = 0.18  # of the sum of a torque's peaks: a difference that none of 37 real recordings has
 
 
 def answer(report: LostMotion) -> Observed:

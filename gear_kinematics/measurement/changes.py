@@ -23,8 +23,7 @@ from gear_kinematics.measurement.measured import HYSTERESIS
 from gear_kinematics.statistics.uncertainty import COVERAGE, Component, Estimate, combined
 
 _OF_SMALL_RAMPS = (HYSTERESIS, 'friction')
-SIGNIFICANCE = 1.0 - COVERAGE
-"""Probability of a false alarm in each of the two families of `judged`."""
+SIGNIFICANCE = 1.0 - COVERAGE  # probability of a false alarm in each of both families of `judged`
 
 
 class Group(NamedTuple):

@@ -17,8 +17,7 @@ _DATES = 978_307_200.0, 4_102_444_800.0  # s since 1970: in 2001 and in 2100
 _LEAST_STEP, _MOST_STEP = {'s': 1e-6, 'ms': 5e-5, 'us': 5e-5, 'ns': 5e-5}, 1.0
 """s between samples that are likely, of times in a unit."""
 _UNREADABLE = 0.01  # share of times that cannot be read, at most
-_LATE_ROWS = 25
-"""Rows in succession that are out of order, at most; after more the clock was set back."""
+_LATE_ROWS = 25  # rows in succession out of order, at most; after more the clock was set back
 _FEWEST_AGAIN, _EVEN = 2, 1.5
 """Rows whose times come again after a clock was set back; usual steps, the longest of theirs."""
 _DAY = 86_400 * SECOND

@@ -18,12 +18,9 @@ import numpy as np
 from gear_kinematics.measurement.cells import Element, cells_of, elements_of, numbers, weight
 from gear_kinematics.measurement.columns import known_units, time_among
 
-_MOST_ROWS = 1_000_000
-"""A quarter of an hour at 1 kHz: measuring takes up to 250 bytes a row, beside pandas itself."""
-_HEAD, _BLOCK = 2**16, 2**17
-"""Bytes in which the dialect shows, and characters that are read at once."""
-_ROWS, _BEGIN = 100, 3
-"""Rows of the head that show what the columns contain; rows of numbers that begin a table."""
+_MOST_ROWS = 1_000_000  # 15 minutes at 1 kHz, of up to 250 bytes a row beside those of pandas
+_HEAD, _BLOCK = 2**16, 2**17  # bytes in which the dialect shows; characters that are read at once
+_ROWS, _BEGIN = 100, 3  # rows that show what columns contain; rows of numbers that begin a table
 _SEPARATORS = ';', '\t', ',', '|', ' '
 _COMMENT = ('#', '//', '%', 'sep=', 'SEP=')
 _BOMS = {b'\xef\xbb\xbf': 'utf-8-sig', b'\xff\xfe': 'utf-16', b'\xfe\xff': 'utf-16'}

@@ -23,11 +23,9 @@ from gear_kinematics.measurement.middle_line import (
 from gear_kinematics.report.document import number
 from gear_kinematics.statistics.uncertainty import Component, Estimate, resolution
 
-LOST_MOTION_SHARE = 0.03  #: lost motion is measured between ± this share of the rated torque
-STIFFNESS_SHARES = (0.15, 0.5)
-"""Limits between the ranges of stiffness, as shares of the rated torque."""
-_LEAST_RANGE = 1.5
-"""Least ratio of the torques at the end and at the beginning of a range of stiffness."""
+LOST_MOTION_SHARE = 0.03  # lost motion is measured between ± this share of the rated torque
+STIFFNESS_SHARES = (0.15, 0.5)  # between the ranges of stiffness, as shares of the rated torque
+_LEAST_RANGE = 1.5  # least ratio of the torques at the end and the beginning of such a range
 _ROUNDING = 1e-11  # relative rounding error of sums of many angles
 _TORQUES = 200  # at which a curve is compared with a straight line
 

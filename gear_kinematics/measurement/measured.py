@@ -10,8 +10,7 @@ from gear_kinematics.statistics.uncertainty import Estimate
 
 HYSTERESIS = 'hysteresis'  # the name of the figure that is judged first
 LOST_MOTION = 'lost motion'  # the name of the figure at a small torque, or on reversals
-SHOWN = {'rad': ('′', ARC_MINUTES), 's': ('ms', 1e3)}
-"""Units in which others are shown, and their factors."""
+SHOWN = {'rad': ('′', ARC_MINUTES), 's': ('ms', 1e3)}  # units that are shown instead, and factors
 
 
 class Measured(NamedTuple):

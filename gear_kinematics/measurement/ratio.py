@@ -28,8 +28,7 @@ _BY_CHANCE = 0.05  # probability below which a simple fraction in the interval i
 _MAX_DISTANCE = 2
 """Expanded uncertainties within which a fraction may be the true ratio: of 20 recordings, one has
 it beyond a single one."""
-_BEYOND = 0.05
-"""Share of those recordings: a coincidence has to be that much less likely in their place."""
+_BEYOND = 0.05  # share of those: a coincidence has to be that much less likely in their place
 _CANDIDATES = 10
 
 

@@ -34,8 +34,7 @@ from gear_kinematics.wire.batches import JointStates, decode_joint_states
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.topics import OUTPUT_ENCODER
 
-_MOST_STATES = 1_800_000
-"""Half an hour at 1 kHz: measuring takes up to 200 bytes for each state of rotor or output."""
+_MOST_STATES = 1_800_000  # half an hour at 1 kHz, of up to 200 bytes for each state when measured
 
 
 def read(

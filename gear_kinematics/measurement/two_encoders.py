@@ -28,15 +28,13 @@ _ACCURACY = math.radians(2.0 / 3600.0) / math.sqrt(3.0)
 springs follows its errors a little more the faster it turns."""
 _BLOCKS = 23  # prime, as blocks of whole cycles of an error would not differ
 _MOST = 10_000  # samples that are used: more tell no more of errors that are correlated
-_MEANS = 115
-"""Means of successive samples, at least, whose scatter tells how far errors are correlated."""
+_MEANS = 115  # least number of means of successive samples whose scatter tells the correlation
 _CHUNK = 4096  # points, so that their arrays fit into the processor's cache
 _ORDERS = 48, 4
 """Greatest numbers of cycles per turn of output and rotor. With amplitudes of 1/k they add up to a
 random walk, as pitch errors do. With 24, 3 of 200 simulated recordings of 340° were outside of
 twice the interval."""
-_ROTOR_SHARE = 0.1
-"""Share of `ENCODER_ERROR` that the gear may add at the output once per turn of the rotor."""
+_ROTOR_SHARE = 0.1  # of `ENCODER_ERROR`: what the gear may add at the output per turn of the rotor
 _TO_STANDARD = math.sqrt(-2.0 * math.log(0.05))
 """Amplitude that 95 % do not exceed, over the standard deviation of its sine and cosine."""
 _PLAY, _DELAY = 0.1, 0.05
@@ -45,8 +43,7 @@ _LAG = 6e-5
 """Standard deviation, s², of the lag by the acceleration: inertia over stiffness of the output, or
 1/ω² of one that oscillates at 20 Hz on the springs of its gear, as arms of robots do."""
 _SLOPE, _WAY, _LATE = 0, 2, 3  # columns of the fit; 1 is the offset
-_LEAST_NOISE = 1e-7
-"""rad: the step of an encoder of 26 bits. With less, rounding alone makes ratios wrong."""
+_LEAST_NOISE = 1e-7  # rad: step of an encoder of 26 bits; with less, rounding makes ratios wrong
 _ROUNDS = 5  # estimates of the noise, each by what the one before left; with 3, ± is 50 % off
 
 

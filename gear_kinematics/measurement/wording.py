@@ -6,8 +6,7 @@ import math
 from gear_kinematics.report.document import number
 from gear_kinematics.statistics.uncertainty import COVERAGE, Estimate
 
-ARC_MINUTES = 60.0 * 180.0 / math.pi
-"""Arc minutes per radian; catalogues give lost motion in arc minutes."""
+ARC_MINUTES = 60.0 * 180.0 / math.pi  # per radian; catalogues give lost motion in arc minutes
 PERCENT = f'{100.0 * COVERAGE:g} %'  # probability with which an interval contains the value
 _EXACT = 1e-5  # relative uncertainty below which values are rounded to six digits
 _TINY = 1e-9  # uncertainty below which small values have an exponent instead of zeros

@@ -27,8 +27,7 @@ from gear_kinematics.statistics.uncertainty import (
     student_t,
 )
 
-TOGETHER = (1, 2, 4)
-"""Numbers of successive blocks that are taken as one, in case neighbours are correlated."""
+TOGETHER = (1, 2, 4)  # successive blocks that are taken as one, in case neighbours are correlated
 _MAX_DEGREES = 10**9  # of freedom
 _SHIFTS = 4  # corrections of the delays, each for what the ones before left
 _SETTLED = 1e-5  # s to which a delay is corrected

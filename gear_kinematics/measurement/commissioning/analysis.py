@@ -25,8 +25,7 @@ from gear_kinematics.measurement.two_encoders import ENCODER_ERROR
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import number
 
-_FASTER = 2.0
-"""The speed that is allowed / the greatest seen, which is hardly the greatest that there is."""
+_FASTER = 2.0  # allowed speed over the greatest seen, which is hardly the greatest that there is
 _ONE_TURN = 1.05  # turns beyond which positions count turns: one, and room for noise
 _MOST_TEETH, _SHOWN = 200, 10
 """Most teeth of the ring gears that are named, as any pair can be multiplied; number of pairs."""

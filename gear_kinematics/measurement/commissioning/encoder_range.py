@@ -10,16 +10,13 @@ from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.measurement.recording import Array
 
 _UNCLEAR = 0.3, 0.7  # ranges between samples that may be a motion or a wrap
-_MOST_UNCLEAR = 0.05
-"""Share of such steps in the wraps, as in gaps, above which there is no wrap at all."""
+_MOST_UNCLEAR = 0.05  # share of such steps in the wraps, as in gaps, above which there is no wrap
 _MOST_SPAN = 1.001  # ranges within which positions are that wrap, with room for noise and rounding
 _EQUAL = 0.02  # share by which the range that steps show may differ from it, as the speed changes
 _AROUND = 8  # samples before and after a wrap in which the motion goes on
 _LEAST_MOTION = 1e-3  # ranges in these samples: less is a shaft that rests
-_SPREADS, _ACCURACY = 6.0, 1e-6
-"""Standard uncertainties, or the share, within which a range is a round one."""
-_REGISTER = 2**32
-"""Counts after which a register of 32 bits repeats, which some drivers read without its sign."""
+_SPREADS, _ACCURACY = 6.0, 1e-6  # standard uncertainties, or the share, within which one is round
+_REGISTER = 2**32  # counts after which a register of 32 bits repeats, if read without its sign
 _DECIMALS, _BY_CHANCE = 3, 0.05
 """Most decimals of a round range, and the probability below which one is no coincidence."""
 

@@ -15,8 +15,7 @@ from gear_kinematics.report.document import counted
 from gear_kinematics.wire.cdr import SECOND
 
 _NEAR = 0.1  # s between a moment that is named and the sample that is taken for it
-_TURNS = {'degrees': 360.0, 'turns': 1.0}
-"""A turn in the units that positions may have in place of rad."""
+_TURNS = {'degrees': 360.0, 'turns': 1.0}  # a turn in the units that may stand in place of rad
 _SAME_COUNTS = 0.02
 """Share by which counts that wraps show in a turn may differ from a power of two, as the speed
 changes; 4000 differ from 4096 by 0.023."""
