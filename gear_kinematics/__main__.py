@@ -17,10 +17,8 @@ from types import FrameType
 
 from gear_kinematics.ros.workarounds.shared_memory import SharedMemoryError, check_shared_memory
 
-_INTERRUPTED = 130
-"""Exit code, as in shells."""
-_UNUSABLE = 2
-"""Exit code: the program lacks a package or memory, or does not know its arguments."""
+_INTERRUPTED = 130  # exit code, as in shells
+_UNUSABLE = 2  # exit code: a package or memory is lacking, or arguments are unknown
 _NODE_HELP = """\
 usage: {program} [--help] [--version] [--ros-args ...]
 
@@ -39,8 +37,7 @@ _STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 _PATIENCE = 2.0
 """s to wait for the end of an import, and to ignore repeated signals: launchers signal a process
 and its group."""
-_RETRY = 0.01
-"""Period of SIGALRM, which repeats an interruption without effect, s."""
+_RETRY = 0.01  # s, period of SIGALRM, which repeats an interruption without effect
 
 
 def gear_state_publisher() -> int:

@@ -21,8 +21,7 @@ _STORAGE_NAME = re.compile(
 _METADATA = 'metadata.yaml'
 _TEXTS = '.csv', '.tsv', '.txt', '.dat', '.asc', '.lvm'
 _COMMON = {'.txt', '.dat'}  # which often are no recordings
-COMPRESSED = '.gz', '.zst', '.zip', '.bz2', '.xz'
-"""Ends of the names of texts that are compressed, behind those of `TABLES`."""
+COMPRESSED = '.gz', '.zst', '.zip', '.bz2', '.xz'  # of compressed texts, behind those of `TABLES`
 TABLES = {
     **dict.fromkeys(_TEXTS, 'text'),
     '.parquet': 'parquet',

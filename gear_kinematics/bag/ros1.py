@@ -25,8 +25,7 @@ _BOUNDED: Mapping[Callable[[bytes], bytes], Decompressor] = {
     lz4.frame.decompress: CODECS['lz4'].decompress,
 }
 """Replacements for those of rosbags, which decompress without limit."""
-_CONVERTED = {JOINT_STATE, POSE_ARRAY}
-"""Types whose messages are converted to CDR; they have the same fields in ROS 2."""
+_CONVERTED = {JOINT_STATE, POSE_ARRAY}  # converted to CDR; they have the same fields in ROS 2
 
 
 class Ros1(Storage):

@@ -26,8 +26,7 @@ from gear_kinematics.parameters.yaml_file import Dumper
 from gear_kinematics.wire.nearest import among, nearest
 
 _SPACING = 1.5  # distance between neighbours in a URDF, in diameters of the largest ring gear
-COMMON = 'actuators', 'executor', 'home_file'
-"""Parameters of the node, which cannot differ between actuators."""
+COMMON = 'actuators', 'executor', 'home_file'  # of the node, which cannot differ between actuators
 
 _TOKEN = re.compile('[A-Za-z][A-Za-z0-9_]{,63}', re.ASCII)
 """A name that ROS allows in parameters, topics and services, of which a whole one has 255."""

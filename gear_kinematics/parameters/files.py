@@ -77,8 +77,7 @@ def given_parameters(path: Path, node: str) -> dict[str, Any]:
     return {key: value for parameters in applying for key, value in parameters.items()}
 
 
-default_values = cache(given_parameters)
-"""Cached `given_parameters` of an installed file, which does not change."""
+default_values = cache(given_parameters)  # of an installed file, which does not change
 
 
 def _check_strays(path: Path, name: str, blocks: Sequence[tuple[str, dict[str, Any]]]) -> None:

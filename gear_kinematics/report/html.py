@@ -23,8 +23,7 @@ from gear_kinematics.report.page import page, resource
 
 _PANEL_HEIGHT = 11.5  # rem, of each of several stacked panels
 _HEIGHT = 34.0  # rem, least height of all panels together
-_FEW_SENTENCES = 6
-"""Greatest number of remarks, or of findings after the first, that are not folded."""
+_FEW_SENTENCES = 6  # most remarks, or findings after the first, that are not folded
 
 
 def to_html(document: Document) -> str:

@@ -19,14 +19,10 @@ from gear_kinematics.wire.joint_reader import JointMessage, JointsReader, Reject
 from gear_kinematics.wire.topics import TRANSMISSION_ERROR, topic_of
 
 _NO_STAMP = bytes(8)
-_Answered = list[tuple[str, GearState]]
-"""Actuators whose joint in a message is valid, and their states, which have the results."""
-_Errors = list[tuple[str, Sequence[ErrorSample]]]
-"""Transmission errors that have become known, by actuator."""
-_Rejections = list[tuple[str, RejectedInputError]]
-"""Why other joints in a message are not, by actuator."""
-_Parts = tuple[list[JointStateTemplate], list[float]]
-"""The templates of the parts of a message, and the numbers of all."""
+_Answered = list[tuple[str, GearState]]  # actuators with a valid joint, and states with results
+_Errors = list[tuple[str, Sequence[ErrorSample]]]  # newly known transmission errors by actuator
+_Rejections = list[tuple[str, RejectedInputError]]  # why other joints are not valid, by actuator
+_Parts = tuple[list[JointStateTemplate], list[float]]  # templates of the parts, and numbers of all
 
 
 class ArmState:

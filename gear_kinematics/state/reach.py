@@ -7,11 +7,9 @@ or early, and drivers repeat a reading until the next.
 
 from typing import Any, NamedTuple
 
-STALEST = 0.01
-"""s; a reading is at most so much, or an interval if that is less, older than its stamp says."""
+STALEST = 0.01  # s; a reading is so much, or an interval, older than its stamp says, at most
 FLOOR = 0.05  # rad: noise of any encoder, and what two successive steps may always differ by
-REGULAR = 1.0 / 3.0
-"""Share of the usual time between readings by which it may vary in `RotorLimits.even_step`."""
+REGULAR = 1.0 / 3.0  # share of the usual time by which one may vary in `RotorLimits.even_step`
 _UNEVEN = 0.25  # of a speed: what it may differ by, as readings are older than their stamps
 
 Reading = tuple[float, int, float, int]

@@ -26,8 +26,7 @@ from gear_kinematics.wire.topics import (
     STATE_TOPICS,
 )
 
-Row = tuple[str, Template, Sequence[float]]
-"""What a message is encoded of: its topic, template and numbers."""
+Row = tuple[str, Template, Sequence[float]]  # topic, template and numbers of a message
 
 
 class OutputMessages:

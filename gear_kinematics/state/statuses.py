@@ -201,8 +201,7 @@ class GearReport(NamedTuple):
         return texts
 
 
-_FORMATS = {'Hz': '.1f', '%': '.1f', 'N·m': '.4g'}
-"""Formats of numbers by the first word of their unit."""
+_FORMATS = {'Hz': '.1f', '%': '.1f', 'N·m': '.4g'}  # by the first word of the unit
 _OWN_FORMATS = {'age of last input (s)': '.3f', 'rotor zero (rad)': '.9g'}
 
 

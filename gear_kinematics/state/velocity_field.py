@@ -18,8 +18,7 @@ from gear_kinematics.wire.batches import Array, once_for_joints
 SPAN = 100_000_000  # ns, between the readings that are compared; four times that decides
 _PAUSE = 10 * SPAN  # after velocities that were found right
 _READINGS = 4
-_STRIDES = 1, 4, 16
-"""Readings of a comparison are so many noted ones apart: further ones while the rotor is slow."""
+_STRIDES = 1, 4, 16  # noted readings between compared ones: more while the rotor is slow
 _FAR = 3.0  # times or less than a third of the slope: no rounding, where the rotor is slow
 _STEADY = 0.1  # of the speed: what it may vary by in a comparison
 _AGREES = 0.25  # of the slope: delays of filters and the rest of the acceleration

@@ -18,8 +18,7 @@ from gear_kinematics.kinematics import Mechanism, MechanismError
 from gear_kinematics.twin.gear import TwinGear
 
 _STEP = 1e-4  # h, s, at most
-_FASTEST = 1.0 / _STEP
-"""Greatest angular frequency, rad/s: half of the bound, where the period is 5 % too short."""
+_FASTEST = 1.0 / _STEP  # rad/s: half of the bound, where the period is 5 % too short
 
 
 class FastModel:

@@ -7,8 +7,7 @@ import numpy as np
 from gear_kinematics.twin.gear import TwinGear
 from gear_kinematics.twin.mjcf import mjcf
 
-_FASTEST = 0.14
-"""Greatest turn of the rotor in a time step, rad; beyond, closing the loops feeds in energy."""
+_FASTEST = 0.14  # rad a time step; beyond, closing the loops feeds in energy
 mujoco.set_mju_user_warning(lambda _: None)  # else MUJOCO_LOG.TXT in the current folder
 
 

@@ -14,8 +14,7 @@ from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.fields import Array, FieldSamples, Window
 from gear_kinematics.validation.report import Finding
 
-_MAX_STEPS = 65_536
-"""Changes that are kept; samples that wait for their outputs need the last few thousand."""
+_MAX_STEPS = 65_536  # changes that are kept; samples without outputs need the last few thousand
 
 _FEW = 64  # number of outputs, from the first one on, that must all show another zero
 

@@ -21,8 +21,7 @@ _MIN_TURNING = 0.1  # rad of the rotor, to determine a ratio
 _BLOCKS, _MIN_BLOCKS = 32, 4
 _ROUNDING = 5.1e-10  # relative standard uncertainty due to the rounding of the sums
 _CLEAR_DEVIATION = 2.0  # deviation that is clear, in expanded uncertainties
-_MAX_SCATTER = 1e-5
-"""Greatest deviation of all values together from a constant factor, relative to them."""
+_MAX_SCATTER = 1e-5  # greatest relative deviation of all values together from a constant factor
 
 
 class AngleFit:

@@ -26,8 +26,7 @@ from gear_kinematics.validation.task import Tolerances
 _KEPT = 20_000  # inputs, outputs and poses that wait for each other
 _UNITS = {'position': 'rad', 'velocity': 'rad/s', 'effort': 'N·m'}
 _UNITS |= {'position of bodies': 'm', 'orientation of bodies': 'rad'}
-_State = tuple[int, float, float, float]
-"""Stamp, ns, position, velocity and effort of a joint; NaN for what is absent or not finite."""
+_State = tuple[int, float, float, float]  # stamp, ns, position, velocity, effort; NaN for absent
 
 
 @dataclass(frozen=True, slots=True)

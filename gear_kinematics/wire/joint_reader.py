@@ -31,8 +31,7 @@ POSITION_NOT_FINITE = 'position not finite'
 POSITION_TOO_LARGE = 'position too large'
 OUT_OF_ORDER = 'out of order'
 IMPLAUSIBLE = 'implausible'
-CLOCK_RESET = 1_000_000_000
-"""Time, ns: a stamp that is older than the last by more shows that the clock was set back."""
+CLOCK_RESET = 1_000_000_000  # ns; a stamp that is older by more shows a clock that was set back
 
 GREATEST = 1e280
 """Greatest velocity or effort; beyond, it counts as not finite, as results could be infinite: a

@@ -7,8 +7,7 @@ Without, SIGBUS kills the process when rclpy is imported, or Fast DDS 2.14 loses
 import os
 
 _PLACE = '/dev/shm'  # noqa: S108, where Linux keeps shared memory
-_TRACING = 2 * os.sysconf('SC_PAGE_SIZE')
-"""Bytes that LTTng uses without reserving them when rclpy is imported."""
+_TRACING = 2 * os.sysconf('SC_PAGE_SIZE')  # bytes that LTTng uses unreserved as rclpy is imported
 _PARTICIPANT = 2**20  # bytes; Fast DDS reserves 650 KiB for a participant
 
 
