@@ -6,14 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gear_kinematics.measurement.envelope import MOST, envelope
 from gear_kinematics.measurement.figures import LOST_MOTION_SHARE
 from gear_kinematics.measurement.loops import Ramps
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.middle_line import middle_lines
 from gear_kinematics.measurement.transmission import TransmissionFigures
 from gear_kinematics.measurement.wording import ARC_MINUTES
-from gear_kinematics.report.document import Line, Panel, Pen, number
+from gear_kinematics.report.document import MOST_POINTS, Line, Panel, Pen, number
 
 _WAYS: tuple[tuple[int, str, Pen], ...] = (
     (0, 'turning back', Pen.FAINT),
@@ -38,7 +37,7 @@ def _ramp_panel(ramps: Ramps, at: float) -> Panel:
     for half in (half for loop in ramps.loops for half in reversed(loop)):
         # A ramp may continue to a larger amplitude, which has its own panel.
         inside = np.flatnonzero(np.abs(half.torque) <= 1.02 * ramps.amplitude)
-        rows = inside[:: math.ceil(len(inside) / MOST)]
+        rows = inside[:: math.ceil(len(inside) / MOST_POINTS)]
         name, pen = _HALVES[half.rising]
         angle = (half.angle[rows] - centre) * ARC_MINUTES
         lines.append(Line(name, pen, half.torque[rows], angle))
@@ -60,7 +59,7 @@ def _error_panel(motion: TransmissionFigures) -> Panel:
         rows = motion.direction == way
         if rows.any():
             error = (motion.error[rows] - motion.offset) * ARC_MINUTES
-            angle, error = envelope(np.degrees(motion.angle[rows]), error)
-            lines.append(Line(name, pen, angle, error, points=way == 0))
+            angle = np.degrees(motion.angle[rows])
+            lines.append(Line.reduced(name, pen, angle, error, points=way == 0))
     title, label = 'transmission error less its mean', 'measured less ideal [arcmin]'
     return Panel(title, 'output angle [°]', label, tuple(lines))

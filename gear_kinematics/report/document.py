@@ -16,6 +16,8 @@ from gear_kinematics.report.mechanism import MovingMechanism
 
 Array = NDArray[np.float64]
 
+MOST_POINTS = 2000  # of a line that is reduced
+
 
 class Verdict(StrEnum):
     """The outcome of a check, from best to worst."""
@@ -167,6 +169,17 @@ class Line:
     x: Array
     y: Array  #: NaN leaves a gap
     points: bool = False  #: whether to draw only points
+
+    @classmethod
+    def reduced(cls, name: str, pen: Pen, x: Array, y: Array, *, points: bool = False) -> Self:
+        """Return a line over ascending x; of more than a plot shows, the minima and maxima."""
+        order = np.argsort(x, kind='stable')
+        x, y = x[order], y[order]
+        if len(x) > MOST_POINTS:
+            begins = np.linspace(0, len(x), MOST_POINTS // 2, endpoint=False, dtype=np.intp)
+            bounds = np.minimum.reduceat(y, begins), np.maximum.reduceat(y, begins)
+            x, y = np.repeat(x[begins], 2), np.stack(bounds, axis=1).ravel()
+        return cls(name, pen, x, y, points)
 
 
 @dataclass(frozen=True, eq=False, slots=True)

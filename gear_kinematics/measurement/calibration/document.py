@@ -8,7 +8,6 @@ import numpy as np
 
 from gear_kinematics.measurement.calibration.check import Judgement
 from gear_kinematics.measurement.calibration.fit import Fit, interval_holds
-from gear_kinematics.measurement.envelope import envelope
 from gear_kinematics.measurement.json_values import plain
 from gear_kinematics.measurement.recording import Array
 from gear_kinematics.measurement.sentences import Observation, Observed
@@ -99,7 +98,7 @@ def _figure(half_width: float, angle: Array, before: Array, after: Array) -> Fig
     """Draw errors before and after, rad, over the output angle, rad, with the interval."""
     width = half_width * ARC_MINUTES
     lines = [
-        Line(name, pen, *envelope(np.degrees(angle), error * ARC_MINUTES))
+        Line.reduced(name, pen, np.degrees(angle), error * ARC_MINUTES)
         for name, pen, error in (('before', Pen.FAINT, before), ('after', Pen.FIRST, after))
     ]
     panel = Panel(

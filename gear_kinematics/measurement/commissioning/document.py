@@ -9,7 +9,6 @@ import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.commissioning.analysis import Commissioning, Value
-from gear_kinematics.measurement.envelope import envelope
 from gear_kinematics.measurement.json_values import plain
 from gear_kinematics.measurement.sentences import Observation
 from gear_kinematics.measurement.wording import plus_minus, shown
@@ -151,10 +150,10 @@ def _figure(result: Commissioning) -> Figure | None:
     slope = float(result.between or ratio.measured.value) / 360.0  # turns per degree
     zero = np.mean(rotor - slope * output)
     ends = np.array([output.min(), output.max()])
-    recorded = Line('recorded', Pen.THIRD, *envelope(output, rotor))
+    recorded = Line.reduced('recorded', Pen.THIRD, output, rotor)
     name = f'ratio {result.between or plus_minus(ratio.measured)}'
     fitted = Line(name, Pen.MODEL, ends, slope * ends + zero)
-    error = Line('error', Pen.FIRST, *envelope(output, output - (rotor - zero) / slope))
+    error = Line.reduced('error', Pen.FIRST, output, output - (rotor - zero) / slope)
     left = 'measured less computed output [°]'
     return Figure(
         (

@@ -11,7 +11,6 @@ import numpy as np
 from gear_kinematics.bag import ReportProgress
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.fleet.processes import Work
-from gear_kinematics.measurement.envelope import envelope
 from gear_kinematics.measurement.loads.recorded import (
     ANGLE_BINS,
     Force,
@@ -184,7 +183,7 @@ def _over_time(loads: RecordedLoads) -> Panel:
         title, values = 'margin to the loss of mesh', loads.margin
     else:
         title, values = 'torque of the output', loads.torque
-    line = Line(title, Pen.FIRST, *envelope(loads.time, values))
+    line = Line.reduced(title, Pen.FIRST, loads.time, values)
     levels = ((0.0, 'out of mesh below'),) if loads.parameters.preload else ()
     return Panel(title, 'time [s]', f'{title} [N·m]', (line,), levels=levels)
 
