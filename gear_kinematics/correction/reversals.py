@@ -30,9 +30,9 @@ _STEADY = 0.02  # greatest share of noise in the speed's variance; it makes the 
 class Reversals:
     """Differences between both directions of motion."""
 
-    difference: Estimate  # mean error backward minus forward, rad: lost motion, delay times speed
-    lost_motion: Estimate | None  # rad; None if the speed varies too little to tell a delay
-    delay: Estimate | None  # of the stamps of the measured angles, s; None in the same case
+    difference: Estimate  #: mean error backward minus forward, rad: lost motion, delay times speed
+    lost_motion: Estimate | None  #: rad; None if the speed varies too little to tell a delay
+    delay: Estimate | None  #: of the stamps of the measured angles, s; None in the same case
 
 
 def separate(difference: Array, speed: Array) -> Reversals | None:

@@ -23,8 +23,8 @@ from gear_kinematics.measurement.middle_line import (
 from gear_kinematics.report.document import number
 from gear_kinematics.statistics.uncertainty import Component, Estimate, resolution
 
-LOST_MOTION_SHARE = 0.03  # lost motion is measured between ± this share of the rated torque
-STIFFNESS_SHARES = (0.15, 0.5)  # between the ranges of stiffness, as shares of the rated torque
+LOST_MOTION_SHARE = 0.03  #: lost motion is measured between ± this share of the rated torque
+STIFFNESS_SHARES = (0.15, 0.5)  #: between the ranges of stiffness, as shares of the rated torque
 _LEAST_RANGE = 1.5  # least ratio of the torques at the end and the beginning of such a range
 _ROUNDING = 1e-11  # relative rounding error of sums of many angles
 _TORQUES = 200  # at which a curve is compared with a straight line
@@ -44,15 +44,17 @@ class GearFigures:
     """Figures of a gear: angles in rad, torques in N·m."""
 
     rated_torque: float
-    angle_step: float  # rad at the output, between readings of the encoder; 0 if unknown
-    ramps: tuple[Ramps, ...]  # ascending; the first give figures with friction, the last others
-    hysteresis: Estimate  # the width of the curve at zero torque
-    friction: Estimate | None  # half the width in torque, N·m; None without a complete loop
-    middle_line: MiddleLine  # the mean of the largest ramps
-    backlash: Backlash  # what all ramps together leave room for
-    lost_motion: Estimate | None  # at ± `LOST_MOTION_SHARE` of the rated torque, if ramps reach it
-    stiffness: tuple[MeasuredStiffness, ...]  # in the ranges covered, as the torque increases
-    overall: Estimate | None  # N·m/rad: slope of a line through each whole side of the loop
+    angle_step: float  #: rad at the output, between readings of the encoder; 0 if unknown
+    ramps: tuple[Ramps, ...]  #: ascending; the first give figures with friction, the last others
+    hysteresis: Estimate  #: the width of the curve at zero torque
+    friction: Estimate | None  #: half the width in torque, N·m; None without a complete loop
+    middle_line: MiddleLine  #: the mean of the largest ramps
+    backlash: Backlash  #: what all ramps together leave room for
+    lost_motion: (
+        Estimate | None
+    )  #: at ± `LOST_MOTION_SHARE` of the rated torque, if ramps reach it
+    stiffness: tuple[MeasuredStiffness, ...]  #: in the ranges covered, as the torque increases
+    overall: Estimate | None  #: N·m/rad: slope of a line through each whole side of the loop
 
     @property
     def held_by_friction(self) -> bool:

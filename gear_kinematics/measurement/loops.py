@@ -18,7 +18,7 @@ _MIN_SIGNAL_TO_NOISE = 5.0  # least peak of a half cycle, in standard deviations
 _MIN_SHARE = 0.01  # share of the largest torque that a half cycle has to exceed
 _EQUAL_TORQUES = 3.0  # standard deviations of the noise within which two torques count as equal
 _SMOOTHED = 0.01  # share of a ramp's amplitude to which a moving mean reduces the noise
-ALIKE = 1.5  # ratio up to which ramps count as of one amplitude, in a recording and among several
+ALIKE = 1.5  #: ratio up to which ramps count as of one amplitude, in a recording and among several
 _ROUNDING = 1e-9  # relative differences of torques by rounding, as where a torque stands still
 _COMPLETE = 0.9  # share of the amplitude that both halves of a complete loop reach on both sides
 

@@ -16,7 +16,7 @@ from gear_kinematics.report.mechanism import MovingMechanism
 
 Array = NDArray[np.float64]
 
-MOST_POINTS = 2000  # of a line that is reduced
+MOST_POINTS = 2000  #: of a line that is reduced
 
 
 class Verdict(StrEnum):

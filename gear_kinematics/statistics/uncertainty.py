@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 Values = Sequence[float] | NDArray[np.float64]
 
-COVERAGE = 0.95  # coverage probability of expanded uncertainties
+COVERAGE = 0.95  #: coverage probability of expanded uncertainties
 _NORMAL = 1.959963984540054  # Student's quantile for infinitely many degrees of freedom
 _FEWEST = 3  # groups of blocks from which a standard error is estimated
 _MAX_DEGREES = 10_000  # of freedom; the quantile is within 1.3e-4 of the normal one
