@@ -19,7 +19,11 @@ encoder with 4096 counts per turn would be 1.5 rad/s, and 0.08 rad/s at an outpu
 
 
 class RefusedError(RuntimeError):
-    """Why a shaft cannot be homed."""
+    """A shaft cannot be homed: its fault, and what is true of all with such a fault."""
+
+    def __init__(self, fault: str, remedy: str) -> None:
+        super().__init__(fault + remedy)
+        self.fault, self.remedy = fault, remedy
 
 
 class Actuator:
@@ -72,15 +76,15 @@ class Actuator:
             zero = rotor.zero_for(self.rotor_angle)
             before = rotor.turns.relative_to(rotor.zero, parameters.rotor_direction)
         except RuntimeError as error:  # after the joint was changed, too
-            none = f'there was no valid {topics.ROTOR_STATE} yet; check the driver'
-            raise RefusedError(none) from error
+            none = f'there was no valid {topics.ROTOR_STATE} yet'
+            raise RefusedError(none, '; check the driver') from error
         if (age := time.monotonic() - self._seen) > parameters.input_timeout:
             last = f'the last valid {topics.ROTOR_STATE} came {age:.1f} s ago'
-            raise RefusedError(f'{last}; check that the driver is running')
+            raise RefusedError(last, '; check that the driver is running')
         given = self.state.sample.velocity
         if (speed := abs(ratio.output_rate(self._speed if given is None else given))) > limit:
-            too_fast = f'the shaft turns at {speed:.3g} rad/s, faster than home_max_speed'
-            raise RefusedError(f'{too_fast}, {limit:g} rad/s; stop it and home it again')
+            too_fast = f', faster than home_max_speed, {limit:g} rad/s; stop it and home it again'
+            raise RefusedError(f'the shaft turns at {speed:.3g} rad/s', too_fast)
         whole, rest = ratio.output_angle(*before, math)
         was, now = math.degrees(TURN * whole + rest), math.degrees(parameters.home_angle)
         return zero, f'the shaft was at {was:z.1f}° and is now {now:z.1f}°'

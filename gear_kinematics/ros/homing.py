@@ -79,15 +79,18 @@ class Homing:
 
     def _home(self, names: Sequence[str]) -> tuple[bool, str]:
         """Home all of some shafts or none."""
-        found, refused = {}, []
+        found, refused = {}, dict[str, dict[str, list[str]]]()  # names by remedy and fault
         for name in names:
             try:
                 found[name] = self._actuators[name].home_zero()
             except RefusedError as error:
-                refused.append(labelled(name, str(error)))
+                refused.setdefault(error.remedy, {}).setdefault(error.fault, []).append(name)
         if refused:
             none = 'no shaft was homed: ' if len(names) > 1 else ''
-            return False, none + '; '.join(refused)
+            return False, none + '; '.join(
+                ', '.join(labelled(', '.join(of), fault) for fault, of in faults.items()) + remedy
+                for remedy, faults in refused.items()
+            )
         actuators = [self._actuators[name] for name in names]
         angles = [each.rotor_angle for each in actuators]
         result = self._node.set_parameters_atomically(

@@ -54,16 +54,19 @@ class Listener:
     def drivers(self) -> list[DriverTopic]:
         """List the topics by name."""
         return [
-            DriverTopic(topic, _joints(heard), heard.rate)
+            DriverTopic(topic, _joints([heard.last.data] if heard.last else []), heard.rate)
             for topic, heard in sorted(self.heard.items())
         ]
 
 
-def _joints(heard: Polled) -> tuple[str, ...]:
-    with suppress(MalformedMessageError):
-        names = joint_names(joint_state_layout(heard.last.data)) if heard.last else ()
-        return tuple(name.decode(errors='replace') for name in names)
-    return ()
+def _joints(messages: Iterable[bytes]) -> tuple[str, ...]:
+    """Return the joints of all messages; which of several drivers comes first is no chance."""
+    found = set[tuple[bytes, ...]]()
+    for data in messages:
+        with suppress(MalformedMessageError):
+            found.add(tuple(joint_names(joint_state_layout(data))))
+    names = dict.fromkeys(name for names in sorted(found) for name in names)
+    return tuple(name.decode(errors='replace') for name in names)
 
 
 def listen(seconds: float = _WAIT) -> list[DriverTopic]:
@@ -80,11 +83,16 @@ def listen(seconds: float = _WAIT) -> list[DriverTopic]:
             messages += listener.poll()
             found = listener.drivers()
             time.sleep(_PERIOD)
+        heard = {
+            driver.topic: [each for each in messages if each[0] == driver.topic]
+            for driver in found
+        }
         return [
             replace(
                 driver,
+                joints=_joints(data for _, _, data in heard[driver.topic]) or driver.joints,
                 rate=listener.heard[driver.topic].mean_rate,
-                messages=[each for each in messages if each[0] == driver.topic],
+                messages=heard[driver.topic],
             )
             for driver in found
         ]

@@ -54,18 +54,18 @@ def test_all_shafts_are_homed_or_none_and_each_is_told(sent, tmp_path):
     """19.9 rad of the rotor are -60.0° of a shoulder of -19, and -22.8° of an elbow of -50."""
     path = tmp_path / 'home.yaml'
     node = sent(home_file=str(path)).node
-    nothing = 'there was no valid rotor_state yet; check the driver'
-    assert home(node).message == (
-        f'no shaft was homed: shoulder: {nothing}; elbow: {nothing}'
-    )  # fmt: skip
+    nothing = 'shoulder, elbow: there was no valid rotor_state yet; check the driver'
+    assert home(node).message == f'no shaft was homed: {nothing}'
     drive(node, MILLISECOND, m1=19.9, m2=19.9)
-    drive(node, 2 * MILLISECOND, m2=19.9, velocity=5.0)
+    drive(node, 2 * MILLISECOND, m1=19.9, m2=19.9, velocity=5.0)
     answer = home(node)
     assert not answer.success
-    turning = 'elbow: the shaft turns at 0.1 rad/s, faster than home_max_speed, 0.05 rad/s; '
-    assert answer.message == f'no shaft was homed: {turning}stop it and home it again'
+    assert answer.message == (
+        'no shaft was homed: shoulder: the shaft turns at 0.263 rad/s, elbow: the shaft turns at '
+        '0.1 rad/s, faster than home_max_speed, 0.05 rad/s; stop it and home it again'
+    )
     assert zeros(node) == [0.0, 0.0]
-    drive(node, 3 * MILLISECOND, m2=19.9)
+    drive(node, 3 * MILLISECOND, m1=19.9, m2=19.9)
     kept = f'(rotor_zero 19.900 rad, kept in {path})'
     assert home(node, 'elbow').message == (
         f'elbow: the shaft was at -22.8° and is now 0.0° {kept}'

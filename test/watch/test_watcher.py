@@ -8,7 +8,7 @@ import math
 import re
 import time
 from concurrent.futures import Future
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, nullcontext
 from dataclasses import asdict, replace
 from functools import partial
 from itertools import pairwise
@@ -654,6 +654,21 @@ ARM = (
     DriverTopic('/arm/motors', ('shoulder', 'wrist 1', '2'), 250.0),
     DriverTopic('/left/output_state', ('shoulder',), 250.0),
 )
+
+
+def test_joints_of_a_topic_are_those_of_all_its_drivers(monkeypatch):
+    """Whichever of them is heard first, or last."""
+    heard = [['m5', 'm6'], ['m1', 'm2'], ['m5', 'm6']]
+    messages = [('/motors', 1, rotor_bytes(1, names, [0.0, 0.0])) for names in heard]
+    listener = SimpleNamespace(
+        look=list, poll=lambda: messages, heard={'/motors': SimpleNamespace(mean_rate=300.0)},
+        drivers=lambda: [DriverTopic('/motors', ('m5', 'm6'), 100.0)],
+    )  # fmt: skip
+    monkeypatch.setattr(drivers, 'Listener', lambda _: listener)
+    monkeypatch.setattr(drivers, 'replay_node', nullcontext)
+    monkeypatch.setattr(drivers, 'Graph', lambda _: SimpleNamespace(drivers=list))
+    [found] = drivers.listen(0.01)
+    assert (found.joints, found.rate) == (('m1', 'm2', 'm5', 'm6'), 300.0)
 
 
 def test_init_sets_up_all_motors_of_an_arm(listening, monkeypatch, capsys):
