@@ -59,11 +59,9 @@ class Reporter:
     ) -> None:
         """Check that everything can be written, before any other work.
 
-        Args:
-            options: the parsed arguments.
-            sections: number of sections of the document.
-            others: targets of other options, which the command itself writes.
-            compared: whether the last section compares the others, and has the figure of the plot.
+        The document will have a number of sections, of which the last one, if `compared`,
+        compares the others and has the figure of the plot. The command itself writes
+        `others`, by option.
 
         Raises:
             ValueError: if options exclude each other, or a file must not or cannot be written.

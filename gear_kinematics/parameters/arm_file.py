@@ -21,10 +21,8 @@ _ANY_GEAR = "gear_ratio: '1'"
 def add_actuators(path: Path, blocks: Mapping[str, Sequence[str]], head: Sequence[str]) -> None:
     """Add actuators to the parameter file of an arm, or begin one; all of them or none.
 
-    Args:
-        path: the file, of which all that is in it is kept.
-        blocks: lines of YAML by the names of the actuators, to stand below each name.
-        head: lines at the head of a new file.
+    The blocks are lines of YAML by the names of the actuators, to stand below each name, and
+    the head begins a new file. All that is in an existing file is kept.
 
     Raises:
         ConfigError: if that is impossible, or the node would refuse the result.

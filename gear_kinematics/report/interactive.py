@@ -18,16 +18,12 @@ _LINE = 36  # greatest number of characters in a line of text, so that it fits o
 
 
 def interactive(panels: Sequence[Panel], mechanism: MovingMechanism | None) -> dict[str, Any]:
-    """Return the data and the layout of a plot.
-
-    Args:
-        panels: panels from top to bottom, over a common x axis.
-        mechanism: mechanism that moves with the plot, if any.
+    """Return data and layout of a plot of panels, from top to bottom, over a common x axis.
 
     Returns:
-        `data` and `layout` of plotly; `time`, the x of all lines that have no `x`;
-        `turned`, the angles of rotor and output in degrees, if there is a mechanism; `forces` of
-        its branches, if they are drawn.
+        `data` and `layout` of plotly; `time`, the x of all lines that have no `x`; `turned`, the
+        angles of rotor and output in degrees, if a mechanism moves with the plot; `forces` of its
+        branches, if they are drawn.
     """
     several = len(panels) > 1
     layout: dict[str, Any] = {'shapes': [], 'annotations': [], 'showlegend': False}

@@ -15,15 +15,11 @@ _NONE = "'none'"
 def page(
     title: str, body: str, scripts: Sequence[str] = (), *, style: str = '', server: str = ''
 ) -> str:
-    """Write a self-contained page.
+    """Write a self-contained page with a title as text and a body as HTML.
 
-    Args:
-        title: title as text.
-        body: body as HTML.
-        scripts: sources of the scripts; the browser runs no others.
-        style: style rules in addition to those of all pages.
-        server: address for WebSockets, `ws://host:port`, the only one that the page may connect
-            to.
+    The browser runs only the scripts whose sources are given, and `style` adds to the rules of
+    all pages. The page may connect only to the `server` of WebSockets, `ws://host:port`, if
+    any.
     """
     hashes = ' '.join(
         f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
