@@ -12,7 +12,7 @@ from gear_kinematics.twin.fast_model import FastModel
 from gear_kinematics.twin.gear import TwinGear
 from gear_kinematics.twin.model import TwinModel
 from gear_kinematics.twin.mujoco_model import MujocoModel
-from gear_kinematics.twin.parameters import default_config
+from gear_kinematics.twin.parameters import TwinParameters, default_config
 
 MILLISECOND = 1e-3
 MODELS: dict[str, Callable[[TwinGear], TwinModel]] = {'fast': FastModel, 'MuJoCo': MujocoModel}
@@ -66,7 +66,8 @@ def alone(model: TwinModel, steps: int) -> float:
 
 def driven(model: TwinModel, steps: int) -> float:
     """CPU time over simulated time of a model with a driven rotor and both encoders read."""
-    driver = Driver(model, max_torque=1.0)
+    own = TwinParameters.of({'max_rotor_torque': 1.0, 'rotor_counts': 0, 'output_counts': 0})
+    driver = Driver(model, own)
     driver.follow(Command(None, 20.0, None))
     start = time.process_time()
     for _ in range(steps):
