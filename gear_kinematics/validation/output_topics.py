@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.kinematics import Mechanism, solve
+from gear_kinematics.kinematics import Mechanism, solve, split_turns
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.diagnosis import AngleFit, FactorFit, diagnose
@@ -79,10 +79,9 @@ class JointStateTopic(OutputTopic):
 
     def _ideal_angle(self, samples: Window) -> Array:
         """The ideal output angle at samples, (n,), rad."""
-        turns, angle = samples['turns'], samples['angle']
-        if isinstance(self._gear, Mechanism):
-            return solve(self._gear, angle, rotor_turns=turns).output_angle
-        output_turns, rest = self._gear.output_angle(turns, angle, np)
+        turns, angle = split_turns(samples['angle'])  # beyond a turn where the count was moved
+        turns += samples['turns']
+        output_turns, rest = self._gear.gear_ratio.output_angle(turns, angle, np)
         return np.asarray(TURN * output_turns + rest)
 
 

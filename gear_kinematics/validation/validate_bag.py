@@ -106,7 +106,7 @@ def validate_bag(
         if play and not isinstance(error, RuntimeError):  # of the live node
             raise
         cause = str(error) if play else unexpected(error, debug=task.debug)
-        report = unusable(task.bag, f'{task.bag}: {cause}', task.config)
+        report = _lost(task, cause)
     return replace(report, elapsed=time.monotonic() - begun)
 
 
