@@ -5,6 +5,7 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 
 from rclpy.node import Node
 
@@ -31,7 +32,7 @@ class DriverTopic:
 class Listener:
     """Listens to topics of type JointState, to all messages or those that are wanted."""
 
-    def __init__(self, node: Node, wanted: Callable[[bytes], bool] = bool) -> None:
+    def __init__(self, node: Node, wanted: Callable[[str, bytes], bool] = lambda *_: True) -> None:
         self._node, self._wanted = node, wanted
         self.heard: dict[str, Polled] = {}
 
@@ -41,7 +42,7 @@ class Listener:
         for topic in self.heard.keys() - found:
             self.heard.pop(topic).close()
         for topic in found - self.heard.keys():
-            self.heard[topic] = Polled(self._node, topic, wanted=self._wanted)
+            self.heard[topic] = Polled(self._node, topic, wanted=partial(self._wanted, topic))
 
     def poll(self) -> list[Message]:
         """Take the messages that have arrived."""

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from concurrent import futures
 from contextlib import suppress
 from itertools import count
+from operator import attrgetter
 from typing import Any, NamedTuple, Self
 
 from diagnostic_msgs.msg import DiagnosticArray
@@ -24,7 +25,7 @@ from gear_kinematics.parameters.arm import full_name as of_actuator
 from gear_kinematics.ros.diagnostics import full_name
 from gear_kinematics.ros.graph import Graph
 from gear_kinematics.watch.drivers import Listener
-from gear_kinematics.watch.polled import Polled
+from gear_kinematics.watch.polled import Polled, Taken
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.cdr import SECOND, MalformedMessageError
 from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError, joints_of
@@ -109,6 +110,8 @@ class GearNode:
         self.homing = homing_client(node, name, actuator)
         self._topics: dict[str, str] = {}  # of what is shown, by names without remapping
         self._outputs = Listener(node, self._is_own)
+        self._others: dict[tuple[str, ...], Taken] = {}
+        """The latest messages of output_state with joints of other actuators alone, by these."""
         self._diagnostics = Polled(node, topics.DIAGNOSTICS, DiagnosticArray)
         self._client = AsyncParameterClient(node, name)
         self._due = math.inf  # when to ask for the parameters; s of a steady clock
@@ -133,6 +136,7 @@ class GearNode:
         if publishers - self._publishers:
             self.statuses.clear()
             self.parameters, self.fault, self.earlier, self.arm = None, '', {}, {}
+            self._others.clear()
             self.revision, self._due = next(_revisions), 0.0
         self._publishers = publishers or self._publishers  # a busy machine loses sight of them
 
@@ -168,19 +172,25 @@ class GearNode:
         if output is None or output.last is None:
             return None
         own = self.parameters.output_name if self.parameters else ''
-        try:
-            _, _, position, velocity, _ = JointReader(name or own).read(output.last.data)
-        except RejectedInputError:
-            return None
-        age = (time.time_ns() - output.last.received) / SECOND
-        return JointValue(position, velocity, age, output.rate)
+        heard = output.last, *(self._others.values() if name else ())
+        for taken in sorted(heard, key=attrgetter('received'), reverse=True):
+            with suppress(RejectedInputError):
+                _, _, position, velocity, _ = JointReader(name or own).read(taken.data)
+                age = (time.time_ns() - taken.received) / SECOND
+                return JointValue(position, velocity, age, output.rate)
+        return None
 
-    def _is_own(self, data: bytes) -> bool:
+    def _is_own(self, topic: str, data: bytes) -> bool:
         """Whether a message has the output's joint: other gears may share the topic."""
         if not (parameters := self.parameters):
             return True
         with suppress(MalformedMessageError):
-            return parameters.output_name in joints_of(data)
+            joints = tuple(joints_of(data))
+            if parameters.output_name in joints:
+                return True
+            known = len(self._others) < len(self.arm) or joints in self._others
+            if known and topic == self._topics.get(topics.OUTPUT_STATE):
+                self._others[joints] = Taken(data, time.time_ns(), 0)
         return False
 
     def hears(self, topic: str) -> bool:

@@ -318,6 +318,7 @@ def test_rate_is_that_of_the_joint_on_a_topic_of_several_gears(context):
     node = Node('rates', context=context)
     gear = GearNode(node, '/gear')
     gear.parameters = replace(NodeParameters.load(), output_joint='elbow')
+    gear.arm = {'elbow': gear.parameters, 'hand': gear.parameters}
     gear._topics = {topics.OUTPUT_STATE: '/rates/output_state'}
     gear._outputs.look(gear._topics.values())
     publisher = node.create_publisher(JointState, '/rates/output_state', 100)
@@ -328,7 +329,9 @@ def test_rate_is_that_of_the_joint_on_a_topic_of_several_gears(context):
     taken = []
     wait_until(lambda: taken.extend(heard.take()) or len(taken) >= 20, 'its messages')
     assert len(taken) == 20
-    assert gear.joint(topics.OUTPUT_STATE).position == own.position[0]
+    for name in ('', 'elbow', 'hand'):  # the joint of another driver of an arm is known, too
+        assert gear.joint(topics.OUTPUT_STATE, name).position == len(name or 'elbow')
+    assert gear.joint(topics.OUTPUT_STATE, 'foot') is None
     node.destroy_node()
 
 
