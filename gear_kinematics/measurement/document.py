@@ -120,14 +120,13 @@ def _tables(report: LostMotion) -> Iterator[Table]:
     if found:
         yield _table(found.listed())
     if motion:
+        unit = 's' if both and both.timed else 'rows'
         errors = (
             Measured('transmission accuracy', 'rad', motion.forward, ' forward'),
             Measured('transmission accuracy', 'rad', motion.backward, ' backward'),
             Measured('backward minus forward', 'rad', motion.reversals),
             Measured(LOST_MOTION, 'rad', motion.lost_motion, ' on reversals'),
-            Measured(
-                'delay of the output encoder', 's' if both and both.timed else 'rows', motion.delay
-            ),
+            Measured('delay of the output encoder', unit, motion.delay),
         )
         yield _table(errors)
 

@@ -86,12 +86,13 @@ def gear_figures(
     Raises:
         RampError: if the angle does not grow with the torque.
     """
-    if not (moving := [group for group in ramps if _moves(group, angle_step)]):
+    # Friction may hold the gear in the others.
+    ramps = [group for group in ramps if _moves(group, angle_step)]
+    if not ramps:
         raise RampError(
             'the angle does not grow with the torque: it stands still, or one of them has the '
             'wrong sign'
         )
-    ramps = moving  # friction may hold the gear in the others
     small, large = ramps[0], ramps[-1]
     rated = rated_torque or large.amplitude
     lines = [middle_lines(group) for group in ramps]

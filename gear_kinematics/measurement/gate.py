@@ -267,11 +267,9 @@ def _without(both: Encoders, rotor: Array, kept: Array, stray: Array) -> Encoder
     after = np.minimum(both.before + 1, len(rotor) - 1)
     kept = kept[good[both.before[kept]] & (good[after[kept]] | (both.share[kept] == 0.0))]
     places = np.cumsum(good) - 1
-    stamp, turns, angle, effort, segment = both.rotor
-    effort, segment = (None if each is None else each[good] for each in (effort, segment))
     return replace(
         both,
-        rotor=RotorMotion(stamp[good], turns[good], angle[good], effort, segment),
+        rotor=RotorMotion._make(None if each is None else each[good] for each in both.rotor),
         before=places[both.before[kept]],
         share=both.share[kept],
         measured=measured[kept],

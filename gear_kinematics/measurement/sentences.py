@@ -28,10 +28,9 @@ _RATIO = 'the recorded ratio is {measured:si}, not {assumed}'
 _SEEN = '{measured:si} after {degrees:.1f}° of the output'
 _TURNED = 'the rotor turned {turns:si} turns'
 _FALLS = 'The error falls from {before:arcmin} to {after:arcmin} arcmin rms on held-out data, '
-_INSIDE = '{inside:.1f} % of it within the ' + f'{PERCENT} interval'
+_INSIDE = '{inside:.1f} % of it within the {coverage} interval'
 _JUDGED = (
-    ': {inside:.1f} ± {spread:.1f} % of the measured angles are within the '
-    f'{PERCENT} interval; '
+    ': {inside:.1f} ± {spread:.1f} % of the measured angles are within the {coverage} interval; '
     'it changes the error from {before:arcmin} to {after:arcmin} arcmin rms.'
 )
 _MESH = 'With the ratio {ratio} of {source}, in {time} both branches were in mesh'
@@ -157,7 +156,7 @@ class Observation(Enum):
     )
     NOT_COMPARED = '{count} output angles were not compared: {cause}.'
     PLUS_MINUS = (
-        f'Each ± contains the value with a probability of {PERCENT}, given the scatter of repeats '
+        'Each ± contains the value with a probability of {coverage}, given the scatter of repeats '
         'and the steps of the encoders where they are known. Errors of scale (1 % of the torque '
         'is 1 % of friction and stiffness) and other positions of the output are not in it.'
     )
@@ -234,8 +233,7 @@ class Observation(Enum):
     HOLDS = 'The calibration holds' + _JUDGED
     DOES_NOT_HELP = 'The calibration does not help' + _JUDGED
     NO_LONGER_HOLDS = (
-        'The calibration no longer holds: {inside:.1f} % instead of '
-        f'{PERCENT} lie within the '
+        'The calibration no longer holds: {inside:.1f} % instead of {coverage} lie within the '
         'interval; what is left: {left:arcmin}′ {often}. Calibrate the gear again.'
     )
     # What the loads of a recording show
@@ -307,9 +305,9 @@ class Observed(NamedTuple):
     values: dict[str, Any]
 
     def __str__(self) -> str:
-        timed = self.values.get('timed')
-        of_moments = {'at': 'at' if timed else 'at sample', 'unit': ' s' if timed else ''}
-        return _Formatter().vformat(self.what.value, (), of_moments | self.values)
+        at, unit = ('at', ' s') if self.values.get('timed') else ('at sample', '')
+        known = {'at': at, 'unit': unit, 'coverage': PERCENT}
+        return _Formatter().vformat(self.what.value, (), known | self.values)
 
     @property
     def sentence(self) -> str:
