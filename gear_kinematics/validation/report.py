@@ -146,33 +146,20 @@ class BagReport:
 
     bag: str
     verdict: Verdict
-    config: str = ''
-    """The parameter file."""
-    actuator: str = ''
-    """Which actuator of an arm it is about; '' of one gear, and of the arm as a whole."""
-    gear_ratio: str = ''
-    """Gear ratio, such as `-19` or `-58/3`."""
-    error: str | None = None
-    """Why the bag is unusable, or the damage at which reading ended; the rest describes the
-    messages before it."""
-    messages: int = 0
-    """Number of messages on all topics."""
+    config: str = ''  # the parameter file
+    actuator: str = ''  # of an arm; '' of one gear, and of the arm as a whole
+    gear_ratio: str = ''  # gear ratio, such as `-19` or `-58/3`
+    error: str | None = None  # why the bag is unusable, or the damage at which reading ended
+    messages: int = 0  # number of messages on all topics
     rotor: InputReport | None = None
     topics: tuple[TopicReport, ...] = ()
-    findings: tuple[Finding, ...] = ()
-    """Findings about the whole recording; `explain` adds the faults of topics and fields."""
-    independent: IndependentReport | None = None
-    """The comparison by code that the node does not run, if it was asked for."""
-    series: tuple[Series, ...] = ()
-    """Records of the output topics that have anything to compare."""
-    mechanism: Mechanism | None = None
-    """The mechanism for which the outputs were recomputed."""
-    module: float = 0.0
-    """Module of its teeth, m, for the drawing."""
-    elapsed: float = field(default=0.0, compare=False, repr=False)
-    """How long the validation took, s."""
-    actuators: 'tuple[BagReport, ...]' = ()
-    """The reports on the actuators of an arm, of which the verdict is the worst."""
+    findings: tuple[Finding, ...] = ()  # about all; `explain` adds faults of topics and fields
+    independent: IndependentReport | None = None  # by code that the node does not run, if asked
+    series: tuple[Series, ...] = ()  # records of the output topics that have anything to compare
+    mechanism: Mechanism | None = None  # the mechanism for which the outputs were recomputed
+    module: float = 0.0  # module of its teeth, m, for the drawing
+    elapsed: float = field(default=0.0, compare=False, repr=False)  # duration of the check, s
+    actuators: 'tuple[BagReport, ...]' = ()  # of an arm; the verdict is the worst of theirs
 
     def adding(self, *findings: Finding) -> Self:
         """Return the report with further findings, each of which may fail it."""

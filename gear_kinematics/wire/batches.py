@@ -128,23 +128,14 @@ class JointStateBatch(list[bytes]):
 class JointStates:
     """One joint of n messages sensor_msgs/JointState."""
 
-    stamp: Array
-    """(n,), time of the header, ns."""
-    unnormalised: Array
-    """(n,): whether the stamp has a second or more of nanoseconds."""
-    malformed: Array
-    """(n,): whether it is no such message, so that its other values have no meaning."""
-    joint_found: Array
-    """(n,): whether the joint is in the message."""
-    arrays_fit: Array
-    """(n,): whether each array is empty or as long as `name`."""
-    present: Array
-    """(n, 3): whether the message has the joint's position, velocity and effort."""
-    values: Array
-    """(n, 3), float64: position, velocity, effort; NaN where not present. Columns are contiguous,
-    with which everything that follows is faster."""
-    missing_joint: str
-    """The joints of the first message without this one, in words; '' if all have it."""
+    stamp: Array  # (n,), time of the header, ns
+    unnormalised: Array  # (n,): whether the stamp has a second or more of nanoseconds
+    malformed: Array  # (n,): whether it is no such message, so that other values mean nothing
+    joint_found: Array  # (n,): whether the joint is in the message
+    arrays_fit: Array  # (n,): whether each array is empty or as long as `name`
+    present: Array  # (n, 3): whether the message has the joint's position, velocity and effort
+    values: Array  # (n, 3), by columns: position, velocity, effort; NaN where not present
+    missing_joint: str  # joints of the first message without this one, in words; or ''
 
 
 @dataclass(frozen=True, eq=False, slots=True)
