@@ -146,20 +146,20 @@ class BagReport:
 
     bag: str
     verdict: Verdict
-    config: str = ''  # the parameter file
-    actuator: str = ''  # of an arm; '' of one gear, and of the arm as a whole
-    gear_ratio: str = ''  # gear ratio, such as `-19` or `-58/3`
-    error: str | None = None  # why the bag is unusable, or the damage at which reading ended
-    messages: int = 0  # number of messages on all topics
+    config: str = ''  #: the parameter file
+    actuator: str = ''  #: of an arm; '' of one gear, and of the arm as a whole
+    gear_ratio: str = ''  #: gear ratio, such as `-19` or `-58/3`
+    error: str | None = None  #: why the bag is unusable, or the damage at which reading ended
+    messages: int = 0  #: number of messages on all topics
     rotor: InputReport | None = None
     topics: tuple[TopicReport, ...] = ()
-    findings: tuple[Finding, ...] = ()  # about all; `explain` adds faults of topics and fields
-    independent: IndependentReport | None = None  # by code that the node does not run, if asked
-    series: tuple[Series, ...] = ()  # records of the output topics that have anything to compare
-    mechanism: Mechanism | None = None  # the mechanism for which the outputs were recomputed
-    module: float = 0.0  # module of its teeth, m, for the drawing
-    elapsed: float = field(default=0.0, compare=False, repr=False)  # duration of the check, s
-    actuators: 'tuple[BagReport, ...]' = ()  # of an arm; the verdict is the worst of theirs
+    findings: tuple[Finding, ...] = ()  #: about all; `explain` adds faults of topics and fields
+    independent: IndependentReport | None = None  #: by code that the node does not run, if asked
+    series: tuple[Series, ...] = ()  #: records of the output topics that have anything to compare
+    mechanism: Mechanism | None = None  #: the mechanism for which the outputs were recomputed
+    module: float = 0.0  #: module of its teeth, m, for the drawing
+    elapsed: float = field(default=0.0, compare=False, repr=False)  #: duration of the check, s
+    actuators: 'tuple[BagReport, ...]' = ()  #: of an arm; the verdict is the worst of theirs
 
     def adding(self, *findings: Finding) -> Self:
         """Return the report with further findings, each of which may fail it."""
