@@ -41,6 +41,7 @@ from gear_kinematics.wire.topics import (
     LOAD_TOPICS,
     OUTPUT_ENCODER,
     TOPICS,
+    base_name,
     topic_of,
 )
 
@@ -247,8 +248,8 @@ def _not_compared(
     }
     own = zip(in_namespace(names, topics.output).values(), names.values(), strict=True)
     left = [topic for topic, kind in own if bag.topics.get(topic) == kind]
-    if left := [topic for topic in left if topic not in compared]:
-        yield Finding(FindingCause.NOT_COMPARED, values={'topics': left})
+    if left := dict.fromkeys(base_name(topic) for topic in left if topic not in compared):
+        yield Finding(FindingCause.NOT_COMPARED, values={'topics': list(left)})
 
 
 def _recorded_losses(bag: Bag) -> Counter[str]:

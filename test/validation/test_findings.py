@@ -31,7 +31,7 @@ VALUES = {
     'topic': '/rotor_state',
     'output': '/output_state',
     'poses': '/body_poses',
-    'topics': ['/robot_description', '/markers'],
+    'topics': ['robot_description', 'markers'],
     'detail': 'no joint in it',
     'name': 'left',
     'expected': '-19',
