@@ -41,10 +41,6 @@ class Parameter:
                 steps = f' in steps of {self.step}' if self.step else ''
                 bounds = f'between {self.minimum} and {self.maximum}{steps}'
                 return f'{name} must be {bounds}, not {value!r}'
-        return self.other_fault(name, value)
-
-    def other_fault(self, name: str, value: Any) -> str | None:
-        """Return a fault of a value whose type and bounds ROS has checked, or None."""
         if self.choices and value not in self.choices:
             return f'{name} must be one of {", ".join(self.choices)}, not {value!r}'
         numbers = (value if self.kind is list else [value]) if self.least else ()

@@ -141,7 +141,7 @@ class GearStatePublisher(PublishingNode):
         self._arm.choose(heard)
 
     def _check_parameters(self, changed: list[Parameter]) -> SetParametersResult:
-        """Refuse values that are invalid beyond type and range, which rclpy checks."""
+        """Refuse invalid values."""
         try:
             reason = next(filter(None, (fault_of(each, self._known) for each in changed)), '')
             if not reason and hasattr(self, '_arm'):  # else the constructor checks them

@@ -84,14 +84,9 @@ def _declare(
 
 
 def fault_of(parameter: Parameter, known: Mapping[str, Declaration] = PARAMETERS) -> str | None:
-    """Return the fault of a value of the right type and range, or None."""
-    declaration = known.get(parameter.name)
-    value = parameter.value
-    if declaration and declaration.kind is list:
-        if fault := declaration.fault(parameter.name, _plain(value)):
-            return fault
-    elif declaration and (fault := declaration.other_fault(parameter.name, value)):
-        return fault
+    """Return the fault of a value, or None."""
+    if declaration := known.get(parameter.name):
+        return declaration.fault(parameter.name, _plain(parameter.value))
     if _QOS_DEPTH.fullmatch(parameter.name) and not 0 <= parameter.value <= _MAX_DEPTH:
         return f'{parameter.name} must be between 0 and {_MAX_DEPTH}'
     return None

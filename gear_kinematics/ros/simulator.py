@@ -230,7 +230,7 @@ def _make_model(kind: str, gear: TwinGear) -> TwinModel:
 
 
 def _check_parameters(changed: list[Parameter]) -> SetParametersResult:
-    """Refuse values that are invalid beyond type and range, which rclpy checks."""
+    """Refuse invalid values."""
     known = {**PARAMETERS, **twin.PARAMETERS}
     reason = next(filter(None, (fault_of(parameter, known) for parameter in changed)), '')
     if any(parameter.name == 'use_sim_time' and parameter.value for parameter in changed):
