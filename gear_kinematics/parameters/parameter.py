@@ -2,7 +2,7 @@
 """A parameter of the node: its type, meaning and bounds, and the check of its values."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field, fields, replace
 from fractions import Fraction
 from typing import Any, get_origin
@@ -67,9 +67,3 @@ def declared_in(kind: type) -> dict[str, Parameter]:
         for each in fields(kind)
         if 'parameter' in each.metadata
     }
-
-
-def faults_of(given: Mapping[str, Any], known: Mapping[str, Parameter]) -> list[str]:
-    """List the faults of values by name, of which unknown ones are left out."""
-    checked = (known[name].fault(name, given[name]) for name in known if name in given)
-    return [fault for fault in checked if fault]

@@ -10,7 +10,7 @@ from gear_kinematics import parameters
 from gear_kinematics.parameters import ConfigError
 from gear_kinematics.parameters.arm import by_actuator
 from gear_kinematics.parameters.files import default_values, given_parameters
-from gear_kinematics.parameters.parameter import Parameter, declared_in, faults_of, parameter
+from gear_kinematics.parameters.parameter import Parameter, declared_in, parameter
 from gear_kinematics.share import share_directory
 
 NODE = 'gear_simulator'  # the default name of the node that simulates an actuator
@@ -60,7 +60,10 @@ class TwinParameters:
     def load(cls, path: Path, node: str, actuator: str = '') -> Self:
         """Read those of an actuator of a node from a file; ConfigError if a value is invalid."""
         given = by_actuator(given_parameters(path, node))[actuator]
-        if faults := faults_of(given, PARAMETERS):
+        checked = (
+            each.fault(name, given[name]) for name, each in PARAMETERS.items() if name in given
+        )
+        if faults := [*filter(None, checked)]:
             raise ConfigError(f'{path}: {"; ".join(faults)}')
         return cls.of(given)
 
