@@ -20,8 +20,7 @@ import numpy as np
 from gear_kinematics.bag import Message
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.kinematics import Mechanism, matrix_method
-from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.validation.task import Tolerances
+from gear_kinematics.validation.task import Task
 
 _KEPT = 20_000  # inputs, outputs and poses that wait for each other
 _UNITS = {'position': 'rad', 'velocity': 'rad/s', 'effort': 'N·m'}
@@ -89,14 +88,13 @@ class _Cdr:
 class Independent:
     """Compares outputs with what their inputs mean, in one pass over a recording."""
 
-    def __init__(
-        self, parameters: NodeParameters, topics: Topics, limits: Tolerances, *, strict: bool
-    ) -> None:
-        """Prepare for a recording; where `strict`, outputs of another zero are wrong."""
-        self._parameters, self._topics, self._strict = parameters, topics, strict
+    def __init__(self, task: Task, topics: Topics) -> None:
+        """Prepare for a recording; where the task is strict, outputs of another zero are wrong."""
+        self._parameters = parameters = task.parameters
+        self._topics, self._strict = topics, task.strict
         self._ratio, self._direction = parameters.gear.gear_ratio, parameters.rotor_direction
         self._joint = parameters.output_name if parameters.actuator else ''  # the only one
-        self._limits = {name: limits.of(unit) for name, unit in _UNITS.items()}
+        self._limits = {name: task.tolerances.of(unit) for name, unit in _UNITS.items()}
         self._errors: dict[str, float] = {}
         self._wrong: list[int] = []
         self._inputs: dict[int, list[_State]] = defaultdict(list)

@@ -154,7 +154,7 @@ def _judged(
             poses = find_in_namespace(bag, [BODY_POSES], topics.output)
             topics = topics._replace(poses=poses.get(BODY_POSES, ''))
         validator = Validator(task, topics, further, encoder=encoder)
-    proof = independent_of(task, Topics() if play else topics) if task.independent else None
+    proof = Independent(task, Topics() if play else topics) if task.independent else None
     damage = None
     try:
         validator.feed(_seen(proof, batches) if proof else batches)
@@ -192,7 +192,7 @@ def _judged_arm(task: Task, bag: Bag, progress: ReportProgress | None) -> BagRep
         of = topics._replace(poses=each.poses_topic or own.pop(BODY_POSES, ''))
         encoder = find_encoder_topic(bag, topics.rotor) if parameters.absolute else ''
         validators.append(Validator(each, of, own, encoder=encoder))
-        proofs.append(independent_of(each, of) if task.independent else None)
+        proofs.append(Independent(each, of) if task.independent else None)
     arm, damage = ArmValidator(validators), None
     recorded = sorted(arm.topics - {''})
     batches: Iterable[Sequence[Message]] = bag.batches(recorded, progress)
@@ -260,11 +260,6 @@ def _recorded_losses(bag: Bag) -> Counter[str]:
         for _, _, data in bag.messages(events) if events else ():
             lost += messages_lost(data)
     return lost
-
-
-def independent_of(task: Task, topics: Topics) -> Independent:
-    """Return the comparison of a task by code that the node does not run."""
-    return Independent(task.parameters, topics, task.tolerances, strict=task.strict)
 
 
 def _seen(proof: Independent, batches: Iterable[Sequence[Message]]) -> Iterator[Sequence[Message]]:

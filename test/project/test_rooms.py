@@ -85,7 +85,7 @@ def test_independent_comparison_shares_nothing_with_the_node(imports):
         'kinematics',
         'kinematics.Mechanism',
         'kinematics.matrix_method',
-        *(f'validation.task{name}' for name in ('', '.Tolerances')),
+        *(f'validation.task{name}' for name in ('', '.Task')),
     }
     assert (PACKAGE / path).read_bytes().count(b'\n') <= 200
 
