@@ -17,23 +17,17 @@ Array = NDArray[np.float64]
 
 UNITS = {'rad': 1.0, 'mrad': 1e-3, 'deg': math.radians(1.0), 'rev': TURN}
 """Units of angle in which readings may have been recorded, rad."""
-_DIGITS = 12
-"""Most decimals that are recognised."""
-_USUAL = 0.95
-"""Share of levels that are no stray ones."""
-_ROUNDING = 8.0
-"""Rounding errors of a reading, in its spacing: of a few conversions between units."""
-_LEAST = 4
-"""Least number of levels: with fewer, any step fits."""
+_DIGITS = 12  # most decimals that are recognised
+_USUAL = 0.95  # share of levels that are no stray ones
+_ROUNDING = 8.0  # rounding errors of a reading, in its spacing: of a few conversions between units
+_LEAST = 4  # least number of levels: with fewer, any step fits
 _COARSER = 1.9
 """A step is at least this many times the resolution of the recording: twice, less rounding."""
 _FITS = 0.15
 """Greatest root mean square distance from multiples of a step, in steps. It is 0.29 without any
 step, and 0.15 where the readings are rounded to half a step."""
-_MAX_STEPS = 100.0
-"""Steps between levels that are counted without an error."""
-_CHANCE = 1e-3
-"""Greatest probability with which readings that have no step fit one."""
+_MAX_STEPS = 100.0  # steps between levels that are counted without an error
+_CHANCE = 1e-3  # greatest probability with which readings that have no step fit one
 _EXACT, _BETTER = 1e-3, 0.3
 """Distance, in steps, below which no finer step is sought; share of the distance within which a
 finer one has to fit: by chance, half a step fits twice as badly."""

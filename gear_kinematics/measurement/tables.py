@@ -43,12 +43,9 @@ from gear_kinematics.wire.cdr import SECOND
 
 _LEAST = 1e-30
 """Numbers that are smaller are 0: of none of those that follow, squares and inverses underflow."""
-_GAP = 5
-"""Usual intervals of the rotor's samples over which its motion is interpolated, at most."""
-_HALF_TURN = 180.0
-"""Degrees, by which the readings of a single-turn encoder jump at least."""
-_MOST_TWIST = 0.35
-"""rad of the output under torque: a shaft that turns further is not locked."""
+_GAP = 5  # usual intervals of the rotor's samples over which its motion is interpolated, at most
+_HALF_TURN = 180.0  # degrees, by which the readings of a single-turn encoder jump at least
+_MOST_TWIST = 0.35  # rad of the output under torque: a shaft that turns further is not locked
 _BLOCKS, _LIKE = 10, (0.08, 1.0)
 """Parts of a recording; rad by which the output leaves the rotor in most of them, in degrees."""
 _WHOLE = 50  # levels that show whole numbers to be no coincidence
@@ -111,10 +108,8 @@ def _naming(path: Path) -> Iterator[None]:
 class _Series(NamedTuple):
     """Quantities that were sampled together, (n,) each."""
 
-    stamp: Array
-    """ns; one second a row if times were not recorded."""
-    values: dict[str, Array]
-    """In SI units, by role."""
+    stamp: Array  # ns; one second a row if times were not recorded
+    values: dict[str, Array]  # in SI units, by role
     segment: Array
     """Number that changes where rows were left out, as the motion in them is unknown."""
 
