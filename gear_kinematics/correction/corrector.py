@@ -26,17 +26,10 @@ _CHUNK = 4096  # samples of a batch that are lists at a time, which take much me
 class Correction(NamedTuple):
     """Correction of the ideal output angle, as floats or arrays (n,)."""
 
-    deviation: Any
-    """Deviation of the real from the ideal output angle, rad."""
-    slope: Any
-    """Derivative of the deviation with respect to the ideal output angle."""
-    half_width: Any
-    """Half width of the 95 % interval of the real about the corrected output angle, rad."""
-    unknown_history: Any
-    """Part of `half_width` due to the unknown history before the first sample, rad.
-
-    Another history would change the deviation by at most this much.
-    """
+    deviation: Any  # deviation of the real from the ideal output angle, rad
+    slope: Any  # derivative of the deviation with respect to the ideal output angle
+    half_width: Any  # of the 95 % interval of the real about the corrected output angle, rad
+    unknown_history: Any  # part of `half_width` by which another history could change it, rad
 
 
 class Corrector:

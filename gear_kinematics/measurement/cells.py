@@ -72,10 +72,8 @@ class Element(NamedTuple):
     """An element of the arrays in the cells of a column, as JSON has them."""
 
     place: int
-    beside: int
-    """The place of the column whose arrays name the elements; that of the arrays if none does."""
-    key: int | str
-    """Its number, or its name, as in sensor_msgs/JointState."""
+    beside: int  # place of the column whose arrays name the elements, or of the arrays
+    key: int | str  # its number, or its name, as in sensor_msgs/JointState
 
     def of(self, frame: Any) -> Any:
         """The column of it; `nan` in rows without it."""

@@ -40,11 +40,8 @@ not of an encoder."""
 class Step:
     """The step between the readings of an encoder."""
 
-    size: float
-    """In the unit of the readings; 0 if unknown."""
-    seen: bool
-    """Whether it shows in the readings; else it was given, or is the resolution in which they are
-    recorded."""
+    size: float  # in the unit of the readings; 0 if unknown
+    seen: bool  # whether it shows in the readings; else it was given, or is that of the recording
 
     def scaled(self, factor: float) -> 'Step':
         """The step of readings that are multiplied by a factor."""

@@ -39,16 +39,11 @@ class MalformedMessageError(ValueError):
 class MessageLayout(NamedTuple):
     """Positions in a message; messages of one layout differ only in the stamp and the arrays."""
 
-    order: str
-    """Byte order as in `struct`: '<' or '>'."""
-    size: int
-    """Size of the whole message, bytes."""
-    texts: tuple[bytes, ...]
-    """Strings of the message: frame_id, then the names of a JointState."""
-    arrays: tuple[tuple[int, int], ...]
-    """Offset and count of the float64 of each array."""
-    fixed: tuple[tuple[int, int], ...]
-    """Spans (start, end) of the bytes that define it: encapsulation, lengths, strings."""
+    order: str  # byte order as in `struct`: '<' or '>'
+    size: int  # size of the whole message, bytes
+    texts: tuple[bytes, ...]  # strings of the message: frame_id, then the names of a JointState
+    arrays: tuple[tuple[int, int], ...]  # offset and count of the float64 of each array
+    fixed: tuple[tuple[int, int], ...]  # spans of what defines it: encapsulation, lengths, strings
 
 
 def joint_names(layout: MessageLayout) -> list[bytes]:
