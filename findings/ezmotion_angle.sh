@@ -15,7 +15,10 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 python3 -m venv "$folder/venv"
 "$folder/venv/bin/pip" install --quiet --disable-pip-version-check EZMotionMMS2==1.0.2 minimalmodbus==2.1.1 pyserial==3.5
-timeout 60 "$folder/venv/bin/python" - <<'PYTHON' | grep -v '^value read'
+timeout 60 "$folder/venv/bin/python" - <<'PYTHON'
+import contextlib
+import io
+
 from EZMotionMMS2 import EZMotionMMS2
 
 TARGET, POSITION, VELOCITY = 0x67A0, 0x6640, 0x66C0
@@ -37,7 +40,8 @@ motor.Ezm = Servo()
 
 def read_back(angle, direction):
     motor.Set_Target_Position(0, angle, direction)
-    return motor.Read_Actual_Position()
+    with contextlib.redirect_stdout(io.StringIO()):  # it prints each value
+        return motor.Read_Actual_Position()
 
 
 for direction in ('CCW', 'CW'):
