@@ -20,16 +20,18 @@ _MIN_SHARE = 0.5  # runs of at least this share of the longest one are repeats o
 class TransmissionFigures:
     """Results from a recording of both encoders: angles in rad."""
 
-    travel: float  # range of the output angle
-    offset: float  # the mean error: the offset of the encoders' zeros
-    forward: Estimate | None  # accuracy: peak-to-peak error of forward motion without a reversal
+    travel: float  #: range of the output angle
+    offset: float  #: the mean error: the offset of the encoders' zeros
+    forward: Estimate | None  #: accuracy: peak-to-peak error of forward motion without a reversal
     backward: Estimate | None
-    reversals: Estimate | None  # error backward minus forward at the same angles; None without any
-    lost_motion: Estimate | None  # that error less what a delay adds; None if not told apart
-    delay: Estimate | None  # of the output's stamps, s or rows, taken out if clear; None if open
-    error: Array  # (n,), measured minus ideal
-    angle: Array  # (n,), ideal, of the output
-    direction: NDArray[np.int8]  # (n,): 1, -1, or 0 where unknown
+    reversals: (
+        Estimate | None
+    )  #: error backward minus forward at the same angles; None without any
+    lost_motion: Estimate | None  #: that error less what a delay adds; None if not told apart
+    delay: Estimate | None  #: of the output's stamps, s or rows, taken out if clear; None if open
+    error: Array  #: (n,), measured minus ideal
+    angle: Array  #: (n,), ideal, of the output
+    direction: NDArray[np.int8]  #: (n,): 1, -1, or 0 where unknown
 
 
 class _Motion:
