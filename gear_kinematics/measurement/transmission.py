@@ -26,7 +26,7 @@ class TransmissionFigures:
     backward: Estimate | None
     reversals: (
         Estimate | None
-    )  #: error backward minus forward at the same angles; None without any
+    )  #: error backward minus forward at the same angles, if any
     lost_motion: Estimate | None  #: that error less what a delay adds; None if not told apart
     delay: Estimate | None  #: of the output's stamps, s or rows, taken out if clear; None if open
     error: Array  #: (n,), measured minus ideal

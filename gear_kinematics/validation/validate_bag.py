@@ -247,8 +247,8 @@ def _not_compared(
         if topic.publisher == 'node'
     }
     own = zip(in_namespace(names, topics.output).values(), names.values(), strict=True)
-    left = [topic for topic, kind in own if bag.topics.get(topic) == kind]
-    if left := dict.fromkeys(base_name(topic) for topic in left if topic not in compared):
+    recorded = (topic for topic, kind in own if bag.topics.get(topic) == kind)
+    if left := dict.fromkeys(base_name(topic) for topic in recorded if topic not in compared):
         yield Finding(FindingCause.NOT_COMPARED, values={'topics': list(left)})
 
 
