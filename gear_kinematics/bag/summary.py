@@ -121,12 +121,7 @@ def _has_joint(reader: JointReader | None, data: bytes) -> bool:
 
 
 def _summary(
-    name: str,
-    kind: str,
-    part: str,
-    joints: list[str],
-    times: list[tuple[int, int]],
-    others: int,
+    name: str, kind: str, part: str, joints: list[str], times: list[tuple[int, int]], others: int
 ) -> TopicSummary:
     stamped, received = np.diff(np.array(times, np.int64).reshape(-1, 2), axis=0).T
     repeated = 2 * np.count_nonzero(stamped) < len(stamped)  # as without their nanoseconds

@@ -27,11 +27,7 @@ class DriverInput:
     """
 
     def __init__(
-        self,
-        node: Node,
-        topic: str,
-        on_message: Callable[[bytes], None],
-        facts: DriverFacts,
+        self, node: Node, topic: str, on_message: Callable[[bytes], None], facts: DriverFacts
     ) -> None:
         """Subscribe; `on_message` gets the bytes of each message, and `facts` are kept."""
         self._node = node
