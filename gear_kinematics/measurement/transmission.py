@@ -24,9 +24,7 @@ class TransmissionFigures:
     offset: float  #: the mean error: the offset of the encoders' zeros
     forward: Estimate | None  #: accuracy: peak-to-peak error of forward motion without a reversal
     backward: Estimate | None
-    reversals: (
-        Estimate | None
-    )  #: error backward minus forward at the same angles, if any
+    reversals: Estimate | None  #: error backward minus forward at the same angles, if any
     lost_motion: Estimate | None  #: that error less what a delay adds; None if not told apart
     delay: Estimate | None  #: of the output's stamps, s or rows, taken out if clear; None if open
     error: Array  #: (n,), measured minus ideal
