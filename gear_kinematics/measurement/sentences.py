@@ -217,6 +217,11 @@ class Observation(Enum):
         _FALLS + f'but only {_INSIDE}, which is too narrow. Nothing is written; record more turns '
         'of the output, in both directions.'
     )
+    MOVED = (
+        '{recording}: the output moves by {angle:arcmin} arcmin against the rotor {at} '
+        '{moment:si.6}{unit} for good, which is most of what a correction leaves. Nothing is '
+        'written; check the couplings and the encoders, and record again.'
+    )
     NO_CORRECTION = (
         'No correction helps: with the best one the error is {after:arcmin} arcmin rms instead of '
         '{before:arcmin} on held-out data, ' + _INSIDE + '. Nothing is written.'

@@ -3,10 +3,12 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
 from calibrating import (
+    COUNTS,
     HARD_WHEN_SLOW,
     IN_CLASS,
     LIMITED,
@@ -24,7 +26,7 @@ from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.measurement.calibration import fit, judge
 from gear_kinematics.measurement.calibration.document import document
 from gear_kinematics.measurement.calibration.model import widening
-from gear_kinematics.measurement.recording import RecordingError
+from gear_kinematics.measurement.recording import Recording, RecordingError
 
 RATIO = Fraction(-19)
 USUAL = GearSet(1)
@@ -82,6 +84,25 @@ def test_an_interval_that_few_errors_exceed_by_far_does_not_hold():
     assert found.coverage > 0.9
     assert not result.helps
     assert 'too narrow' in document(result, 'gear.yaml').sections[0].findings[0].text
+
+
+@pytest.mark.parametrize(('slip', 'share'), [(0.0, 0.0), (0.05, 0.0), (0.1, 0.4)])
+def test_a_slip_no_larger_than_the_error_is_named_with_its_moment(slip, share):
+    """It comes at 18 s, degrees, within a share of the minute."""
+    random, time = np.random.default_rng(4), np.arange(1500) / 25.0
+    rotor = 45.0 * np.pi * np.abs((time / 10.0 + 1.0) % 2.0 - 1.0)
+    slipped = np.radians(slip) * np.clip((time / 60.0 - 0.3) / max(share, 1e-9), 0.0, 1.0)
+    measured = rotor / -19.0 + 2e-3 * np.sin(rotor) + slipped + 2e-5 * random.normal(size=1500)
+    both = encoders(rotor, measured, np.round(time * 1e9).astype(np.int64), COUNTS, COUNTS)
+    result = fit([(Recording(Path(__file__), 'gear', (), 1500, both), both)], RATIO)
+    errors = result.calibration.validation
+    assert errors.rms_after < 0.7 * errors.rms_before
+    assert result.helps is not (slip > 0.0)
+    assert (result.moved is not None) is (slip > 0.0)
+    if slip and not share:
+        text = document(result, 'gear.yaml').sections[0].findings[0].text
+        assert result.moved.values['angle'] == pytest.approx(np.radians(slip), rel=0.05)
+        assert 'against the rotor at 18.04 s' in text
 
 
 def test_play_is_found_with_its_width():

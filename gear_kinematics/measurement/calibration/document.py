@@ -40,7 +40,7 @@ def document(fit: Fit, target: str) -> Document:
         what = Observation.TOO_NARROW
     else:
         what = Observation.NO_CORRECTION
-    finding = what(
+    finding = fit.moved or what(
         before=errors.rms_before,
         after=errors.rms_after,
         inside=100.0 * errors.coverage,

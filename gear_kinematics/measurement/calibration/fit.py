@@ -44,6 +44,8 @@ from gear_kinematics.statistics.uncertainty import Estimate, jackknife
 _FEWEST = 100  # samples of a recording
 _LEAST_COVERAGE = 0.9  # of samples left out, by the interval that should have 95 % of them
 _WORTH = 0.5  # of the error without a correction: with less, errors beyond the interval are few
+_MOST = 0.75  # share of the variance that makes a step what is left of the error
+_MATTERS = 0.25  # of the error without a correction: a step of so much is no drift
 _MARGIN = 0.1  # share of the span of speed and torque beyond which they are not calibrated
 
 
@@ -64,6 +66,7 @@ class Fit:
 
     calibration: Calibration  #: with a mean deviation of zero, and the errors of samples left out
     helps: bool  #: whether the error falls by more than a standard error, and its interval holds
+    moved: Observed | None  #: how the output moved against the rotor for good, if it did
     terms: tuple[FittedTerm, ...]
     recordings: Sequence[Recording]
     delays: Sequence[Estimate | None]  #: of the output's angles, s; None if not separable
@@ -167,9 +170,11 @@ def _result(
     )
     found = calibration.validation
     falls = found.rms_after < found.rms_before and interval_holds(calibration)
+    moved = _moved(samples, after, _MATTERS * found.rms_before)
     return Fit(
         calibration,
-        falls and model.helps(),
+        falls and not moved and model.helps(),
+        moved,
         tuple(terms),
         [s.recording for s in samples],
         delays,
@@ -178,6 +183,21 @@ def _result(
         before,
         after,
     )
+
+
+def _moved(samples: Sequence[Samples], after: Array, least: float) -> Observed | None:
+    """Find a step, of more than the least, rad, that makes up most of a recording's error."""
+    ends = np.cumsum([len(s.used) for s in samples])[:-1]
+    for s, left in zip(samples, np.split(after, ends), strict=True):
+        count, sums = np.arange(1, len(left)), np.cumsum(left - left.mean())[:-1]
+        explained = sums * sums * (1.0 / count + 1.0 / (len(left) - count))
+        place = 1 + int(np.argmax(explained))
+        angle = float(left[place:].mean() - left[:place].mean())
+        if abs(angle) > least and explained[place - 1] > _MOST * len(left) * np.var(left):
+            moment, timed = float(s.encoders.seconds[s.used[place]]), s.encoders.timed
+            name = s.recording.name
+            return Observation.MOVED(recording=name, angle=angle, moment=moment, timed=timed)
+    return None
 
 
 def interval_holds(calibration: Calibration) -> bool:
