@@ -84,6 +84,7 @@ lock: ## Pin the newest versions (needs uv)
 	cd requirements && $(LOCK) --constraint demo.txt --output-file test.txt test.in
 	cd requirements && $(LOCK) --output-file kilted.txt kilted.in
 	cd requirements && $(LOCK) --output-file fuzz.txt fuzz.in
+	cd requirements && $(LOCK) --output-file uv.txt uv.in
 
 clean: ## Remove everything that was generated
 	rm -rf $(VENV) .coverage* .hypothesis .mypy_cache .pytest_cache .ruff_cache \
