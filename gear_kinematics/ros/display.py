@@ -8,7 +8,6 @@ from rclpy.clock import Clock, ClockType
 from rclpy.event_handler import QoSPublisherMatchedInfo
 from rclpy.serialization import serialize_message
 from std_msgs.msg import String
-from visualization_msgs.msg import MarkerArray
 
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.arm import arm_urdf
@@ -24,7 +23,7 @@ class Display:
     def __init__(self, node: PublishingNode, actuators: Mapping[str, NodeParameters]) -> None:
         """Show the actuators with these parameters, whose bodies are known."""
         self._node, self._description = node, ''
-        node.open_output(topics.ROBOT_DESCRIPTION, String, latched())
+        node.open_output(topics.ROBOT_DESCRIPTION, latched())
         self.markers = {
             name: MarkerOutput(node, topic_of(name, topics.MARKERS), each.markers_rate)
             for name, each in actuators.items()
@@ -53,7 +52,7 @@ class MarkerOutput:
         self._topic, self._node = topic, node
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.timer = node.create_timer(1.0 / rate, self.publish, clock=steady, autostart=False)
-        node.open_output(topic, MarkerArray, latched(), self._on_viewers)
+        node.open_output(topic, latched(), self._on_viewers)
 
     def _on_viewers(self, event: QoSPublisherMatchedInfo) -> None:
         """Run the timer of the markers while there are subscribers; resend for a new one."""

@@ -8,15 +8,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import PoseArray
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from rclpy.serialization import serialize_message
-from sensor_msgs.msg import JointState, MultiDOFJointState
 from std_msgs.msg import Bool
 
 from gear_kinematics.correction.calibration_file import Calibration
@@ -40,11 +37,6 @@ from gear_kinematics.wire import topics
 from gear_kinematics.wire.joint_reader import JOINT_MISSING, RejectedInputError
 from gear_kinematics.wire.topics import topic_of
 
-_MESSAGE_TYPES = {
-    topics.JOINT_STATE: JointState,
-    topics.POSE_ARRAY: PoseArray,
-    topics.WRENCHES: MultiDOFJointState,
-}
 _REPORT_PERIOD = 1.0  # s
 _SHOWN = 'frame_prefix', 'output_joint'  # live parameters in the URDF, which takes 3 ms a gear
 
@@ -85,13 +77,12 @@ class GearStatePublisher(PublishingNode):
         self._connections = Connections()
 
         self._topics = self._arm.topics
-        for topic, base in self._topics.items():
-            message_type = _MESSAGE_TYPES[topics.TOPICS[base].type]
-            self.open_output(topic, message_type, QoSProfile(depth=DEPTH))
+        for topic in self._topics:
+            self.open_output(topic, QoSProfile(depth=DEPTH))
         self.note_subscribers()
         for topic in dict.fromkeys(topic_of(name, topics.REFERENCED) for name in ('', *given)):
-            self.open_output(topic, Bool, latched())
-        self.open_output(topics.DIAGNOSTICS, DiagnosticArray, QoSProfile(depth=10))
+            self.open_output(topic, latched())
+        self.open_output(topics.DIAGNOSTICS, QoSProfile(depth=10))
         self._display: Display | None = None
         if shown := self._shown():
             self._display = Display(self, shown)

@@ -4,6 +4,7 @@
 import re
 import time
 from collections.abc import Callable, Iterable
+from importlib import import_module
 from typing import Any
 
 from rcl_interfaces.msg import SetParametersResult
@@ -17,6 +18,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
 from gear_kinematics.wire.nearest import among, nearest
+from gear_kinematics.wire.topics import TOPICS, base_name
 
 _WARNING_PERIOD = 1.0  # s
 
@@ -24,6 +26,12 @@ _WARNING_PERIOD = 1.0  # s
 def latched() -> QoSProfile:
     """Create a new profile for each latched topic, since QoS overrides change it."""
     return QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+def message_type(name: str) -> Any:
+    """Return the class of a type of messages, such as sensor_msgs/msg/JointState."""
+    package, _, kind = name.split('/')
+    return getattr(import_module(f'{package}.msg'), kind)
 
 
 class PublishingNode(Node):  # type: ignore[misc]  # rclpy has no types
@@ -42,13 +50,13 @@ class PublishingNode(Node):  # type: ignore[misc]  # rclpy has no types
     def open_output(
         self,
         topic: str,
-        message_type: type,
         qos: QoSProfile,
         on_subscribers: Callable[[QoSPublisherMatchedInfo], None] | None = None,
     ) -> None:
-        """Create the publisher on a topic; `on_subscribers` replaces `note_subscribers`."""
+        """Create the publisher on one of TOPICS; `on_subscribers` replaces `note_subscribers`."""
+        known = TOPICS.get(topic) or TOPICS[base_name(topic)]
         publisher = self.create_publisher(
-            message_type,
+            message_type(known.type),
             topic,
             qos,
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),

@@ -79,7 +79,7 @@ class GearSimulator(PublishingNode):
             (topics.ROTOR_STATE, [gear.joint or 'rotor' for gear in self._gears], Driver.rotor),
             (topics.OUTPUT_ENCODER, [gear.output_joint for gear in self._gears], Driver.output),
         ):
-            self.open_output(topic, JointState, qos)
+            self.open_output(topic, qos)
             template = JointStateTemplate(joints, velocity=True, effort=True)
             self._encoders.append((topic, template, read))
         self.create_subscription(JointState, topics.ROTOR_COMMAND, self._on_command, qos)

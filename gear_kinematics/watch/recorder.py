@@ -2,7 +2,6 @@
 """Records what gear nodes hear and publish, as their topics are named."""
 
 from contextlib import suppress
-from importlib import import_module
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
@@ -13,6 +12,7 @@ from gear_kinematics.bag import Message
 from gear_kinematics.parameters import NODE
 from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.ros.graph import Graph
+from gear_kinematics.ros.outputs import message_type
 from gear_kinematics.watch.polled import Polled
 from gear_kinematics.wire import topics
 
@@ -78,12 +78,11 @@ class Recorder:
                     continue
                 offers = self._node.get_publishers_info_by_topic(topic)
                 if topic not in self._open:
-                    package, _, message = kind.split('/')
-                    message_type = getattr(import_module(f'{package}.msg'), message)
                     durability = DurabilityPolicy.BEST_AVAILABLE if offers else _VOLATILE
                     qos = QoSProfile(depth=DEPTH, durability=durability)
-                    self._open[topic] = kind, Polled(self._node, topic, message_type, qos=qos)
-                    self._best_effort[topic] = Polled(self._node, topic, message_type)
+                    message = message_type(kind)
+                    self._open[topic] = kind, Polled(self._node, topic, message, qos=qos)
+                    self._best_effort[topic] = Polled(self._node, topic, message)
                 if len(offers) > 1:
                     self._open[topic][1].losses.numbered = False
                 if offers and (unused := self._best_effort.pop(topic, None)):
