@@ -18,6 +18,7 @@ from gear_kinematics.state.monitors import Connections, EncoderMonitor, InputMon
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.rotor_samples import RotorSamples
+from gear_kinematics.state.rotor_settings import only_zero_differs
 from gear_kinematics.state.state_messages import OutputMessages, Row, state_messages
 from gear_kinematics.state.statuses import GearReport
 from gear_kinematics.state.turn_reference import TurnReference
@@ -59,6 +60,7 @@ class GearState:
     def __init__(self, parameters: NodeParameters, calibration: Calibration | None = None) -> None:
         """Start without messages; no topics are chosen."""
         self._chosen: Collection[str] | None = None
+        self._loads: LoadEstimator | None = None
         self._configure(parameters, calibration)
         self.input = RotorInput(parameters)
         self.output_encoder = OutputEncoder(parameters, TurnReference(self.input))
@@ -75,6 +77,8 @@ class GearState:
         Raises:
             ValueError: if messages on chosen topics cannot have the names in the parameters.
         """
+        if not only_zero_differs(parameters, self.parameters):
+            self._loads = None
         self.input.parameters = parameters
         self.output_encoder.configure(parameters)
         self._configure(parameters, calibration)
@@ -87,7 +91,6 @@ class GearState:
             Corrector(calibration, parameters.max_rotor_acceleration) if calibration else None
         )
         self.correction = None
-        self._loads: LoadEstimator | None = None
         self._withholding = parameters.unreferenced_outputs == 'withhold'
 
     @property
@@ -161,7 +164,9 @@ class GearState:
         if self.correction:
             rows += self.messages.corrected_rows(sample, self.correction, self._corrections)
         if self._loads and self._load_topics:
-            rows += self._loads.rows(self._loads.follow(sample, self.segment), self._load_topics)
+            # Another zero changes no acceleration.
+            loads = self._loads.follow(sample, self.segment - self.input.rezeroed)
+            rows += self._loads.rows(loads, self._load_topics)
         return rows
 
     def encode_errors(self, errors: Iterable[ErrorSample]) -> list[tuple[str, bytes]]:

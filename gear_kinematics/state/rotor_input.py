@@ -20,6 +20,7 @@ from gear_kinematics.state.rotor_settings import (
     encoders_differ,
     limits,
     longest_silence,
+    only_zero_differs,
     torque_factor,
 )
 from gear_kinematics.state.statuses import Condition, Fact
@@ -69,6 +70,8 @@ class RotorInput:
         self.origin: Fact | None = None  # source of the turn count: homing or the output's encoder
         self._restarts = 0
         """Counts homing, references by the output, and changes of the encoders' parameters."""
+        self.rezeroed = 0
+        """Number of these that gave the same motion another zero."""
         self._disorder = Disorder()
         self.turns = RotorTurns(
             period=parameters.rotor_period,
@@ -98,6 +101,7 @@ class RotorInput:
         if encoders_differ(parameters, before):
             self.zero = split_turns(parameters.rotor_zero)
             self._restarts += 1
+            self.rezeroed += only_zero_differs(parameters, before)
             if parameters.absolute or before.absolute:
                 self.turns.forget_turns()
         joint, period = parameters.rotor_joint, parameters.rotor_period
@@ -160,6 +164,7 @@ class RotorInput:
         zero = self.turns.home(rotor_angle, self._parameters.rotor_direction)
         self.zero, self.origin = split_turns(zero), Condition.HOMED()
         self._restarts += 1
+        self.rezeroed += 1
         return zero
 
     def refer(self, origin: Fact, turns: int = 0, angle: float = 0.0) -> None:

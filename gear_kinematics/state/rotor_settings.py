@@ -1,6 +1,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Settings of the rotor's input that follow from the parameters."""
 
+from dataclasses import replace
+
 from gear_kinematics.parameters import PARAMETERS, NodeParameters
 from gear_kinematics.wire.cdr import SECOND
 
@@ -15,6 +17,11 @@ _ENCODERS = tuple(
 def encoders_differ(one: NodeParameters, other: NodeParameters) -> bool:
     """Whether turns that an encoder at the output found are those of other encoders."""
     return any(getattr(one, name) != getattr(other, name) for name in _ENCODERS)
+
+
+def only_zero_differs(one: NodeParameters, other: NodeParameters) -> bool:
+    """Whether the same motion is counted from another zero, as after homing."""
+    return replace(one, rotor_zero=other.rotor_zero) == other
 
 
 def longest_silence(parameters: NodeParameters) -> float:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 import validating
 from node_loop import answered
-from shipped_bags import BAGS, read_bag
+from shipped_bags import BAGS, ROTOR, read_bag
 from validating import topic_of
 
 from gear_kinematics.kinematics.loads import Bodies
@@ -43,6 +43,19 @@ def test_what_a_node_publishes_passes(bag, braced):
             assert field.max_error == 0.0
             # With masses, what follows a gap by less than 20 ms is not judged.
             assert field.compared > (0.6 if braced.loads == HEAVY else 0.99) * found.messages
+
+
+@pytest.mark.parametrize('number', [100, 1500])
+def test_homing_interrupts_no_loads(number, config):
+    """The acceleration of heavy bodies, which takes 20 ms to find, is that of before.
+
+    The rotor stands at its zero when the message of the first number comes.
+    """
+    heavy = replace(config, preload=1.5, branch_stiffness=(3000.0,), loads=HEAVY)
+    inputs = [m for m in read_bag(BAGS / 'servo_point_to_point') if m[0] == ROTOR]
+    topics = 'output_state', 'body_poses', *NAMES
+    report = validate(answered(heavy, inputs, topics=topics, home_after=number), heavy)
+    assert report.verdict == Verdict.PASS, report.findings
 
 
 def test_recording_that_lacks_inputs_passes(braced):
