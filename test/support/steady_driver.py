@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""A driver as a process of its own, at 1 kHz: `python steady_driver.py NAMESPACE`.
+"""A driver as a process of its own, at a rate in Hz: `python steady_driver.py NAMESPACE RATE`.
 
 Beside the motor, joint m1 of several on motor/joint_states, it publishes the encoder of the output
 at 100 Hz.
@@ -14,8 +14,8 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
 
-MILLISECOND = 1_000_000  # ns
-RATE = 1000  # Hz
+SECOND = 1_000_000_000  # ns
+ENCODER_RATE = 100  # Hz
 RATIO = -19  # rotor speed / output speed
 ERROR = 1e-4  # rad, amplitude of the transmission error
 _PERIOD = 4.0  # s
@@ -29,8 +29,9 @@ def rotor_position(seconds: float) -> float:
 
 def main() -> None:
     """Publish until killed."""
+    namespace, rate = sys.argv[1], int(sys.argv[2])
     rclpy.init()
-    node = Node('motor', namespace=sys.argv[1])
+    node = Node('motor', namespace=namespace)
     qos = QoSProfile(depth=2000)
     motor = node.create_publisher(JointState, 'motor/joint_states', qos)
     encoder = node.create_publisher(JointState, 'output_encoder', qos)
@@ -39,16 +40,16 @@ def main() -> None:
     print('drives', flush=True)
     while True:
         # On a busy machine it leaves messages out: late ones would look like a clock set back.
-        number = max(number + 1, int(RATE * (time.monotonic() - start)))
-        seconds = number / RATE
+        number = max(number + 1, int(rate * (time.monotonic() - start)))
+        seconds = number / rate
         time.sleep(max(0.0, start + seconds - time.monotonic()))
-        stamp = first + number * MILLISECOND
+        stamp = first + number * SECOND // rate
         position = rotor_position(seconds)
         message = JointState(name=['brake', 'm1'], position=[0.0, position])
-        message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, 10**9)
+        message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, SECOND)
         motor.publish(message)
-        if number // 10 > sent:
-            sent = number // 10
+        if number * ENCODER_RATE // rate > sent:
+            sent = number * ENCODER_RATE // rate
             angle = position / RATIO
             message.name = ['output']
             message.position = [angle + ERROR * math.sin(4.0 * angle)]

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""`gearkin watch` beside a node and a driver at 1 kHz, and a stand-in for what watches them."""
+"""`gearkin watch` beside a node and a driver, and a stand-in for what watches them."""
 
 import contextlib
 import os
@@ -82,10 +82,10 @@ def node(folder: Path, name: str = NODE):
 
 
 @contextlib.contextmanager
-def driving():
-    """Run the driver."""
+def driving(rate: int = 200):
+    """Run the driver, at a rate in Hz: each message takes all who hear it processor time."""
     program = ROOT / 'test/support/steady_driver.py'
-    command = [sys.executable, program, NAMESPACE]
+    command = [sys.executable, program, NAMESPACE, str(rate)]
     with subprocess.Popen(command, stdout=subprocess.PIPE) as process:
         try:
             assert process.stdout.readline() == b'drives\n'

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Live commissioning: what is said when, what is kept, and both forms beside a driver at 1 kHz."""
+"""Live commissioning: what is said when, what is kept, and both forms beside a driver."""
 
 import re
 import sys

@@ -29,7 +29,7 @@ def test_what_a_node_hears_and_publishes_is_recorded_as_it_is_named(tmp_path, ca
         recording.wait_for('waiting for a gear_state_publisher')
         beside.enter_context(node(tmp_path))
         recording.wait_for('recording /diagnostics')
-        with driving():
+        with driving(rate=1000):
             recording.wait_for(rf'recording .*{MOTOR}')
             recording.wait_for(rf'recording .*{NAMESPACE}/output_state')
             capsys.readouterr()
