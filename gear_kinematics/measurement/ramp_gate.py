@@ -131,13 +131,19 @@ def shifted(place: Array, angle: Array, before: slice, after: slice) -> Array:
     # Just around the step, they have the same places by themselves.
     near = place[before.stop - _WINDOW : after.start + _WINDOW]
     shared = np.setdiff1d(shared[shared.imag != 0.0], near)
-    levels = [
-        [np.median(angle[part][place[part] == each]) for part in (before, after)]
-        for each in shared.tolist()
-    ]
-    changes = np.diff(levels).ravel()
+    was, now = (_medians(place[part], angle[part], shared) for part in (before, after))
+    changes = now - was
     ways = (changes[shared.imag == way] for way in (-1.0, 1.0))
     return np.array([np.median(way) for way in ways if len(way)])
+
+
+def _medians(place: Array, angle: Array, places: Array) -> Array:
+    """Median of the angles, rad, at each of some places, which all occur."""
+    order = np.lexsort((angle, place))
+    place, angle = place[order], angle[order]
+    middle = np.searchsorted(place, places) + np.searchsorted(place, places, 'right')
+    medians: Array = 0.5 * (angle[(middle - 1) // 2] + angle[middle // 2])
+    return medians
 
 
 def left_out(moments: Array, *, timed: bool) -> Observed:
