@@ -9,8 +9,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-_MOMENT = re.compile(
-    r'(\d{4}-\d\d-\d\d[T ])?\d?\d:\d\d:\d\d([.,]\d+)?\s?(Z|UTC|[+-]\d\d:?\d\d)?', re.ASCII
+MOMENT = re.compile(
+    r'(\d{4}-\d\d-\d\d[T ])?\d?\d:\d\d(:\d\d([.,]\d+)?|[.,]\d+)\s?'
+    r'(Z|UTC|[AP]M|[+-]\d\d:?\d\d)?',
+    re.ASCII | re.IGNORECASE,
 )
 
 
@@ -46,11 +48,16 @@ def numbers(column: Any, point: str = '.') -> Any:
     text = text.str.replace(',', '.')
     moments = pd.to_datetime(text, format='ISO8601', utc=True, errors='coerce')
     if not moments.notna().any():
-        of_day = text.where(text.str.fullmatch(_MOMENT.pattern))
-        moments = pd.Timestamp(0) + pd.to_timedelta(of_day, errors='coerce')
+        of_day = text.where(text.str.fullmatch(MOMENT)).str.lower()
+        hour = of_day.str.extract(r'^(\d+):.*([ap])m$')  # 12:00 AM is midnight
+        later = 12.0 * (hour[1] == 'p') - 12.0 * (hour[0] == '12')
+        plain = of_day.str.rstrip('apm ').str.replace(r'^\d+:\d+[.].*', r'0:\g<0>', regex=True)
+        since = pd.to_timedelta(plain, errors='coerce') + pd.to_timedelta(later, unit='h')
+        moments = pd.Timestamp(0) + since
     if not moments.notna().any():  # others, of which 1/2/2026 is in January
-        date = r'\d\d?[./-](\d\d?|[A-Za-z]{3})[./-]\d{4} +\d\d?:\d\d'
+        date = r'\d\d?[./-](\d\d?|[A-Za-z]{3})[./-](\d{4}|(?<=[./])\d\d) +\d\d?:\d\d'
         dates = text.where(text.str.match(date))
+        dates = dates.str.replace(r'([./])(\d\d)(?= )', r'\g<1>20\2', regex=True)
         day_first = dates.str.match(r'\d+\.').any()
         moments = pd.to_datetime(dates, dayfirst=day_first, utc=True, errors='coerce')
     moments = moments.dt.tz_localize(None)
@@ -65,7 +72,7 @@ def weight(cell: str, point: str) -> float:
     if re.fullmatch(rf'[-+\u2212]?(\d+{mark}?\d*|{mark}\d+)([eE][-+]?\d+)?', cell):
         return 1.0 if ',' not in cell else 0.9
     grouped = rf"[-+\u2212]?[1-9]\d{{0,2}}(([ '\u00a0\u202f]|{other})\d{{3}})+({mark}\d*)?"
-    return 0.5 if re.fullmatch(grouped, cell) or _MOMENT.fullmatch(cell) else 0.0
+    return 0.5 if re.fullmatch(grouped, cell) or MOMENT.fullmatch(cell) else 0.0
 
 
 class Element(NamedTuple):
@@ -91,8 +98,9 @@ class Element(NamedTuple):
 
 def _array(cell: Any) -> list[str]:
     text = str(cell).strip()
-    inner = text[1:-1].strip(' ,') if text[:1] + text[-1:] == '[]' else ''
-    return [one.strip(' "\'') for one in inner.split(',')] if inner else []
+    inner = text[1:-1].strip(' ,') if text[:1] + text[-1:] in {'[]', '()'} else ''
+    parts = inner.split(',' if re.search('[,"\']', inner) else None)
+    return [one.strip(' "\'') for one in parts] if inner else []
 
 
 def elements_of(lines: Sequence[str], names: Sequence[str], separator: str) -> dict[str, Element]:

@@ -16,6 +16,8 @@ from gear_kinematics.wire.cdr import SECOND
 _DATES = 978_307_200.0, 4_102_444_800.0  # s since 1970: in 2001 and in 2100
 _LEAST_STEP, _MOST_STEP = {'s': 1e-6, 'ms': 5e-5, 'us': 5e-5, 'ns': 5e-5}, 1.0
 """s between samples that are likely, of times in a unit."""
+_EXCEL = 25_569
+"""Days from the epoch of workbooks to 1970."""
 _UNREADABLE = 0.01  # share of times that cannot be read, at most
 _LATE_ROWS = 25  # rows in succession out of order, at most; after more the clock was set back
 _FEWEST_AGAIN, _EVEN = 2, 1.5
@@ -34,7 +36,7 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
     later = np.diff(times) > 0.0
     if not later.any():
         cause = 'they stand still' if known.any() else 'no numbers nor ISO 8601'
-        raise ValueError(f'the times in {clock.name}: {cause}')
+        raise ValueError(f'the times in {clock.name}: {cause}; give another with --time-column')
     steps = np.diff(times)[later]
     step = float(np.median(steps))
     speed = float(np.quantile(np.abs(np.diff(angle)[later]) / steps, MOST))
@@ -45,7 +47,10 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
     likely = [unit for unit, (size, _) in spans.items() if _LEAST_STEP[unit] <= size <= _MOST_STEP]
     if len(likely) > 1:
         likely = [unit for unit in likely if speed <= FASTEST * TIME_UNITS[unit]]
-    if common := [unit for unit in dated if unit in likely]:
+    workbook = _DATES[0] < (times[0] - _EXCEL) * _DAY / SECOND < _DATES[1]
+    if workbook and _LEAST_STEP['s'] <= step * _DAY / SECOND <= _MOST_STEP:
+        likely = ['days']
+    elif common := [unit for unit in dated if unit in likely]:
         likely = common
     elif 's' in likely and not np.all(times == np.round(times)):
         likely = ['s']

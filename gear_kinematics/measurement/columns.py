@@ -25,7 +25,8 @@ _TIME = ('time', 't', *_STAMP, 'today', 'datetime', 'elapsed', 'zeit', 'xtime', 
 _FILLING = {
     'header', 'receive', 'log', 'measured', 'actual', 'act', 'filtered', 'raw', 'field', 'data',
     'value', 'values', 'feedback', 'state', 'states', 'axis', 'present', 'sensor', 'abs', 'side',
-    'in', 'ist', 'host', 'pi', 'ros', 'system', 'unix', 'epoch',
+    'in', 'ist', 'host', 'pi', 'ros', 'system', 'unix', 'epoch', 'fb', 'fbk', 'ave', 'estimate',
+    'scalars',
 }  # fmt: skip
 """Words that may stand beside the others; all of them exclude commands, speeds and the like."""
 _COUNTS = ('counts', 'count', 'cnt', 'inc', 'increments', 'ticks', 'pulse', 'pulses')
@@ -36,6 +37,9 @@ _OF_ANGLE = {
     **UNITS,
     **dict.fromkeys(('°', 'degree', 'degrees'), UNITS['deg']),
     'mdeg': UNITS['deg'] / 1000.0,
+    'cdeg': UNITS['deg'] / 100.0,
+    'mrev': TURN / 1000.0,
+    **dict.fromkeys(('urad', 'µrad'), 1e-6),
     **dict.fromkeys(('arcmin', '′'), UNITS['deg'] / 60.0),
     **dict.fromkeys(('arcsec', '″'), UNITS['deg'] / 3600.0),
     **dict.fromkeys(('radian', 'radians'), 1.0),
@@ -50,12 +54,16 @@ _UNITS: Mapping[str, Mapping[str, float | None]] = {
         **dict.fromkeys(('ms', 'msec', 'millis', 'milliseconds'), 1e-3),
         **dict.fromkeys(('us', 'µs', 'usec', 'micros', 'microseconds'), 1e-6),
         **dict.fromkeys(_NANOSECONDS, 1e-9),
+        **dict.fromkeys(('day', 'days'), 86_400.0),
     },
 }
 """In SI units, of each the usual word first; None: counts of an encoder."""
 TIME_UNITS: Mapping[str, Any] = _UNITS['time']
 _KNOWN = {unit for units in _UNITS.values() for unit in units}
 _NO_UNIT = {'-', 'none', 'n/a', '1', ':'}
+_SPEEDS = {'rpm', 'rps', 'dps', 'cps'}
+_SCALED = re.compile(r'(?<![^\W_])(?:\d+\.\d+ ?|\d+)([^\W\d_]+|°)$')
+"""Numbers of a unit, as in rotor_0.1deg, which are no part of a name."""
 _BRACKETS = re.compile(r'[\[(]\s*([^\])]*?)\s*[\])]')
 _CAMEL = re.compile(r'[A-Z]+(?![a-zµ])|[A-Z]?[^\W\d_A-Z]+|\d+|°')
 _MOTEUS = {'position', 'torque', 'q_current'}
@@ -90,6 +98,7 @@ class Column(NamedTuple):
     unit: str  # empty where nothing is known
     on_rotor: bool
     on_output: bool  # whether its name says so
+    borrowed: bool = False  # whether only the other angle has the unit
 
 
 class ColumnsError(ValueError):
@@ -155,6 +164,15 @@ def find_columns(
     }
 
 
+def described(role: str, column: Column) -> str:
+    """Say of a column what is taken for its unit, and on which side of the gear it is."""
+    unit = column.unit + ', assumed' * column.borrowed
+    unit = unit or {'torque': 'N·m'}.get(role, 'rad, assumed')
+    side = ' of the rotor' if column.on_rotor else ' at the output'
+    side = side if role in {'angle', 'torque'} else ''
+    return f'{role}{side} [{unit.replace("nm", "N·m")}] from {column.name}'
+
+
 def known_units(cells: Sequence[str]) -> list[str]:
     """Return the units in the cells of a row, if most of them are known; otherwise nothing."""
     units = [_unit(cell) for cell in cells]
@@ -163,7 +181,7 @@ def known_units(cells: Sequence[str]) -> list[str]:
 
 
 def _column(role: str, name: str, given: Sources, common: str, below: Mapping[str, str]) -> Column:
-    words, unit = _split(name)
+    (words, unit), own = _split(name), ''
     elsewhere = below.get(name, '')
     unit = elsewhere[1:] if elsewhere[:1] == '=' else unit or elsewhere or _unknown(role, words)
     if unit and unit not in _UNITS[role] and not (given.unit and role in _ANGULAR):
@@ -171,7 +189,7 @@ def _column(role: str, name: str, given: Sources, common: str, below: Mapping[st
         option = '; or give it with --angle-unit' if role in _ANGULAR else ''
         raise ValueError(f'{name}: the unit {unit} is not known; known: {listed}{option}')
     if role in _ANGULAR:
-        unit = given.unit or unit or common
+        own, unit = given.unit or unit, given.unit or unit or common
         if not unit and not _role(name)[0]:
             raise ValueError(
                 f'{name} does not say that it is an angle: give its unit with --angle-unit, or as '
@@ -190,7 +208,8 @@ def _column(role: str, name: str, given: Sources, common: str, below: Mapping[st
     on_output = bool(set(words) & set(_OUTPUT))
     # The current of a motor says a torque of either side.
     on_rotor = given.on_rotor or (bool(set(words) & set(_ROTOR)) and 'current' not in words)
-    return Column(name, scale, unit, on_rotor and not on_output, on_output)
+    borrowed = role in _ANGULAR and bool(unit) and not own
+    return Column(name, scale, unit, on_rotor and not on_output, on_output, borrowed)
 
 
 def _role(name: str) -> tuple[str, tuple[int, ...]]:
@@ -206,7 +225,7 @@ def _role(name: str) -> tuple[str, tuple[int, ...]]:
     sides = [one for one, those in (('rotor', _ROTOR), ('output', _OUTPUT)) if {*told} & {*those}]
     kinds = [one for one, those in (('torque', _TORQUE), ('angle', _ANGLE)) if {*told} & {*those}]
     unclear = len(kinds) > 1 or (len(sides) > 1 and 'torque' not in kinds and 'joint' not in told)
-    if not told or not {*told} <= {*_KNOWN_WORDS} or '/' in unit or unclear:
+    if not told or not {*told} <= {*_KNOWN_WORDS} or '/' in unit or unit in _SPEEDS or unclear:
         return '', ()
     if 'current' in told and 'torque' not in kinds:
         return '', ()
@@ -236,6 +255,8 @@ def _split(name: str) -> tuple[tuple[str, ...], str]:
     text = name.strip().strip('%#"').replace('{name==', '{')  # of a joint, in paths of Foxglove
     text = re.sub(r'\\\w+:\d+$', '', text)  # device and raster, of INCA
     text = re.sub(r'(?i)(?<![a-z])([mk]?n)[-_.*·⋅](m?m)(?![a-z])', r'\1\2', text)
+    if (scaled := _SCALED.search(text.lower())) and scaled[1] in _KNOWN:
+        return _split(text[: scaled.start()])[0], scaled[0].replace(' ', '')
     bracketed = _BRACKETS.findall(text)[::-1]
     others = [one for one in bracketed if not one.isdigit() and one.lower() not in _KNOWN_WORDS]
     unit = next((u for u in map(_unit, bracketed) if u in _KNOWN), '')

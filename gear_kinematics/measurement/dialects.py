@@ -15,7 +15,14 @@ from typing import IO, Any, NamedTuple
 
 import numpy as np
 
-from gear_kinematics.measurement.cells import Element, cells_of, elements_of, numbers, weight
+from gear_kinematics.measurement.cells import (
+    MOMENT,
+    Element,
+    cells_of,
+    elements_of,
+    numbers,
+    weight,
+)
 from gear_kinematics.measurement.columns import known_units, time_among
 
 _MOST_ROWS = 1_000_000  # 15 minutes at 1 kHz, of up to 250 bytes a row beside those of pandas
@@ -206,12 +213,16 @@ def _layout(lines: Sequence[str]) -> _Layout:
 
     begins = (k for k, place in enumerate(filled) if all(map(has_numbers, filled[k : k + _BEGIN])))
     if not numeric or (first := next(begins, None)) is None:
-        raise ValueError('no samples in it')
+        raise ValueError(
+            'no rows of numbers: write it as a CSV with a row of names and numbers without units'
+        )
     start = filled[first]
     above = [line for line in lines[:start] if line.strip() and line[:4].lower() != 'sep=']
     row, *_ = samples = [rows[place] for place in filled[first:]]
     if above:
         found = _names(above, separator, max(map(len, samples)), 1 + max(numeric))
+        if not found[0][0] and MOMENT.fullmatch(row[0]):
+            found[0][0] = 'time'  # the index of pandas
     else:
         found = _joint_state(row)
     return _Layout(separator, point, start, row, *found)

@@ -16,9 +16,9 @@ import numpy as np
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_turns
 from gear_kinematics.measurement.clocks import FASTEST, MOST, stamps, with_unit
 from gear_kinematics.measurement.columns import (
-    Column,
     ColumnsError,
     Sources,
+    described,
     find_columns,
     nanoseconds_beside,
 )
@@ -51,12 +51,13 @@ _BLOCKS, _LIKE = 10, (0.08, 1.0)
 _WHOLE = 50  # levels that show whole numbers to be no coincidence
 _TRIED, _FEWEST, _ROWS = 12, 10, 10_000
 """Columns among which two are sought for an example, least and most rows that tell them."""
-_NO_ANGLE = re.compile(r'(?i)torq|effort|curr|vel|speed|rpm|temp|time|stamp|target|goal|cmd|^t$')
+_NO_ANGLE = re.compile(
+    r'(?i)torq|effort|curr|vel|speed|rpm|/ ?s|temp|time|stamp|target|goal|cmd|elec|^t$'
+)
 """In names of columns that are not proposed as angles."""
 _LIKELY = re.compile(r'(?i)pos|ang|enc|theta|winkel|(rad|deg|rev|inc|cnt|counts)\b')
 """In names of those that are proposed before others."""
-_COUNTS = '--rotor-counts', '4096', '--output-counts', '4096'
-"""Words for columns with whole numbers, for an example."""
+_COUNTS = '--rotor-counts', '4096', '--output-counts', '4096'  # an example for whole numbers
 _SHOWN = 800  # characters of an error, as those of a file can be many
 
 
@@ -179,7 +180,7 @@ class _Samples:
         base = self.series['output' if 'output' in found else 'angle']
         self.used = len(base.stamp)
         self.said = [f'time [{clock.unit}] from {clock.name}'] if clock else []
-        self.said += map(_described, found, found.values())
+        self.said += map(described, found, found.values())
         rows = fewest if apart else len(data[next(iter(base.values))])
         self.said.append(f'{self.used} of {rows} rows')
 
@@ -204,21 +205,27 @@ class _Samples:
                 of_output = role == 'output'
                 known = self._sources.output_counts if of_output else self._sources.rotor_counts
                 steps[role] = Step(TURN / known, seen=False) if known else self._shown[role]
-            cause = '' if column.unit else self._against(role, steps.get(role))
-            if cause:
-                option = f"as in --torque-column '{column.name} [Nmm]'"
-                how = option if role == 'torque' else 'with --angle-unit'
+            if cause := self._against(role, steps.get(role)):
+                unit = 'Nmm' if role == 'torque' else 'counts'
+                option = f"as in --{role}-column '{column.name} [{unit}]'"
+                how = option if role == 'torque' or column.borrowed else 'with --angle-unit'
                 raise ValueError(f'{column.name} has {cause}: give its unit {how}')
         return steps
 
     def _against(self, role: str, step: Step | None) -> str:
         """What shows that numbers without a unit are not in rad or N·m, if anything."""
-        stamp, values = self.series[role].stamp, self.series[role].values[role]
-        moved, whole = np.abs(np.diff(values)), bool(np.all(values == np.round(values)))
+        column, stamp = self.found[role], self.series[role].stamp
+        if column.unit and not column.borrowed:
+            return ''
+        values = self.series[role].values[role]
+        numbers = np.round(values / column.scale, 6)  # as they are in the table
+        moved, whole = np.abs(np.diff(values)), bool(np.all(numbers == np.round(numbers)))
         if not step:
             return 'whole numbers' if whole and len(np.unique(values)) > _WHOLE else ''
         if whole and np.ptp(values) > TURN:
             return 'whole numbers, such as counts'
+        if column.borrowed:
+            return ''
         if _HALF_TURN < np.max(moved, initial=0.0) <= np.ptp(values) <= 2.0 * _HALF_TURN:
             return 'turns of 360, such as degrees'
         if unit := other_unit(values, step).partition(':')[0]:
@@ -300,13 +307,6 @@ def _error(rotor: Array, output: Array) -> float:
     delay = error @ speed / max(speed @ speed, _LEAST)
     spreads = [np.ptp(np.quantile(e - delay * v, (1.0 - MOST, MOST))) for e, v in parts]
     return float(np.median(spreads))
-
-
-def _described(role: str, column: Column) -> str:
-    unit = column.unit or {'torque': 'N·m'}.get(role, 'rad, assumed')
-    side = ' of the rotor' if column.on_rotor else ' at the output'
-    side = side if role in {'angle', 'torque'} else ''
-    return f'{role}{side} [{unit.replace("nm", "N·m")}] from {column.name}'
 
 
 def _advice(path: Path, table: TableFile, sources: Sources, ratio: Fraction) -> str:

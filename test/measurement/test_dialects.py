@@ -177,6 +177,25 @@ ENCODERS = {
         [t, r, o], 'time,rotor,output',
         (lambda v: (NOON + timedelta(seconds=v)).strftime('%m/%d/%Y %I:%M:%S.%f %p'),
          *DECIMALS[1:])),
+    '12 hours, over noon': lambda t, r, o: written(
+        [t, r, o], NAMES, (lambda v: (NOON + timedelta(seconds=v)).strftime('%I:%M:%S.%f %p'),
+        *DECIMALS[1:])),
+    'minutes and seconds': lambda t, r, o: written(
+        [t, r, o], NAMES, (lambda v: moment(' ')(v)[14:], *DECIMALS[1:])),
+    'dates of two digits': lambda t, r, o: in_german(written(
+        [t, r, o], 'time;rotor;output',
+        (lambda v: (NOON + timedelta(seconds=v)).strftime('%d.%m.%y %H:%M:%S,%f').translate(
+            str.maketrans('.,', ',.')), *DECIMALS[1:]), ';')),
+    'days of a workbook': lambda t, r, o: written(
+        [46352.4 + t / 86400.0, r, o], NAMES, ('{:.11f}', *DECIMALS[1:])),
+    'index of pandas': lambda t, r, o: written(
+        [t, r * 1e6, o * REV * 1e3], ',rotor_urad,output_mrev', (moment(' '), *DECIMALS[1:])),
+    'tuples of bagpy': lambda t, r, o: 'Time,header.seq,name,position,velocity\n' + ''.join(
+        f'{at:.6f},7,"(\'m1\', \'out\')","({rotor:.5f}, {out:.5f})",()\n'
+        for at, rotor, out in zip(t + 1.79e9, r, o, strict=True)),
+    'arrays of numpy, and feedback': lambda t, r, o: written(
+        [t, r * DEG, o * DEG], 't,MotorPosFb(deg),LoadPos/ave (deg)',
+        ('{:.2f}', '[{:.5f}]', '{:.5f}')),
     'time of the day': lambda t, r, o: written(
         [t, r, o], NAMES, (lambda v: moment(' ')(v)[11:], *DECIMALS[1:])),
     'seconds and nanoseconds': lambda t, r, o: written(
@@ -336,6 +355,10 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         (lambda t, r, o: written([10 * t, r * DEG % 360.0, o * DEG], NAMES), 'turns of 360'),
         (lambda t, r, o: written([t, r * REV % 1.0, o * REV], NAMES), r'turns \(209 wraps at 1'),
         (lambda t, r, o: written([t, np.round(r * 1e4), o], NAMES), 'such as counts'),
+        (lambda t, r, o: written([t, r * DEG, o], 'time,rotor_0.1deg,output'),
+         'the unit 0.1deg is not known'),
+        (lambda t, r, o: written([t, np.round(r * 1e4), o * DEG], 'time,rotor,output [deg]'),
+         'such as counts: give its unit as in --rotor-column .rotor .counts.'),
         (lambda t, r, o: written([t, r, o], 'time,rotor [gon],output'), 'unit gon is not known'),
         (lambda t, r, o: written([t, r, o], NAMES, ('26.11.2026 {:.0f}', *DECIMALS[1:])),
          'the times in time: no numbers nor ISO 8601'),
