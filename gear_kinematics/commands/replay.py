@@ -44,7 +44,8 @@ def run(options: argparse.Namespace) -> ExitCode:
         shown = sys.stderr.isatty() and not (options.quiet or options.loop)
         total = count_due(bag, [topic]) if shown else None
         if not (options.no_wait or options.quiet):
-            print(f'waiting for a subscriber on {options.published}', file=sys.stderr)
+            waiting = f'waiting for a subscriber on {options.published}'
+            print(f'{waiting}, or end this and give its topic with --as', file=sys.stderr)
         with (
             stopped_by_signals() as stopped,
             message_progress(options.bag.name, quiet=options.quiet) as progress,
