@@ -170,7 +170,7 @@ def test_rows_that_are_not_finite_are_left_out_and_reported(tmp_path, config, an
 @pytest.mark.parametrize(
     ('content', 'complaint'),
     [
-        ('', 'no samples in it'),
+        ('', 'no rows of numbers'),
         ('angle,torque\nx,4\n', 'no usable rows'),
         ('a,b\n1,2\n', 'neither an angle and a torque nor a rotor and an output'),
         ('angle,angle,torque\n1,2,3\n', "more than one column 'angle'"),
