@@ -5,13 +5,15 @@ The sources are the whole project, so that links lead to the same place here and
 Markdown is read as it is.
 """
 
+import logging
 import os
 import re
 import shlex
-import subprocess
-import sysconfig
+from contextlib import chdir, redirect_stderr, redirect_stdout
+from io import StringIO
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 from docutils import nodes
 from docutils.parsers.rst import Directive
@@ -33,10 +35,10 @@ _ALIASES = {
 """What numpy's aliases are spelled out as, and what stands in the sources."""
 
 _ROOT = Path(__file__).parents[1]
-_PROGRAMS = sysconfig.get_path('scripts')
 _STYLES = re.compile(r'\x1b\[[\d;]*m')
 _WIDTH = 92  # characters
 _UNUSABLE = 2  # exit code
+logging.getLogger('numexpr').setLevel(logging.WARNING)  # it says how many processors there are
 
 _FOLDERS = ('bags', 'benchmark', 'docs', 'docs/reference', 'docs/reference/gearkin')
 
@@ -68,21 +70,23 @@ class _Run(Directive):
     has_content = True
 
     def run(self) -> list[nodes.Node]:
-        """Run it in the folder of the project."""
+        """Run it in the folder of the project, in this process, which has imported it all."""
         command = ' '.join(line.rstrip('\\').strip() for line in self.content)
-        done = subprocess.run(  # noqa: S603, from these pages
-            shlex.split(command),
-            cwd=_ROOT,
-            env=os.environ
-            | {'PATH': f'{_PROGRAMS}:{os.environ["PATH"]}'}
-            | {'FORCE_COLOR': '1', 'TERM': 'xterm', 'COLUMNS': str(_WIDTH)},
-            check=False,
-            capture_output=True,
-            text=True,
-        )
-        if done.returncode == _UNUSABLE:
-            raise self.error(done.stderr)
-        lines = (line.rstrip() for line in _STYLES.sub('', done.stdout).splitlines())
+        program, *words = shlex.split(command)
+        if program != 'gearkin':
+            raise self.error(f'{program} is not gearkin')
+        terminal = {'FORCE_COLOR': '1', 'TERM': 'xterm', 'COLUMNS': str(_WIDTH)}
+        output, errors = StringIO(), StringIO()
+        with (
+            chdir(_ROOT),
+            patch.dict(os.environ, terminal),
+            redirect_stdout(output),
+            redirect_stderr(errors),
+        ):
+            code = cli.main(words)
+        if code == _UNUSABLE:
+            raise self.error(errors.getvalue())
+        lines = (line.rstrip() for line in _STYLES.sub('', output.getvalue()).splitlines())
         text = '\n'.join([f'$ {self.content[0]}', *self.content[1:], *lines])
         return [nodes.literal_block(text, text)]
 
