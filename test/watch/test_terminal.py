@@ -122,12 +122,3 @@ def test_init_lists_the_joints_and_asks_in_a_terminal(tmp_path):
         terminal.wait_for(f'mine.yaml is for the joint m1 on {MOTOR}, with the gear ratio 101/2')
         assert terminal.end() == 0
         assert "gear_ratio: '101/2'\n" in (tmp_path / 'mine.yaml').read_text('utf-8')
-
-
-def test_init_without_an_answer_writes_nothing(tmp_path):
-    with Person(tmp_path, 'init', '--topic', MOTOR, '--joint', 'm1') as terminal:
-        terminal.wait_for('Ratio of the gear, .*: ')
-        terminal.type('\x04')
-        terminal.wait_for('gearkin: no answer was given, and nothing is written')
-        assert terminal.end() == 2
-    assert not list(tmp_path.iterdir())

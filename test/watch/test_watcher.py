@@ -746,6 +746,14 @@ def test_init_asks_for_the_ratio_of_each_joint(listening, monkeypatch, capsys):
     assert ratios == ['-101', '-101', '101/2']
 
 
+def test_init_without_an_answer_writes_nothing(listening, monkeypatch, capsys):
+    monkeypatch.setattr(init, 'can_ask', lambda: True)
+    monkeypatch.setattr('sys.stdin', io.StringIO())  # as after Ctrl-D
+    assert main(['init', '--joint', 'm1']) == 2
+    assert 'no answer was given, and nothing is written' in capsys.readouterr().err
+    assert not list(listening.iterdir())
+
+
 @pytest.mark.usefixtures('listening')
 def test_init_questions_velocities_that_contradict_the_positions(monkeypatch, capsys):
     moving = [
