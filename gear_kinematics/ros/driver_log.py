@@ -2,7 +2,7 @@
 """The log of the rotor's driver: that it is missing, has stopped, or has returned."""
 
 import math
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Mapping
 
 from rclpy.node import Node
@@ -44,6 +44,7 @@ class DriverLog:
 
     def _warn_of_missing(self) -> None:
         """Name once each joint of an arm that messages with others have lacked for too long."""
+        lacking = defaultdict[str, dict[str, str]](dict)  # joints by actuators, by what is there
         for name, each in self._inputs.items():
             own, before = each.received - each.of_others, self._own[name]
             lacks = name and each.of_others and own == before
@@ -51,7 +52,10 @@ class DriverLog:
             if self._lacking[name] == max(2, math.ceil(each.parameters.input_timeout)):
                 joint, there = each.parameters.rotor_joint, self._joints()
                 hint = '; other joints still come' if joint in there else among(joint, there)
-                self._log.warning(labelled(name, f'no joint {joint!r} on {self._topic}{hint}'))
+                lacking[hint][name] = repr(joint)
+        for hint, joints in lacking.items():
+            text = f'no joint {", ".join(joints.values())} on {self._topic}{hint}'
+            self._log.warning(labelled(', '.join(joints), text))
 
     def _jumped(self) -> dict[str, int]:
         return {name: each.plausibility.jumps for name, each in self._inputs.items()}

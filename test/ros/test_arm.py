@@ -146,16 +146,18 @@ def test_node_publishes_one_message_of_all_joints_over_dds(tmp_path):
         assert peer.get('elbow.rotor_zero', 'shoulder.rotor_zero') == [2.5, 0.0]
 
 
-def test_a_joint_that_messages_with_others_lack_is_logged_once(sent, capfd):
+def test_joints_that_messages_with_others_lack_are_logged_once(sent, capfd):
     node = sent(**{'elbow.rotor_joint': 'M2', 'input_timeout': 1.0}).node
-    messages = [{'m1': 0.0, 'm2': 0.0}] * 4 + [{'m1': 0.0}] * 4
+    both = [{'m1': 0.0, 'm2': 0.0}] * 4
+    messages = both + [{'m1': 0.0}] * 4 + both + [{'m3': 0.0}] * 4
     for number, positions in enumerate(messages, 1):
         drive(node, number * MILLISECOND, **positions)
         node._report()
         if number == 3:
             node.set_parameters([Parameter('elbow.rotor_joint', value='m2')])
     said = [line for line in capfd.readouterr().err.splitlines() if 'no joint' in line]
-    assert [line.partition('elbow: ')[2] for line in said] == [
-        "no joint 'M2' on /arm/rotor_state; did you mean `m2`? there are: m1, m2",
-        "no joint 'm2' on /arm/rotor_state; other joints still come",
+    assert [line.partition(']: ')[2] for line in said] == [
+        "elbow: no joint 'M2' on /arm/rotor_state; did you mean `m2`? there are: m1, m2",
+        "elbow: no joint 'm2' on /arm/rotor_state; other joints still come",
+        "shoulder, elbow: no joint 'm1', 'm2' on /arm/rotor_state; other joints still come",
     ]
