@@ -13,7 +13,8 @@
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-python3 -m venv "$folder/venv"
+cd "$folder" # epicallypowerful writes a log where it is started
+python3 -m venv venv
 "$folder/venv/bin/pip" install --quiet --disable-pip-version-check numpy==2.4.6 python-can==4.6.1 scipy==1.17.1 smbus2==0.6.1 \
     tqdm==4.67.1 msgspec==0.22.0
 "$folder/venv/bin/pip" install --quiet --disable-pip-version-check --no-deps epicallypowerful==1.0.7 robstride-dynamics==0.0.1
