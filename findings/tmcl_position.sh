@@ -4,7 +4,7 @@
 #
 # A Trinamic module takes commands of nine bytes, the last of which is the sum of the others in eight bits. Expected: each target
 # from -2^31 to 2^31 - 1 can be sent. What happens: the sum is not cut to eight bits, so that struct.error is raised where address,
-# command and value together exceed 255: with motor 1, from 250 on, a two hundredth of a turn at 256 microsteps. What is negative
+# command and value together exceed 255: with motor 1, from 250 on, 1/205 of a turn at 256 microsteps. What is negative
 # is an error too, and is read without its sign, as a speed back of -100 is 4294967196. An error that the
 # module answers is a NameError. A line answers here as a module does.
 # For us: pytrinamic 0.2.26 sends and reads both right.
