@@ -149,8 +149,10 @@ def missing_topic(
     of_type = {topic for topic, kind in topics.items() if kind == wanted}
     text = f'{path}: no topic {name}' + (f' of type {wanted}' if wanted else '') + ' in it'
     if name in topics:
-        text += f', it is of type {topics[name]}'
+        text += f', it is of {f"type {topics[name]}" if topics[name] else "no known type"}'
     elif suggest:
         text += nearest(name, sorted(of_type or topics))
     there = f'there are: {listed(topics, of_type)}' if topics else 'there are no topics'
+    if '' in topics.values():
+        there += '; the types of some are not recorded, as those of channels without a schema'
     return BagError(f'{text}{"" if text.endswith("?") else ";"} {there}')

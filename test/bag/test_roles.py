@@ -1,6 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Finding the topics of a recording by their names and types."""
 
+import re
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
@@ -138,6 +139,16 @@ def test_a_missing_topic_is_told_with_what_is_there(topics, name, kind, error):
     with pytest.raises(BagError) as raised:
         bag.type_of(name, kind)
     assert str(raised.value) == f'some.mcap: {error}'
+
+
+@pytest.mark.parametrize(
+    ('name', 'cause'), [('/b', 'in it;'), ('/motor', 'in it, it is of no known type;')]
+)
+def test_topics_without_a_type_are_said_to_have_none(name, cause):
+    bag = described({'/motor': '', '/a': JOINT_STATE})
+    missing = f'{re.escape(cause)} there are: /a, /motor; the types of some are not recorded, .*$'
+    with pytest.raises(BagError, match=missing):
+        bag.type_of(name, JOINT_STATE)
 
 
 def test_topics_of_the_wanted_type_are_named_first():
