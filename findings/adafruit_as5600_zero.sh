@@ -55,7 +55,7 @@ class Encoder:
 bus = Encoder()
 before = bus.angle()
 encoder = AS5600(bus)
-print('angle before', before, 'and after', encoder.angle, 'zero', encoder.z_position, 'hysteresis', encoder.hysteresis, 'burnt', encoder.zm_count)
+print('angle before', before, 'and after', encoder.angle, 'hysteresis', encoder.hysteresis, 'burnt', encoder.zm_count)
 assert before == 500 and encoder.angle == 1500
 assert encoder.z_position == 0 and encoder.hysteresis == 0 and encoder.zm_count == 1
 print('turned by', round((encoder.angle - before) / 4096 * 360, 1), '°')
