@@ -77,16 +77,23 @@ def load_calibration(
 
 
 def files_of(
-    options: argparse.Namespace, configs: Mapping[str, NodeParameters], bag: Path | None
+    options: argparse.Namespace,
+    configs: Mapping[str, NodeParameters],
+    bag: Path | None,
+    node: str = '',
 ) -> dict[str, bytes]:
-    """Return parameters and calibrations as files to keep beside a new recording."""
+    """Return parameters and calibrations as files to keep beside a new recording.
+
+    They are those of one of several nodes, if its full name is given.
+    """
     files, used = dict[str, bytes](), list[NodeParameters]()
     for actuator, config in configs.items():
-        name = f'{actuator}_{CALIBRATION}' if actuator else CALIBRATION
+        owner = node[1:].replace('/', '_')
+        name = '_'.join(filter(None, (owner, actuator, CALIBRATION)))
         if calibration := calibration_path(options, config, bag):
             files[name] = calibration.read_bytes()
         used.append(replace(config, calibration=name if calibration else '', home_file=''))
-    return {default_config().name: as_file(used).encode(), **files}
+    return {default_config().name: as_file(used, node or '/**').encode(), **files}
 
 
 def add_jobs(ways: argparse._MutuallyExclusiveGroup) -> None:

@@ -109,10 +109,13 @@ def _ratios(options: argparse.Namespace, joints: Sequence[str]) -> dict[str, Gea
         if not (ratio := given.get(joint, given.get(''))):
             if not can_ask():
                 example = f'{joint}=-19' if options.arm else '-19'
-                remedy = f'Repeat with it, such as --ratio {example} or --teeth 80/76'
+                remedy = f'Give it, such as --ratio {example} or --teeth 80/76'
                 raise ValueError(f'what is the ratio of {gear}? {remedy}')
             again = f' (Enter: {before})' if before else ''
-            question = f'Ratio of {gear}, negative if the output turns against the rotor{again}: '
+            question = (
+                f'Exact ratio of {gear}, such as 1457/26, negative if the output turns against '
+                f'the rotor{again}: '
+            )
             ratio = GearRatio.parse(ask(question) or before)
             before = str(ratio)
         ratios[joint] = ratio

@@ -2,12 +2,13 @@
 """`gearkin record`: what the running nodes hear and publish, as a recording."""
 
 import argparse
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Console, warn_of_shared_memory
-from gear_kinematics.parameters import NODE
+from gear_kinematics.parameters import NODE, NodeParameters
 from gear_kinematics.report.document import counted
 from gear_kinematics.wire.nearest import listed
 
@@ -42,10 +43,8 @@ def run(options: argparse.Namespace) -> ExitCode:
             loads = bool(options.config and any(each.preload for each in configs.values()))
             recorder = Recorder(node, bag, options.node, loads=loads)
             show_recording(recorder, Console(), stopped)
-            if not files and len(recorder.gears) == 1:
-                with suppress(OSError):  # the calibration may be on another computer
-                    if running := parameters_of(node, *recorder.gears):
-                        files = bags.files_of(options, running, None)
+            gears = sorted(recorder.gears)
+            files = files or kept(options, {gear: parameters_of(node, gear) for gear in gears})
         for name, content in files.items():
             bag.add_file(name, content)
         heard = recorder.heard
@@ -66,5 +65,23 @@ def run(options: argparse.Namespace) -> ExitCode:
     if missing:
         print(f'nothing came on {missing}')
     given = '' if files else ' --config FILE, with the parameter file of the node'
-    print(f'prove it: gearkin validate {options.out}{given}')
+    for gear in gears:
+        chosen = f' --node {gear}' * (len(gears) > 1)
+        print(f'prove it: gearkin validate {options.out}{chosen}{given}')
     return ExitCode.DONE
+
+
+def kept(
+    options: argparse.Namespace, running: Mapping[str, Mapping[str, NodeParameters]]
+) -> dict[str, bytes]:
+    """Return the parameters of the actuators of running nodes as files to keep beside a bag.
+
+    Several nodes, by their full names, share the parameter file. One that has not answered has no
+    actuators, and is left out.
+    """
+    files: dict[str, bytes] = {}
+    for gear, configs in running.items():
+        with suppress(OSError):  # the calibration may be on another computer
+            own = bags.files_of(options, configs, None, gear * (len(running) > 1))
+            files |= {name: files.get(name, b'') + own[name] for name in own if configs}
+    return files

@@ -71,15 +71,15 @@ def chosen(actuators: Mapping[str, NodeParameters], name: str) -> dict[str, Node
     return {name: actuators[name]} if name else dict(actuators)
 
 
-def as_file(actuators: Iterable[NodeParameters]) -> str:
-    """Write a parameter file for every node, from which `load_actuators` reads the same."""
+def as_file(actuators: Iterable[NodeParameters], node: str = '/**') -> str:
+    """Write a parameter file for a node or for all, from which `load_actuators` reads the same."""
     values: dict[str, Any] = {}
     names = []
     for each in actuators:
         names += [each.actuator] if each.actuator else []
         for name, value in each.values().items():
             values[name if name in COMMON else full_name(each.actuator, name)] = value
-    document = {'/**': {'ros__parameters': values | {'actuators': names}}}
+    document = {node: {'ros__parameters': values | {'actuators': names}}}
     return str(yaml.dump(document, Dumper=Dumper, sort_keys=False))
 
 

@@ -35,7 +35,8 @@ def new_config(
         f'# For the joint {_one_line(joint)} on {_one_line(topic)}, with the gear ratio {ratio}.\n'
         '# Start the node with\n'
         f'#     {start_command(topic, name)}\n'
-        '# Check the mechanism, rotor_direction and rotor_encoder. SI units: m, rad, s.\n' + body
+        f'# Check {"the mechanism, " if teeth else ""}rotor_direction and rotor_encoder. '
+        'SI units: m, rad, s.\n' + body
     )
 
 

@@ -53,9 +53,13 @@ class FindingCause(Enum):
         '`{actuator}.rotor_joint: {other}`'
     )
     # The rotor's count, from where the outputs take it
-    ALL_MOVED_BY_ENCODER = 'all output angles are moved by {angle:.12g} rad, by the output encoder'
-    ALL_MOVED_BY_HOMING = 'all output angles are moved by {angle:.12g} rad, as after homing'
-    HOMED = 'compared as after homing[, from {moment}]'
+    ALL_MOVED_BY_ENCODER = (
+        'from the start, output angles are moved by {angle:.12g} rad, by the output encoder'
+    )
+    ALL_MOVED_BY_HOMING = (
+        'from the start, output angles are moved by {angle:.12g} rad, as by another rotor_zero'
+    )
+    HOMED = 'later outputs have the new zero of a node that was homed[, at {moment}]'
     LAST_ALONE = 'only the last output is off'
     TURNS_TAKEN = 'the turns of the single-turn encoder are taken from the outputs'
     ENCODER_AGREES = 'the outputs agree with output_encoder'

@@ -226,7 +226,7 @@ def test_the_recording_that_the_readme_makes_is_proven(start, tmp_path):
     done = gearkin_here('validate', 'monday', cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, '')
     assert 'm1, the only joint on /motor/joint_states, is taken' in done.stdout
-    moved = f'all output angles are moved by {12.3 / 19.0:.12g} rad, as after homing'
+    moved = f'output angles are moved by {12.3 / 19.0:.12g} rad, as by another rotor_zero'
     assert moved in done.stdout
     assert gearkin_here('validate', 'monday', '--strict', cwd=tmp_path).returncode == 1
 

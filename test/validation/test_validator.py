@@ -429,7 +429,8 @@ def test_what_is_wrong_with_all_messages_is_named(recorded, config, topic, edit,
 def test_an_offset_of_the_output_angle_alone_is_named(recorded, config):
     report = validate(change_all(recorded, OUTPUT, add('position', 0.125)), config)
     assert not report.passed
-    assert texts(report) == ['all output angles are moved by 0.125 rad, as after homing']
+    moved = 'from the start, output angles are moved by 0.125 rad, as by another rotor_zero'
+    assert texts(report) == [moved]
     assert [topic.passed for topic in report.topics] == [True, False]
 
 
@@ -464,8 +465,8 @@ def test_the_offset_that_homing_leaves_passes_and_is_said(recorded, config, chan
     *unjudged, said = texts(report)
     poses = f'{POSES} is not judged: only the ratio of the gear is known'
     assert unjudged == [poses] * bool(changes)
-    assert said.startswith(f'all output angles are moved by {-0.75 / 19:.9g}')
-    assert said.endswith(' rad, as after homing')
+    assert said.startswith(f'from the start, output angles are moved by {-0.75 / 19:.9g}')
+    assert said.endswith(' rad, as by another rotor_zero')
     failed = validate(recorded, homed, strict=True)
     assert failed.verdict == Verdict.FAIL
     assert not any(topic.passed for topic in failed.topics)
@@ -489,7 +490,7 @@ def test_homing_during_a_recording_passes_and_is_said(recorded, config, encoder,
     zero = position + 19 * 0.25  # there, the output is at the angle of homing
     [said] = [finding.text for finding in findings(report)]
     time = (rotor[place][1] - rotor[0][1]) / SECOND
-    assert said == f'compared as after homing, from {time:+.3f} s'
+    assert said.endswith(f' of a node that was homed, at {time:+.3f} s')
     assert not validate(messages, config, strict=True).passed
     # A step to another angle is no homing, nor is one of the output alone.
     assert not validate(messages, replace(config, home_angle=0.2)).passed

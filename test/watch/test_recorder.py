@@ -1,8 +1,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """`gearkin record` beside a node and a driver that begin later, and where there is nothing."""
 
+import argparse
 import contextlib
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -12,7 +14,8 @@ from watching import ENCODER, JUDGED, MOTOR, NAMESPACE, NODE, driving, gearkin, 
 
 from gear_kinematics.bag import Bag
 from gear_kinematics.commands.cli import main
-from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.commands.record import kept
+from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.watch import recorder as module
 from gear_kinematics.watch.polled import Taken
 from gear_kinematics.watch.recorder import Recorder
@@ -87,6 +90,16 @@ def test_driver_that_starts_later_finds_a_subscription_of_its_reliability(offere
     assert [each.qos.reliability for each in opened] == [offered]
     _, polled = recorder._open['/motor']
     assert [polled._subscription] == opened
+
+
+def test_the_parameters_of_each_node_that_answers_are_kept(tmp_path):
+    ratios = {'/gear': '-19', '/left/gear': '1457/26'}
+    default = NodeParameters.load(default_config())
+    running = {name: {'': replace(default, gear_ratio=ratios[name])} for name in ratios}
+    files = kept(argparse.Namespace(calibration=None), running | {'/right/gear': {}})
+    (path := tmp_path / 'actuator.yaml').write_bytes(files.pop('actuator.yaml'))
+    assert not files
+    assert {name: NodeParameters.load(path, name).gear_ratio for name in ratios} == ratios
 
 
 class NoMessage(contextlib.nullcontext):

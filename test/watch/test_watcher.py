@@ -628,7 +628,7 @@ ROTOR = f'which joint is the rotor? {JOINTS}'
         (['--topic', '/odd'], ROTOR),
         (
             ['--joint', 'm1'],
-            'what is the ratio of the gear? Repeat with it, such as --ratio -19 or --teeth 80/76',
+            'what is the ratio of the gear? Give it, such as --ratio -19 or --teeth 80/76',
         ),
         (
             ['-o', 'nowhere/a.yaml', '--joint', 'm1', '--ratio', '-19'],
@@ -710,7 +710,7 @@ def test_init_sets_up_all_motors_of_an_arm(listening, monkeypatch, capsys):
 @pytest.mark.parametrize(
     ('heard', 'arguments', 'cause'),
     [
-        (ARM, ['--ratio', 'shoulder=-3'], 'what is the ratio of the gear of wrist 1? Repeat'),
+        (ARM, ['--ratio', 'shoulder=-3'], 'what is the ratio of the gear of wrist 1? Give it'),
         (ARM, ['--ratio', 'sholder=-3'], "no joint 'sholder'; did you mean `shoulder`?"),
         (ARM, ['--ratio', '-3', '-5'], 'one ratio for all joints, or one for each'),
         (ARM, ['--joint', 'shoulder'], 'leave out --actuator and --joint'),
@@ -740,7 +740,7 @@ def test_init_asks_for_the_ratio_of_each_joint(listening, monkeypatch, capsys):
     monkeypatch.setattr('builtins.input', lambda question: print(question) or next(answers))
     assert main(['init', '--arm']) == 0
     said = capsys.readouterr().out
-    assert 'Ratio of the gear of wrist 1, negative if' in said
+    assert 'ratio of the gear of wrist 1, such as 1457/26, negative if' in said
     assert said.count(' (Enter: -101): ') == 2
     ratios = [each.gear_ratio for each in load_actuators(listening / 'actuator.yaml').values()]
     assert ratios == ['-101', '-101', '101/2']
