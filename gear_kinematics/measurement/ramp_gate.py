@@ -8,8 +8,8 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
 
 from gear_kinematics.measurement.recording import Array, Loading
 from gear_kinematics.measurement.sentences import NAMED, Observation, Observed
@@ -168,4 +168,7 @@ def longest(time: Array, *, timed: bool) -> Observed:
 
 def usual(values: Array) -> Array:
     """Values (n,) without stray ones."""
-    return np.asarray(median_filter(values, _WINDOW, mode='nearest'))
+    middle = _WINDOW // 2
+    windows = sliding_window_view(np.pad(values, middle, 'edge'), _WINDOW).copy()
+    windows.partition(middle, axis=1)
+    return windows[:, middle].copy()
