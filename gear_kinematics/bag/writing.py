@@ -104,7 +104,7 @@ class BagWriter:
         self._entries = 0
 
     def __enter__(self) -> Self:
-        """Create a folder; raises BagError if the path exists already or cannot be written."""
+        """Create a folder, in missing ones too; BagError if it exists or cannot be written."""
         with bag_errors(self.path), ExitStack() as stack:
             if self.path.exists() or self.path.is_symlink():
                 raise ValueError('exists already')
@@ -113,6 +113,8 @@ class BagWriter:
             folder = self.path.parent / f'.{self.path.name}.{secrets.token_hex(4)}'
             # Registered before the folder exists, so that no interruption leaves it behind.
             stack.callback(shutil.rmtree, folder, ignore_errors=True)
+            if not self.path.parent.exists():
+                self.path.parent.mkdir(parents=True)
             folder.mkdir(mode=0o700)
             self._partial = folder / f'{self.path.name}_0'
             self._writer = Writer(self._partial, version=9, storage_plugin=self._storage)

@@ -100,9 +100,8 @@ def test_an_existing_target_is_left_alone(tmp_path):
 
 
 def test_invalid_messages_are_refused(tmp_path):
-    with pytest.raises(BagError, match='nowhere/bag: No such file'):
-        write_bag(tmp_path / 'nowhere' / 'bag', [])
-    with BagWriter(tmp_path / 'bag') as writer:
+    bag = tmp_path / 'logs' / 'may' / 'bag'
+    with BagWriter(bag) as writer:
         writer.add_topic('/a', 'sensor_msgs/msg/JointState')
         for attempt, cause in (
             (lambda: writer.add_topic('/a', 'sensor_msgs/msg/JointState'), 'added already'),
@@ -112,7 +111,9 @@ def test_invalid_messages_are_refused(tmp_path):
             with pytest.raises(BagError, match=cause):
                 attempt()
         writer.write_all([('/a', 1, b'\0\1\0\0')])
-    assert read(tmp_path / 'bag', ['/a']) == [('/a', 1, b'\0\1\0\0')]
+    assert read(bag, ['/a']) == [('/a', 1, b'\0\1\0\0')]
+    with pytest.raises(BagError, match=r'metadata\.yaml/bag: Not a directory'):
+        write_bag(bag / 'metadata.yaml' / 'bag', [])
 
 
 # Copies of topics.
