@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action='store_true',
         help='listen to the drivers while you turn the output by hand as advised; Enter ends it',
     )
-    recording.add_argument('--encoder-joint', metavar='NAME', help='joint of the output')
+    recording.add_argument('--encoder-joint', metavar='NAME', help='joint of the output encoder')
     gear = arguments.group(parser, 'gear')
     known = add_known_ratio(parser, 'ratio to confirm, such as -19')
     known.add_argument('--check', type=Path, metavar='FILE', help='judge this parameter file')

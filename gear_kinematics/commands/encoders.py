@@ -68,11 +68,11 @@ def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
             'the output',
         )
     of_rotor = (
-        'the encoder of the rotor or of the angle column, for angles in counts, such as motor_inc '
-        '(default: from the readings)'
+        'the encoder of the rotor, or of the angle column, where angles are counts, as in '
+        'motor_inc (default: from the readings)'
     )
     for name, encoder in ('rotor', of_rotor), ('output', 'the output encoder'):
-        count, text = arguments.between(1, kind=int), f'steps per turn of {encoder}'
+        count, text = arguments.between(1, kind=int), f'counts per turn of {encoder}'
         group.add_argument(f'--{name}-counts', type=count, metavar='N', help=text)
 
 
@@ -118,8 +118,8 @@ def add_new_config(parser: argparse.ArgumentParser) -> None:
         '--output',
         default=default_config().name,
         metavar='FILE',
-        help='parameter file to create (default: %(default)s); it must not exist, unless it is '
-        'the file of an arm to add an actuator to',
+        help='parameter file to create (default: %(default)s); it must not exist, unless '
+        'an actuator is added to the file of an arm',
     )
     output.add_argument(
         '--actuator',

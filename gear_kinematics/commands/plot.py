@@ -30,8 +30,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     drawing.add_image(parser, '.png, .svg or .pdf')
     motion = arguments.group(parser, 'motion')
     for name, unit, text in (
-        ('degrees', 'DEG', f'rotor angle of the scheme (default: {_DEGREES:g})'),
-        ('speed', 'RAD/S', 'rotor speed of slides (default: 3000 rpm)'),
+        ('degrees', 'DEG', f'rotor angle in the figure scheme (default: {_DEGREES:g})'),
+        ('speed', 'RAD/S', 'rotor speed in the figure slides (default: 3000 rpm)'),
     ):
         motion.add_argument(f'--{name}', type=arguments.finite, metavar=unit, help=text)
 

@@ -68,7 +68,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs='+',
         required=True,
         metavar='N·m/rad',
-        help='stiffness of both branches, or of A and of B, which is at the output; inf: rigid',
+        help='stiffness of both branches, or of A and then of B, whose arm is at the output; '
+        'inf: rigid',
     )
     group.add_argument(
         '--shaft-stiffness',

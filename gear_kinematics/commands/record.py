@@ -17,9 +17,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('out', type=Path, metavar='OUT', help='folder to create')
     arguments.add_config(
         parser,
-        default='those of the running node; a copy is kept in OUT, for validate',
-        chosen=f'record this node alone, such as /left/{NODE}, with its parameters in FILE '
-        '(default: all nodes)',
+        default='those of the running nodes; a copy is kept in OUT for validate',
+        chosen=f'record this node alone, such as /left/{NODE}, and take its parameters '
+        'from FILE (default: all nodes)',
         actuator=arguments.ALL,
     )
     parser.set_defaults(calibration=None)
