@@ -40,7 +40,7 @@ class NodeParameters:
     module: float = parameter('Module of the teeth, m; for their shape', 1e-6, 0.1, read_only=True)
     branches: tuple[Branch, ...] = parameter('Names of the branches', read_only=True)
     gear_ratio: str = parameter(
-        "Exact ratio of a gear that is not ours, such as '-19' or '1457/26'; '': from the teeth",
+        "Exact ratio of a gear of another kind, such as '-19' or '1457/26'; '': from the teeth",
         read_only=True,
         check=lambda text: text and GearRatio.parse(text),
     )
