@@ -234,7 +234,7 @@ class RotorInput:
         turns, angle = split_turns(values[:, 0])
         direction = self._parameters.rotor_direction
         field, finest = self.velocity_field, 0.5 * self.plausibility.noise
-        velocity = field.believed(stamps[:-1], values[:-1], finest)
+        velocity = field.believed(stamps, values[:-1], finest)
         efforts = self.effort_field.all_believed(values[:, 0], values[:, 2])
         if len(stamps):
             _, repeats = order(stamps)

@@ -91,12 +91,13 @@ class VelocityField:
     def believed(self, stamps: Array, values: Array, finest: float) -> Array:
         """Note readings in order of time, and return their velocities, (n,).
 
-        Stamps, (n,), are in ns; values, (n, 3), are position, velocity and effort; `finest` is the
-        smallest step of the encoder, rad. Velocities that contradict the positions become NaN.
+        Stamps, ns, are those of (n,) rows or more; values, (n, 3), are position, velocity and
+        effort; `finest` is the smallest step of the encoder, rad. Velocities that contradict the
+        positions become NaN.
         """
         velocity, start, noted = values[:, 1].copy(), 0, 0
-        times = _listed(stamps)
-        while (row := bisect_left(times, self.due, noted)) < len(times):
+        times, end = _listed(stamps), len(values)
+        while (row := bisect_left(times, self.due, noted, end)) < end:
             self._add(values[noted:row, 1])
             if self.contradicts:
                 velocity[start:row] = np.nan
@@ -203,7 +204,7 @@ class VelocityField:
             self.finding, self.factor = found, factor
             self.contradicts = found is not VelocityMeaning.RIGHT
             if not self.contradicts:
-                self.due += _PAUSE
+                self.due = self._readings[-1][0] + SPAN + _PAUSE
         self._candidate = found
 
     def _meaning_of(self, factor: float) -> VelocityMeaning:

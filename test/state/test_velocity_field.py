@@ -67,6 +67,16 @@ def test_wrong_velocities_of_a_slow_rotor_are_named(factor, speed, meaning):
     assert (found and found.values['meaning']) == meaning
 
 
+@pytest.mark.parametrize('right', [3.3, 3.8])
+def test_velocities_that_become_wrong_are_found_after_a_pause_of_a_second(right):
+    rotor, rate = RotorInput(SETTINGS), 100
+    for k in range(round((right + 1.6) * rate)):
+        velocity = [50.0 if k < right * rate else 477.0]
+        stamp = SECOND + k * SECOND // rate
+        rotor.accept(rotor_bytes(stamp, position=[50.0 * k / rate], velocity=velocity), int)
+    assert rotor.velocity_field.contradicts
+
+
 def stop_and_go(t):
     """Turn by 0.5 rad within 20 ms, ten times a second."""
     return 0.5 * math.floor(10.0 * t) + min(0.5, 25.0 * (t - math.floor(10.0 * t) / 10.0))
