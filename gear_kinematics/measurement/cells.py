@@ -48,18 +48,18 @@ def numbers(column: Any, point: str = '.') -> Any:
     text = text.str.replace(',', '.')
     moments = pd.to_datetime(text, format='ISO8601', utc=True, errors='coerce')
     if not moments.notna().any():
-        of_day = text.where(text.str.fullmatch(MOMENT)).str.lower()
-        hour = of_day.str.extract(r'^(\d+):.*([ap])m$')  # 12:00 AM is midnight
-        later = 12.0 * (hour[1] == 'p') - 12.0 * (hour[0] == '12')
-        plain = of_day.str.rstrip('apm ').str.replace(r'^\d+:\d+[.].*', r'0:\g<0>', regex=True)
-        since = pd.to_timedelta(plain, errors='coerce') + pd.to_timedelta(later, unit='h')
-        moments = pd.Timestamp(0) + since
+        half = text.str.lower().str.extract(r'(?:^| )(\d+):.*([ap])m$')  # 12:00 AM is midnight
+        later = pd.to_timedelta(12.0 * (half[1] == 'p') - 12.0 * (half[0] == '12'), unit='h')
+        of_day = text.where(text.str.fullmatch(MOMENT))
+        text, of_day = text.str.rstrip('APMapm '), of_day.str.rstrip('APMapm ')
+        plain = of_day.str.replace(r'^\d+:\d+[.].*', r'0:\g<0>', regex=True)
+        moments = pd.Timestamp(0) + pd.to_timedelta(plain, errors='coerce') + later
     if not moments.notna().any():  # others, of which 1/2/2026 is in January
         date = r'\d\d?[./-](\d\d?|[A-Za-z]{3})[./-](\d{4}|(?<=[./])\d\d) +\d\d?:\d\d'
         dates = text.where(text.str.match(date))
         dates = dates.str.replace(r'([./])(\d\d)(?= )', r'\g<1>20\2', regex=True)
         day_first = dates.str.match(r'\d+\.').any()
-        moments = pd.to_datetime(dates, dayfirst=day_first, utc=True, errors='coerce')
+        moments = pd.to_datetime(dates, dayfirst=day_first, utc=True, errors='coerce') + later
     moments = moments.dt.tz_localize(None)
     return moments.to_numpy('datetime64[ns]') if moments.notna().any() else values
 

@@ -173,9 +173,9 @@ ENCODERS = {
         [t, r, o], 'pi_time,rotor,output', (moment(zone='+01:00'), *DECIMALS[1:])),
     'dates with a decimal comma': lambda t, r, o: in_german(written(
         [t, r, o], 'time;rotor;output', (moment(' '), *DECIMALS[1:]), ';')),
-    'dates of the month first, and noon': lambda t, r, o: written(
+    'dates of the month first, in the afternoon': lambda t, r, o: written(
         [t, r, o], 'time,rotor,output',
-        (lambda v: (NOON + timedelta(seconds=v)).strftime('%m/%d/%Y %I:%M:%S.%f %p'),
+        (lambda v: (NOON + timedelta(hours=2, seconds=v)).strftime('%m/%d/%Y %-I:%M:%S.%f %p'),
          *DECIMALS[1:])),
     '12 hours, over noon': lambda t, r, o: written(
         [t, r, o], NAMES, (lambda v: (NOON + timedelta(seconds=v)).strftime('%I:%M:%S.%f %p'),
