@@ -71,7 +71,7 @@ def calibration_path(
 def load_calibration(
     options: argparse.Namespace, config: NodeParameters, bag: Path | None
 ) -> Calibration | None:
-    """Load the calibration at `calibration_path`; raises ValueError if it is of another gear."""
+    """Load the calibration at `calibration_path`; raises ValueError if it cannot be used."""
     gear, path = config.gear, calibration_path(options, config, bag)
     return Calibration.load(path, gear) if path else None
 
@@ -145,7 +145,7 @@ def key(task: Any) -> tuple[Path, str]:
 
 @contextmanager
 def naming(bag: Path, *others: Path) -> Iterator[None]:
-    """Put the name of the bag before errors that name neither the bag nor other files."""
+    """Put the bag's name before a ValueError or RuntimeError that names no file."""
     try:
         yield
     except (ValueError, RuntimeError) as error:

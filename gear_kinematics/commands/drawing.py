@@ -48,7 +48,7 @@ def force_at(options: argparse.Namespace, config: NodeParameters) -> float:
 def recording(options: argparse.Namespace, config: NodeParameters) -> Trajectory | None:
     """Read the part of the rotor's motion selected by the options; None without a bag.
 
-    ValueError: such options are given without a bag.
+    Raises ValueError if such options are given without a bag.
     """
     if not options.bag:
         for name in ('rotor_topic', 'joint', 'start_offset', 'duration'):

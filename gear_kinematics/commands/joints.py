@@ -62,7 +62,7 @@ def choose_joint(
 def joints_of_arm(joints: Sequence[Channel], topic: str) -> list[Channel]:
     """Return the joints of the rotors of an arm: all on a given topic, or on the only one.
 
-    ValueError: there is none, or there are several topics.
+    Raises ValueError if there is none, or there are several topics.
     """
     found = _candidates(joints, Channel(topic, ''), ROTOR_STATE)
     if len(topics := {joint.topic for joint in found}) == 1:

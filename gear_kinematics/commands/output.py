@@ -22,7 +22,7 @@ def complain(error: object) -> None:
 def warn_of_shared_memory(participants: int) -> None:
     """Warn if there is little shared memory for the DDS participants, before importing ROS.
 
-    SharedMemoryError: there is too little to import it.
+    Raises SharedMemoryError if there is too little to import it.
     """
     if warning := check_shared_memory(participants):
         complain(warning)

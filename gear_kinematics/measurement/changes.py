@@ -42,7 +42,7 @@ def single(names: Sequence[str]) -> list[Group]:
 def grouped(names: Sequence[str], patterns: Sequence[str]) -> list[Group]:
     """Group recordings by globs, in their order; the first that matches a name counts.
 
-    ValueError: there are not at least two groups.
+    Raises ValueError if there are not at least two groups.
     """
     firsts = [next((p for p in patterns if fnmatch.fnmatchcase(n, p)), None) for n in names]
     groups = [

@@ -50,9 +50,7 @@ class GearFigures:
     friction: Estimate | None  #: half the width in torque, N·m; None without a complete loop
     middle_line: MiddleLine  #: the mean of the largest ramps
     backlash: Backlash  #: what all ramps together leave room for
-    lost_motion: (
-        Estimate | None
-    )  #: at ± `LOST_MOTION_SHARE` of the rated torque, if ramps reach it
+    lost_motion: Estimate | None  #: at ± `LOST_MOTION_SHARE` of the rated torque, if reached
     stiffness: tuple[MeasuredStiffness, ...]  #: in the ranges covered, as the torque increases
     overall: Estimate | None  #: N·m/rad: slope of a line through each whole side of the loop
 

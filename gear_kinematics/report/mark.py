@@ -11,7 +11,10 @@ _SEARCHED = 2**16  # number of bytes at either end of a file that are searched f
 
 
 def is_report(path: Path) -> bool:
-    """Return whether a file is a report, a figure or an animation that gearkin wrote."""
+    """Return whether a file is a report, a figure or an animation that gearkin wrote.
+
+    Raises OSError if it cannot be read.
+    """
     with path.open('rb') as file:
         start = file.read(_SEARCHED)
         file.seek(max(len(start), path.stat().st_size - _SEARCHED))

@@ -139,7 +139,11 @@ class RecordedLoads:
             )
 
     def forces(self, cam_rating: float) -> Iterator[Force]:
-        """Yield what each joint carried; cams have bearings of the dynamic load rating C, N."""
+        """Yield what each joint carried.
+
+        With bearings of the dynamic load rating C, N, the life of a cam is (C/P)^p 10⁶ turns (ISO
+        281).
+        """
         ratio = float(self.parameters.mechanism.gear_ratio)
         turns = self.travel.sum() / TURN * (1.0 - 1.0 / ratio)  # of the satellite on its cam
         hours = self.time[-1] / 3600.0
