@@ -137,8 +137,8 @@ def scheme(
 ) -> bytes:
     """Draw the kinematic scheme: the bodies of a branch to scale, and their centres magnified.
 
-    The branch is the first one, its module in m; the suffix of the path is the format of the
-    image. A force F_t, N, adds the forces on the satellite.
+    The branch is the first one, at the rotor angle φ2, rad, with teeth of a module, m. The suffix
+    of the path is the format of the image. A force F_t, N, adds the forces on the satellite.
     """
     with canvas((7.4, 4.7)) as figure:
         left, right = figure.subplots(1, 2)

@@ -84,7 +84,10 @@ class Estimate:
 
 
 def combined(parts: Sequence[Component]) -> tuple[float, float]:
-    """Combine independent components (GUM 5.1.2): standard uncertainty and degrees of freedom."""
+    """Combine independent components (GUM 5.1.2).
+
+    The standard uncertainty is returned with its effective degrees of freedom (GUM G.4.1).
+    """
     standard = math.hypot(*(part.standard for part in parts))
     # Shares of the variance, since fourth powers of large numbers overflow.
     spread = sum(

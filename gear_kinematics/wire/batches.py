@@ -235,8 +235,8 @@ def join_joint_states(parts: Sequence[Sequence[bytes]]) -> list[bytes]:
     """Join messages sensor_msgs/JointState of the same stamps into one each.
 
     A joined message has the joints of all parts in their order. A field that no part has is empty;
-    one that some lack is NaN there. Each part has n messages; one that is missing, or has no part,
-    is b''.
+    one that some lack is NaN there. Each part has n messages, b'' where it lacks one, and so has
+    the result where all parts lack it.
     """
     count = len(parts[0])
     found = [[*JointStateBatch(part).contents()] for part in parts]
