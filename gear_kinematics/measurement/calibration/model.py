@@ -97,7 +97,7 @@ class GearModel:
     def checked(self, values: Array) -> tuple[Array, Array, float, float]:
         """Predict parts of the samples as a check does, with a zero and a delay of their own.
 
-        `values` are those that the method of this name returns.
+        `values` are the columns that `values()` returns, (n, columns).
 
         The parts are recordings or, of a single one, every other block, so that both have the
         same angles: a trend is not known at others.
