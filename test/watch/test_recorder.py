@@ -6,6 +6,7 @@ import contextlib
 import re
 from dataclasses import replace
 from types import SimpleNamespace
+from unittest.mock import MagicMock
 
 import pytest
 from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -16,6 +17,7 @@ from gear_kinematics.bag import Bag
 from gear_kinematics.commands.cli import main
 from gear_kinematics.commands.record import kept
 from gear_kinematics.parameters import NodeParameters, default_config
+from gear_kinematics.watch import gear
 from gear_kinematics.watch import recorder as module
 from gear_kinematics.watch.polled import Taken
 from gear_kinematics.watch.recorder import Recorder
@@ -100,6 +102,13 @@ def test_the_parameters_of_each_node_that_answers_are_kept(tmp_path):
     (path := tmp_path / 'actuator.yaml').write_bytes(files.pop('actuator.yaml'))
     assert not files
     assert {name: NodeParameters.load(path, name).gear_ratio for name in ratios} == ratios
+
+
+def test_a_node_that_has_ended_is_not_asked_for_its_parameters(monkeypatch):
+    monkeypatch.setattr(gear, 'Graph', lambda _: SimpleNamespace(gears=['/left/gear']))
+    monkeypatch.setattr(gear, 'GearNode', lambda *_: SimpleNamespace(arm={}))  # it has no `look`
+    monkeypatch.setattr(gear, 'SingleThreadedExecutor', lambda **_: MagicMock())
+    assert gear.parameters_of(SimpleNamespace(context=None), '/gear') == {}
 
 
 class NoMessage(contextlib.nullcontext):
