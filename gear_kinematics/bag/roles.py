@@ -214,6 +214,8 @@ def _only(
     if len(candidates) > 1:
         topics = [topic + described(joints.get(topic, [])) for topic in candidates]
         option = f'--{_OPTIONS[name]}-topic'
+        if name == OUTPUT_STATE:
+            option += ', or its node with --node'
         raise BagError(f'{path}: which topic is {name}? {listed(topics)}; name it with {option}')
     return candidates[0]
 

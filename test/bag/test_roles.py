@@ -81,6 +81,8 @@ NEARLY = f'no topic /rotor_stat of type {JOINT_STATE} in it; did you mean `/roto
 NEARLY += 'there are: '
 NO_POSES = f'no topic /output_state of type {POSE_ARRAY} in it, it is of type {JOINT_STATE}; '
 NO_POSES += 'there are: '
+WHICH_OUTPUT = 'which topic is output_state? /left/output_state, /output_state; name it with '
+WHICH_OUTPUT += '--output-topic, or its node with --node'
 WHICH_ROTOR = 'which topic is rotor_state? /left/rotor_state, /right/rotor_state; name it with '
 BOTH = '/rotor_state /output_state'
 LEFT = '/output_state, /rotor_state, /body_poses, /rosout'
@@ -91,6 +93,7 @@ LEFT = '/output_state, /rotor_state, /body_poses, /rosout'
     [
         ('/rotor_state', '/p', {}, f'{NO_OUTPUT}/rotor_state, /p, /rosout'),
         ('/output_state', '/p', {}, f'{NO_ROTOR}/output_state, /p, /rosout'),
+        ('/arm/m /left/output_state /output_state', '/p', {}, WHICH_OUTPUT),
         ('/left/rotor_state /right/rotor_state /o', '/p', {}, f'{WHICH_ROTOR}--rotor-topic'),
         ('/b /a', '/p', {}, 'which topic is rotor_state? /a, /b; name it with --rotor-topic'),
         (BOTH, '/body_poses', {'rotor': '/motor'}, NO_MOTOR + LEFT),
