@@ -8,8 +8,8 @@ from itertools import product
 
 import numpy as np
 import pytest
-import simulated_joint
 from gear_recordings import encoders
+from simulated_encoders import TURN, with_play
 
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.columns import Sources
@@ -18,7 +18,82 @@ from gear_kinematics.measurement.reading import read_encoders
 from gear_kinematics.measurement.recording import RecordingError
 from gear_kinematics.measurement.sentences import Observation
 
-TURN = 2.0 * math.pi
+MOTIONS = 'sweep', 'there and back', 'sine', 'jog', 'hand'
+
+
+def moved(travel, motion, time, random):
+    """Output angles of a motion, rad."""
+    share, span = time / time[-1], time[-1]
+    if motion == 'sweep':
+        ideal = share
+    elif motion == 'there and back':
+        ideal = 1.0 - np.abs(2.0 * share - 1.0)
+    elif motion == 'sine':
+        ideal = np.sin(TURN * random.uniform(1.5, 6.5) * share + random.uniform(0.0, TURN))
+    elif motion == 'jog':  # from place to place, and standstill
+        places = np.concatenate([[0.0, 1.0], random.uniform(size=random.integers(5, 12))])
+        ideal = np.interp(share, np.linspace(0.0, 1.0, 2 * len(places)), np.repeat(places, 2))
+        width = max(3, int(0.1 * len(time) / span))
+        ideal = np.convolve(np.pad(ideal, width, 'edge'), np.full(width, 1.0 / width), 'same')
+        ideal = ideal[width:-width]
+    else:
+        walk = np.cumsum(np.cumsum(random.normal(size=len(time) // 20 + 2)))
+        ideal = np.interp(np.arange(len(time)), 20.0 * np.arange(len(walk)), walk)
+    return travel * (ideal - ideal.min()) / np.ptp(ideal) + random.uniform(-3.0, 3.0)
+
+
+def encoder_error(angle, amplitude, kind, phase):
+    """Compute the error of an eccentric disc, or of unequal, shifted signals of a magnet, rad."""
+    unequal = kind == 'elliptic'
+    shift = (0.5 if unequal else 1.0) * math.sin(amplitude)
+    gain = (1.0 + amplitude) / (1.0 - amplitude) if unequal else 1.0
+    true = angle + phase
+    read = np.arctan2(gain * np.sin(true), np.cos(true) - shift)
+    return np.remainder(read - true + math.pi, TURN) - math.pi
+
+
+def pitch_error(angle, steps):
+    """Cumulative error of teeth, a random walk that closes after a turn; its peak is 1."""
+    walk = np.cumsum(steps)
+    walk -= np.linspace(0.0, walk[-1], len(walk))
+    walk = np.append(walk, walk[0]) - walk.mean()
+    places = np.mod(angle, TURN) / TURN * len(steps)
+    return np.interp(places, np.arange(len(walk)), walk / np.abs(walk).max())
+
+
+def recorded(ratio, travel, error, random, motion=None):
+    """Record rotor, output and times of a joint by the geometry of its errors: no sines of orders.
+
+    The errors over a turn, of gear and encoder together, are at most `error`; angles are in rad.
+    """
+    rate, seconds = float(random.choice([100, 250, 500, 1000])), random.uniform(8.0, 40.0)
+    motion = motion or str(random.choice(MOTIONS))
+    time = np.arange(int(rate * seconds)) / rate
+    ideal = moved(travel, motion, time, random)
+    rotor = float(ratio) * ideal
+    output = with_play(ideal, random.uniform(0.0, 0.5) * error)
+    kinds = random.choice(['eccentric', 'elliptic'], 2)
+    phases = random.uniform(0.0, TURN, 4)
+    teeth, sag = random.normal(size=random.integers(20, 90)), random.uniform(0.0, 0.5)
+    share = random.uniform()
+
+    def periodic(angle):  # the sag is wind-up by gravity
+        encoder = encoder_error(angle, error, kinds[0], phases[0]) / error
+        return encoder + share * pitch_error(angle, teeth) + sag * np.sin(angle + phases[1])
+
+    peak = 0.5 * np.ptp(periodic(np.linspace(0.0, TURN, 2000)))
+    twice = random.uniform(0.0, 0.1) * error * np.sin(2.0 * rotor + phases[2])
+    measured = output + twice + random.uniform(0.5, 1.0) * error * periodic(output) / peak
+    rotor = rotor + encoder_error(rotor, random.uniform(0.3, 1.0) * error, kinds[1], phases[3])
+    delay = random.choice([0.0, random.uniform(-0.004, 0.004)])
+    measured = np.interp(time - delay, time, measured)
+    stamps = np.maximum.accumulate(time + random.normal(scale=2e-4, size=len(time)))
+    read = []
+    for angle, bits in ((rotor, random.choice([12, 14, 17])), (measured, random.choice([12, 20]))):
+        step = TURN / 2.0**bits
+        read.append(step * np.round(angle / step + random.normal(scale=0.3, size=len(angle))))
+    inside = slice(int(0.02 * rate) + 1, -int(0.02 * rate) - 1)  # without the ends of the delay
+    return read[0][inside], read[1][inside], stamps[inside]
 
 
 def angles(ratio, turns, *, seed=0, count=4000, noise=1e-4, there_and_back=False):
@@ -68,7 +143,7 @@ def test_interval_contains_the_ratio_and_none_is_taken_wrongly(error):
     inside = []
     for seed, (travel, ratio) in enumerate(product(TRAVELS, RATIOS)):
         random = np.random.default_rng(seed)
-        joint = simulated_joint.recorded(ratio, math.radians(travel), math.radians(error), random)
+        joint = recorded(ratio, math.radians(travel), math.radians(error), random)
         found = estimate_ratio(*joint)
         distance = abs(found.measured.value - ratio) / found.measured.uncertainty
         inside.append(distance <= 1.0)
@@ -83,7 +158,7 @@ def test_interval_contains_the_ratio_and_none_is_taken_wrongly(error):
 @pytest.mark.parametrize(('turns', 'most'), [(1.25, 2e-3), (5.0, 4e-4)])
 def test_over_more_than_a_turn_errors_of_a_degree_repeat(turns, most):
     random = np.random.default_rng(1)
-    joint = simulated_joint.recorded(-19, turns * TURN, math.radians(1.0), random, 'sine')
+    joint = recorded(-19, turns * TURN, math.radians(1.0), random, 'sine')
     found = estimate_ratio(*joint)
     assert found.taken == -19
     assert abs(found.measured.value + 19.0) <= found.measured.uncertainty <= most
@@ -98,12 +173,12 @@ def test_nobody_is_told_to_turn_further_where_that_does_not_help():
 
 def test_less_than_a_turn_is_left_open_and_the_advice_is_enough():
     for seed, ratio in enumerate((Fraction(-19), Fraction(101))):
-        joint = simulated_joint.recorded(
+        joint = recorded(
             ratio, math.radians(298.0), math.radians(0.5), np.random.default_rng(seed), 'sweep'
         )
         found = estimate_ratio(*joint)
         assert (found.taken, ratio in found.candidates) == (None, True)
-        joint = simulated_joint.recorded(
+        joint = recorded(
             ratio,
             math.radians(found.advice.values['degrees']),
             math.radians(0.5),

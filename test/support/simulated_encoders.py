@@ -9,8 +9,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from simulated_joint import TURN, with_play
 
+TURN = 2.0 * math.pi
 ARC_MINUTE = TURN / 360.0 / 60.0
 MS = 10**6
 START = 1_700_000_000 * 10**9
@@ -43,6 +43,15 @@ def ramped_strokes(stroke: float, seconds: float, ramp: float) -> Profile:
         return np.where(back, stroke - done, done)
 
     return angle
+
+
+def with_play(angle: np.ndarray, play: float) -> np.ndarray:
+    """Return output angles that stay until the play is crossed, starting in its middle."""
+    out, at = [], angle[0]
+    for driven in angle.tolist():
+        at = min(max(at, driven - 0.5 * play), driven + 0.5 * play)
+        out.append(at)
+    return np.array(out)
 
 
 @dataclass(frozen=True)
