@@ -12,8 +12,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'test' / 'support'))
 
-from judging_ramps import judge
-from simulated_ramps import SCENARIOS
+from simulated_ramps import SCENARIOS, judge
 
 ARC_MINUTES = 60.0 * math.degrees(1.0)
 

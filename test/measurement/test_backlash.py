@@ -6,8 +6,7 @@ import math
 import numpy as np
 import pytest
 from gear_recordings import Gear, creep, ramps
-from judging_ramps import judge, measured
-from simulated_ramps import SCENARIOS, Scenario
+from simulated_ramps import SCENARIOS, Scenario, judge, measured
 
 from gear_kinematics.measurement.middle_line import Backlash, Cause, reconciled
 
