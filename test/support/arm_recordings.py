@@ -6,16 +6,12 @@ from fractions import Fraction
 from pathlib import Path
 from typing import NamedTuple
 
-import made_bags
-import numpy as np
 import yaml
+from live import rotor_bytes
 
 RATIOS = {'shoulder': Fraction(-19), 'elbow': Fraction(1457, 26), 'wrist': Fraction(30)}
 ROTOR, OUTPUT = '/rotor_state', '/output_state'
 STEP, START = 4_000_000, 5_000_000_000  # ns
-JOINT_STATE = made_bags.JAZZY.types['sensor_msgs/msg/JointState']
-TIME = made_bags.JAZZY.types['builtin_interfaces/msg/Time']
-HEADER = made_bags.JAZZY.types['std_msgs/msg/Header']
 
 
 class Joints(NamedTuple):
@@ -27,10 +23,7 @@ class Joints(NamedTuple):
     effort: list[float]
 
     def encode(self, stamp: int) -> bytes:
-        header = HEADER(TIME(*divmod(stamp, 10**9)), '')
-        arrays = (np.array(values, float) for values in self[1:])
-        message = JOINT_STATE(header, self.names, *arrays)
-        return bytes(made_bags.JAZZY.serialize_cdr(message, JOINT_STATE.__msgtype__))
+        return rotor_bytes(stamp, *self)
 
 
 def config(path: Path, **more) -> Path:

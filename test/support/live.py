@@ -22,7 +22,7 @@ from rclpy.parameter_client import AsyncParameterClient
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.signals import SignalHandlerOptions
 from rclpy.subscription import Subscription
-from rosbags.typesys import Stores, get_typestore
+from replaying import SECOND, TYPESTORE, encode, stamp_of
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
@@ -31,15 +31,12 @@ from gear_kinematics.ros.live import running_node
 from gear_kinematics.ros.workarounds.shutdown import shut_down
 
 DEADLINE = 60.0  # s: far beyond anything but a failure
-SECOND = 1_000_000_000  # ns
 START = 100 * SECOND
 STATES = ('output_state', 'body_poses', 'mechanism_joint_states')
 PATIENT = '-p', 'input_timeout:=1000.0'
 """Arguments of a node whose driver may fall silent, as every one does on a busy machine."""
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
-
-_typestore = get_typestore(Stores.ROS2_JAZZY)
 _namespaces = (f'/live_{os.getpid()}_{number}' for number in itertools.count())
 
 
@@ -75,31 +72,13 @@ def rotor_bytes(
     little_endian=True,
 ) -> bytes:
     """Serialise the message with rosbags, which is neither ROS nor the code under test."""
-    types = _typestore.types
-    joint_state = types['sensor_msgs/msg/JointState']
-    seconds, nanoseconds = divmod(stamp, SECOND)
-    message = joint_state(
-        header=types['std_msgs/msg/Header'](
-            stamp=types['builtin_interfaces/msg/Time'](sec=seconds, nanosec=nanoseconds),
-            frame_id=frame_id,
-        ),
-        name=list(names),
-        **{
-            field: np.array(values, dtype=np.float64)
-            for field, values in (
-                ('position', position),
-                ('velocity', velocity),
-                ('effort', effort),
-            )
-        },
+    types, (seconds, nanoseconds) = TYPESTORE.types, divmod(stamp, SECOND)
+    arrays = (np.array(values, dtype=np.float64) for values in (position, velocity, effort))
+    header = types['std_msgs/msg/Header'](
+        types['builtin_interfaces/msg/Time'](seconds, nanoseconds), frame_id
     )
-    data = _typestore.serialize_cdr(message, joint_state.__msgtype__, little_endian=little_endian)
-    return bytes(data)
-
-
-def stamp_of(message) -> int:
-    """Return a message's stamp, ns."""
-    return message.header.stamp.sec * SECOND + message.header.stamp.nanosec
+    message = types['sensor_msgs/msg/JointState'](header, list(names), *arrays)
+    return encode(message, little_endian=little_endian)
 
 
 class Participant:

@@ -52,6 +52,7 @@ def edited(data: bytes, kind: str, edit) -> bytes:
 
 
 def stamp_of(message) -> int:
+    """Return a message's stamp, ns."""
     return message.header.stamp.sec * SECOND + message.header.stamp.nanosec
 
 

@@ -1,9 +1,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """mechanism_joint_states in recordings: the node's pass, and each joint that differs is found."""
 
-import made_bags
 import numpy as np
 import pytest
+import replaying
 import validating
 from arm_recordings import OUTPUT, ROTOR, config, inputs
 from node_loop import answered
@@ -47,11 +47,11 @@ def test_what_a_node_publishes_agrees_with_the_matrix_method(bag, config, monkey
 
 def changed(data: bytes, name: str, joint: int) -> bytes:
     """Flip one bit, in the exponent, of a joint's value in a field."""
-    message = made_bags.JAZZY.deserialize_cdr(data, JOINT_STATE)
-    values = getattr(message, name).copy()
-    values.view(np.int64)[joint] ^= 1 << 62
-    setattr(message, name, values)
-    return bytes(made_bags.JAZZY.serialize_cdr(message, JOINT_STATE))
+
+    def flip(message) -> None:
+        getattr(message, name).view(np.int64)[joint] ^= 1 << 62
+
+    return replaying.edited(data, JOINT_STATE, flip)
 
 
 @pytest.mark.parametrize('joint', range(len(JOINTS)), ids=JOINTS)
@@ -99,15 +99,16 @@ def test_joints_of_an_arm_are_compared_each_and_other_topics_are_named(tmp_path)
 
 @pytest.mark.parametrize('edit', ['a bit', 'no joint'])
 def test_a_fault_of_one_joint_of_an_arm_is_that_of_its_actuator(edit, tmp_path):
+    def drop_last(message) -> None:
+        for field in ('name', 'position', 'velocity'):
+            setattr(message, field, getattr(message, field)[: len(JOINTS)])
+
     def edited(number, data):
         if number != LAST:
             return data
         if edit == 'a bit':
             return changed(data, 'velocity', len(JOINTS) + 3)
-        message = made_bags.JAZZY.deserialize_cdr(data, JOINT_STATE)
-        for field in ('name', 'position', 'velocity'):
-            setattr(message, field, getattr(message, field)[: len(JOINTS)])
-        return bytes(made_bags.JAZZY.serialize_cdr(message, JOINT_STATE))
+        return replaying.edited(data, JOINT_STATE, drop_last)
 
     report = arm(tmp_path, edited)
     assert [each.verdict for each in report.actuators] == ['pass', 'fail', 'pass']
