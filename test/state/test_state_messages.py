@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from properties import mechanisms, numbers_of
 from rclpy.serialization import deserialize_message
+from replaying import assert_poses
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.correction.corrector import Correction
@@ -39,22 +40,6 @@ def encode(mechanism, sample, names=NAMES):
 
 def sample_at(rotor_angle, velocity=None, effort=None) -> RotorSample:
     return RotorSample(STAMP, split_turns(rotor_angle), velocity, effort)
-
-
-def assert_poses(poses, expected, numbers) -> None:
-    """Compare a PoseArray with the oracle: satellites in branch order, then couplings."""
-    branches = expected.branches
-    centres = [branch.satellite_centre for branch in branches]
-    centres += [branch.oldham_centre for branch in branches]
-    assert len(poses) == len(centres)
-    for pose, centre in zip(poses, centres, strict=True):
-        position = (pose.position.x, pose.position.y)
-        assert oracle.point_error(position, centre, numbers.eccentricity) <= DIGITS
-        assert pose.position.z == centre[2]
-        assert (pose.orientation.x, pose.orientation.y) == (0.0, 0.0)
-        assert math.hypot(pose.orientation.z, pose.orientation.w) == pytest.approx(1.0, abs=1e-15)
-        angle = 2.0 * math.atan2(pose.orientation.z, pose.orientation.w)
-        assert oracle.turn_angle_error(angle, expected.output_angle) <= DIGITS
 
 
 def assert_joint_states(message, derivatives, numbers, *, velocity: bool) -> None:

@@ -90,6 +90,20 @@ def valid_samples(
     return samples, rejected
 
 
+def assert_poses(poses, expected: oracle.Expected, numbers: oracle.Numbers) -> None:
+    """Compare the poses of a PoseArray with the motion: satellites by branch, then couplings."""
+    centres = [branch.satellite_centre for branch in expected.branches]
+    centres += [branch.oldham_centre for branch in expected.branches]
+    for pose, centre in zip(poses, centres, strict=True):
+        point, q = pose.position, pose.orientation
+        assert oracle.point_error((point.x, point.y), centre, numbers.eccentricity) <= BOUND
+        assert point.z == centre[2]
+        assert (q.x, q.y) == (0.0, 0.0)
+        assert math.isclose(math.hypot(q.z, q.w), 1.0, rel_tol=1e-15)
+        turn = oracle.mp.atan2(oracle.mp.mpf(q.z), oracle.mp.mpf(q.w)) * 2
+        assert oracle.turn_angle_error(turn, expected.output_angle) <= BOUND
+
+
 def assert_right(
     samples: list[Sample], states: list[bytes], poses: list[bytes], *, zero: float = 0.0
 ) -> None:
@@ -116,13 +130,4 @@ def assert_right(
         array = decode(poses_data, 'geometry_msgs/msg/PoseArray')
         assert stamp_of(array) == sample.stamp
         assert array.header.frame_id == 'stator'
-        centres = [b.satellite_centre for b in expected.branches]
-        centres += [b.oldham_centre for b in expected.branches]
-        for pose, centre in zip(array.poses, centres, strict=True):
-            point, q = pose.position, pose.orientation
-            place = (point.x, point.y, point.z)
-            assert oracle.point_error(place, centre, ACTUATOR.eccentricity) <= BOUND
-            assert (q.x, q.y) == (0.0, 0.0)
-            assert math.isclose(math.hypot(q.z, q.w), 1.0, rel_tol=1e-15)
-            turn = oracle.mp.atan2(oracle.mp.mpf(q.z), oracle.mp.mpf(q.w)) * 2
-            assert oracle.turn_angle_error(turn, expected.output_angle) <= BOUND
+        assert_poses(array.poses, expected, ACTUATOR)
