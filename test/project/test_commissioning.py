@@ -6,8 +6,6 @@ import math
 import os
 import re
 import shlex
-import subprocess
-import sys
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,7 +13,7 @@ import numpy as np
 import pytest
 from blocked_bags import wait_until
 from live import Peer, stamp_of
-from played_joint import moments
+from played_joint import moments, played
 from simulated_encoders import Drive
 from terminals import Person
 
@@ -24,7 +22,7 @@ from gear_kinematics.ros.live import running_node
 pytestmark = [pytest.mark.live, pytest.mark.slow]
 
 ROOT = Path(__file__).resolve().parents[2]
-PLAYER = ROOT / 'test/support/played_joint.py'
+ROTOR, ENCODER = '/motor/joint_states', '/encoder/joint_states'
 PAGE = (ROOT / 'docs/commissioning.md').read_text('utf-8')
 DEGREE = math.pi / 180.0
 
@@ -73,21 +71,14 @@ def joint(request, shared_path) -> Joint:
 
 
 @contextlib.contextmanager
-def driven(joint: Joint, folder: Path, lost: float = 0.0):
+def driven(joint: Joint, lost: float = 0.0):
     """Run the drivers; yields the true output angle by stamps, ns.
 
     `lost` is the angle of the motor, rad, at which it was switched on.
     """
-    file = folder / 'readings.npy'
-    np.save(file, joint.readings - (0.0, lost, 0.0))
-    process = subprocess.Popen([sys.executable, PLAYER, file], stdout=subprocess.PIPE)
-    try:
-        first = int(process.stdout.readline())
+    with played(joint.readings - (0.0, lost, 0.0), ROTOR, ENCODER) as first:
         after, rows = moments(joint.readings[:, 0], 100 * len(joint.readings))
         yield dict(zip((first + after).tolist(), joint.truth[rows].tolist(), strict=True))
-    finally:
-        process.kill()
-        process.communicate()
 
 
 def gearkin(folder: Path, *arguments: str) -> str:
@@ -109,12 +100,12 @@ def gearkin(folder: Path, *arguments: str) -> str:
 def test_an_unknown_joint_is_commissioned(joint, tmp_path):
     file = tmp_path / 'actuator.yaml'
     nameplate = re.findall('`(--ratio) (121)`', PAGE)[0] if joint.ratio == '121' else ()
-    with driven(joint, tmp_path):
+    with driven(joint):
         said = gearkin(tmp_path, *command('commission', '-o'), *nameplate)
     assert f'The gear has the ratio {joint.ratio} (' in said
     [setting] = re.findall(r'`(output_encoder_reference: absolute)`', PAGE)
     file.write_text(f'{file.read_text()}    {setting}\n')
-    with driven(joint, tmp_path, lost=37.3 if joint.forgets else 0.0) as truth:
+    with driven(joint, lost=37.3 if joint.forgets else 0.0) as truth:
         gearkin(tmp_path, *command('commission', '--check'))
         [start] = re.findall(r'^#     (.*gear_state_publisher.*)$', file.read_text(), re.MULTILINE)
         _, ros, arguments = start.partition('--ros-args')

@@ -1,20 +1,18 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The drivers of a joint, as a process: `python played_joint.py READINGS.npy`, until killed.
+"""The drivers of a joint, as a process that plays readings of its encoders again and again."""
 
-The readings, (n, 3): s from 0, rad of the rotor, rad of the output's encoder, are played again and
-again in their own time, on /motor/joint_states (m1, beside a brake) and /encoder/joint_states
-(shaft). The first stamp, ns, is printed; the others follow exactly.
-"""
-
+import subprocess
 import sys
+import tempfile
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import numpy as np
 import rclpy
 from rclpy.node import Node
+from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
-
-ROTOR, ENCODER = '/motor/joint_states', '/encoder/joint_states'
 
 
 def moments(seconds: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -24,23 +22,53 @@ def moments(seconds: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     return rounds * (after[-1] + after[1]) + after[rows], rows
 
 
+@contextmanager
+def played(readings: np.ndarray, motor: str, encoder: str, every: int = 1) -> Iterator[int]:
+    """Run the drivers, and kill them at the end; yields the first stamp, ns.
+
+    Args:
+        readings: (n, 3), s from 0, rad of the rotor, rad of the output's encoder.
+        motor: the topic of the rotor, which is m1 beside a brake.
+        encoder: the topic of the output's encoder, `shaft`.
+        every: of how many readings the encoder publishes one.
+    """
+    with tempfile.NamedTemporaryFile(suffix='.npy') as file:
+        np.save(file, readings)
+        file.flush()
+        command = [sys.executable, __file__, file.name, motor, encoder, str(every)]
+        with subprocess.Popen(command, stdout=subprocess.PIPE) as process:
+            try:
+                yield int(process.stdout.readline())
+            finally:
+                process.kill()
+
+
 def main() -> None:
     """Publish until killed."""
-    seconds, rotor, output = np.load(sys.argv[1]).T
+    file, motor_topic, encoder_topic, every = sys.argv[1:]
+    seconds, rotor, output = np.load(file).T
+    after, rows = moments(seconds, 10**6)
     rclpy.init()
     node = Node('drivers')
-    motor = node.create_publisher(JointState, ROTOR, 100)
-    encoder = node.create_publisher(JointState, ENCODER, 100)
+    qos = QoSProfile(depth=2000)
+    motor = node.create_publisher(JointState, motor_topic, qos)
+    encoder = node.create_publisher(JointState, encoder_topic, qos)
     start, first = time.monotonic(), time.time_ns()
     print(first, flush=True)
-    after, rows = moments(seconds, 10**6)
-    for moment, row in zip(after.tolist(), rows.tolist(), strict=True):
+    number = sent = -1
+    while True:
+        # On a busy machine it leaves messages out: late ones would look like a clock set back.
+        due = np.searchsorted(after, 1e9 * (time.monotonic() - start), 'right') - 1
+        number = max(number + 1, int(due))
+        moment, row = int(after[number]), rows[number]
         time.sleep(max(0.0, start + 1e-9 * moment - time.monotonic()))
         message = JointState(name=['brake', 'm1'], position=[0.0, rotor[row]])
         message.header.stamp.sec, message.header.stamp.nanosec = divmod(first + moment, 10**9)
         motor.publish(message)
-        message.name, message.position = ['shaft'], [output[row]]
-        encoder.publish(message)
+        if number // int(every) > sent:
+            sent = number // int(every)
+            message.name, message.position = ['shaft'], [output[row]]
+            encoder.publish(message)
 
 
 if __name__ == '__main__':

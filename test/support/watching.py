@@ -2,6 +2,7 @@
 """`gearkin watch` beside a node and a driver, and a stand-in for what watches them."""
 
 import contextlib
+import math
 import os
 import re
 import signal
@@ -12,7 +13,9 @@ from concurrent.futures import Future
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 from live import PATIENT, Participant
+from played_joint import played
 from rclpy.parameter_client import AsyncParameterClient
 
 from gear_kinematics.kinematics import Branch, Mechanism
@@ -20,7 +23,6 @@ from gear_kinematics.ros.live import running_node
 from gear_kinematics.watch.gear import Answer
 from gear_kinematics.watch.view import View
 
-ROOT = Path(__file__).resolve().parents[2]
 NAMESPACE = f'/watched_{os.getpid()}'
 NODE = f'{NAMESPACE}/gear_state_publisher'
 MOTOR = f'{NAMESPACE}/motor/joint_states'
@@ -28,6 +30,8 @@ ENCODER = f'{NAMESPACE}/output_encoder'
 GEARKIN = (sys.executable, '-P', '-m', 'gear_kinematics')
 OTHER = f'{NAMESPACE}/other/gear_state_publisher'
 DEADLINE = 60.0
+ENCODER_RATE = 100  # Hz
+RATIO = -19  # rotor speed / output speed
 
 
 class Program(NamedTuple):
@@ -83,15 +87,13 @@ def node(folder: Path, name: str = NODE):
 
 @contextlib.contextmanager
 def driving(rate: int = 200):
-    """Run the driver, at a rate in Hz: each message takes all who hear it processor time."""
-    program = ROOT / 'test/support/steady_driver.py'
-    command = [sys.executable, program, NAMESPACE, str(rate)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE) as process:
-        try:
-            assert process.stdout.readline() == b'drives\n'
-            yield
-        finally:
-            process.kill()
+    """Run the drivers, at a rate in Hz: each message takes all who hear it processor time."""
+    seconds = np.arange(4 * rate) / rate
+    rotor = 60.0 * np.sin(math.tau * seconds / 4.0)
+    angle = rotor / RATIO
+    output = angle + 1e-4 * np.sin(4.0 * angle)  # rad, the transmission error
+    with played(np.stack([seconds, rotor, output], 1), MOTOR, ENCODER, rate // ENCODER_RATE):
+        yield
 
 
 def parameters(*names: str) -> list:

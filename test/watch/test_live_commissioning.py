@@ -212,7 +212,7 @@ def within_its_errors(page, expect) -> bool:
     )
     names = 'output_encoder_joint', 'output_encoder_zero', 'rotor_zero'
     joint, zero, rotor_zero = parameters(*names)
-    assert joint == 'output'
+    assert joint == 'shaft'
     expect(undo).to_have_text(
         "Undo sets rotor_zero 0, output_encoder_joint '', output_encoder_zero 0 again"
     )
@@ -240,7 +240,7 @@ def test_page_guides_writes_and_takes_into_the_node(tmp_path):
         page.goto(program.wait_for(r'Open (http://127\.0\.0\.1:\d+/[\w-]+/)')[1])
         page.locator('#commission summary').click()
         page.locator('select[name=rotor]').select_option(f'm1 on {MOTOR}')
-        page.locator('select[name=output]').select_option(f'output on {ENCODER}')
+        page.locator('select[name=output]').select_option(f'shaft on {ENCODER}')
         page.locator('input[name=ratio]').fill('nineteen')
         page.get_by_role('button', name='Start').click()
         answer = page.locator('#answer')

@@ -10,13 +10,13 @@ from contextlib import contextmanager
 import pytest
 from chromium import chromium
 from live import Listener
-from steady_driver import RATIO
 from watching import (
     DEADLINE,
     MOTOR,
     NAMESPACE,
     NODE,
     OTHER,
+    RATIO,
     WatcherStandIn,
     driving,
     gearkin,
