@@ -3,12 +3,13 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from gear_recordings import encoders
-from simulated_gear import GearSet, Simulated, gears, simulate, slow_strokes, strokes
+from simulated_gear import GearSet, Simulated, gears, simulate, strokes
 
 from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.kinematics import Branch, Mechanism
@@ -42,7 +43,7 @@ OUT_OF_CLASS = {
 """Scenarios that it cannot describe."""
 HARD_WHEN_SLOW = ('late stamps', 'coloured noise', 'drift')
 """Scenarios in which few strokes tell less."""
-MOTIONS = {'fast': strokes, 'slow': slow_strokes}
+MOTIONS = {'fast': strokes, 'slow': partial(strokes, reach=14.0, speed=2.0, ends=())}
 
 
 class Judged(NamedTuple):

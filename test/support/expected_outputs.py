@@ -69,11 +69,9 @@ def expected(position, settings, numbers, branch_names) -> dict[str, Contents]:
         positions.append((f'{prefix}oldham_{name}', branch.satellite_slide / unit))
     cosine, sine = oracle.mp.cos_sin(shaft / 2)
     quaternion = (0, 0, sine, cosine) if cosine > 0 else (0, 0, -sine, -cosine)
-    centres = [branch.satellite_centre for branch in branches]
-    centres += [branch.oldham_centre for branch in branches]
     coordinates = [
         float(number)
-        for centre in centres
+        for centre in moved.centres
         for number in (*(length / unit for length in centre), *quaternion)
     ]
     poses = Contents([f'{prefix}stator'], coordinates)

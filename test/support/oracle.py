@@ -49,6 +49,12 @@ class Expected(NamedTuple):
     """rad; counts turns."""
     branches: tuple[BranchMotion, ...]
 
+    @property
+    def centres(self) -> list[tuple[Real, ...]]:
+        """In the order of body_poses: of the satellites, then of the couplings."""
+        satellites = [branch.satellite_centre for branch in self.branches]
+        return satellites + [branch.oldham_centre for branch in self.branches]
+
 
 class Derivatives(NamedTuple):
     """The motion with its first and second time derivatives."""

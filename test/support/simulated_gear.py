@@ -8,6 +8,7 @@ equation over the travel. All gears of a set step together: arrays are (time, ge
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
@@ -75,29 +76,21 @@ class Simulated(NamedTuple):
 
 
 def strokes(
-    duration: float, random: np.random.Generator, reach: float = 9.0, speed: float = 4.0
+    duration: float,
+    random: np.random.Generator,
+    reach: float = 9.0,
+    speed: float = 4.0,
+    ends: Sequence[float] = (0.95, -0.95),
 ) -> np.ndarray:
     """Motion of the output, (time,), rad: strokes at random speeds, with pauses.
 
-    The first ones go from end to end, the others end anywhere.
+    The first ones go to the ends, which are shares of the reach, the others end anywhere.
     """
-    return _strokes(duration, random, reach, speed, [-0.95 * reach, 0.95 * reach])
-
-
-def slow_strokes(
-    duration: float, random: np.random.Generator, reach: float = 14.0, speed: float = 2.0
-) -> np.ndarray:
-    """Return the angles of slow strokes, all of which end anywhere: few in a minute."""
-    return _strokes(duration, random, reach, speed, [])
-
-
-def _strokes(
-    duration: float, random: np.random.Generator, reach: float, speed: float, ends: list[float]
-) -> np.ndarray:
+    goals = [reach * end for end in reversed(ends)]
     count = int(duration * RATE)
     velocity, position = [], 0.0
     while len(velocity) < count:
-        goal = ends.pop() if ends else random.uniform(-reach, reach)
+        goal = goals.pop() if goals else random.uniform(-reach, reach)
         top = random.uniform(0.2, 1.0) * speed
         ramp = int(0.2 * RATE)
         cruise = max(0, int(abs(goal - position) / top * RATE) - ramp)

@@ -14,9 +14,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Self
 
-from blocked_bags import wait_until
-
-DEADLINE = 60.0  # s
+from blocked_bags import DEADLINE, wait_until
 
 ENVIRONMENT = {
     **{name: value for name, value in os.environ.items() if name not in {'NO_COLOR', 'CI'}},
