@@ -14,7 +14,7 @@ from chromium import chromium
 from live import rotor_bytes
 from simulated_encoders import Drive, sine_strokes, stamps
 from terminals import Person
-from watching import ENCODER, MOTOR, NODE, driving, gearkin, node, parameters
+from watching import ENCODER, MOTOR, NODE, gearkin, node, parameters
 
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.commissioning.analysis import Channel, Request
@@ -159,12 +159,6 @@ sys.meta_path.insert(0, Missing())
 from gear_kinematics.commands.cli import main
 sys.exit(main())
 """
-
-
-@pytest.fixture(scope='module')
-def driver():
-    with driving():
-        yield
 
 
 @pytest.mark.live

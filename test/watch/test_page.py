@@ -18,7 +18,6 @@ from watching import (
     OTHER,
     RATIO,
     WatcherStandIn,
-    driving,
     gearkin,
     node,
     parameters,
@@ -27,13 +26,7 @@ from watching import (
 from gear_kinematics.watch.drivers import DriverTopic
 from gear_kinematics.watch.view import Entry, Guide, View
 
-pytestmark = [pytest.mark.live, pytest.mark.slow]
-
-
-@pytest.fixture(scope='module', autouse=True)
-def driver():
-    with driving():
-        yield
+pytestmark = [pytest.mark.live, pytest.mark.slow, pytest.mark.usefixtures('driver')]
 
 
 @pytest.fixture(scope='module')

@@ -7,18 +7,12 @@ from types import SimpleNamespace
 import pytest
 from blocked_bags import wait_until
 from terminals import Person
-from watching import DEADLINE, MOTOR, NODE, OTHER, driving, gearkin, node
+from watching import DEADLINE, MOTOR, NODE, OTHER, gearkin, node
 
 from gear_kinematics.commands.cli import main
 from gear_kinematics.watch import homing
 
-pytestmark = pytest.mark.live
-
-
-@pytest.fixture(scope='module', autouse=True)
-def driver():
-    with driving():
-        yield
+pytestmark = [pytest.mark.live, pytest.mark.usefixtures('driver')]
 
 
 @pytest.fixture(scope='module')
