@@ -5,13 +5,11 @@ import json
 import math
 import re
 import struct
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-from blocked_bags import BAGS, facts, refusal
+from blocked_bags import BAGS, facts, gearkin, refusal
 from gear_recordings import Gear, Samples, creep, ramps, write_csv, write_recording
 from lxml import html
 
@@ -355,11 +353,6 @@ def test_any_ratio_can_be_given(tmp_path, capsys, option):
 )
 def test_without_scipy_only_measurements_are_missing(words, code, told):
     start = "import sys; sys.modules['scipy'] = None; from gear_kinematics.__main__ import gearkin"
-    done = subprocess.run(
-        [sys.executable, '-c', f'{start}; sys.exit(gearkin())', *words],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = gearkin(*words, code=f'{start}; sys.exit(gearkin())')
     assert (done.returncode, len(done.stderr.splitlines())) == (code, 1 if told else 0)
     assert told in done.stderr

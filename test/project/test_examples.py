@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from blocked_bags import finished
 from gear_recordings import record_both_encoders
 
 EXAMPLES = Path(__file__).parents[2] / 'examples'
@@ -29,10 +30,8 @@ TOLD = {
 
 
 def run(name, *arguments, cwd):
-    return subprocess.run(
-        [sys.executable, EXAMPLES / f'{name}.py', *arguments],
-        cwd=cwd, capture_output=True, text=True, check=False,
-    )  # fmt: skip
+    command = [sys.executable, EXAMPLES / f'{name}.py', *arguments]
+    return finished(command, cwd=cwd, timeout=300.0)
 
 
 def test_every_example_is_short_and_tested():
@@ -75,7 +74,7 @@ def test_the_documented_test_of_a_package_holds_its_recording_to_its_parameters(
     parameters = '/**: {ros__parameters: {ring_teeth: 84, satellite_teeth: 80}}'
     (tmp_path / 'actuator.yaml').write_text(parameters, 'utf-8')
     command = [sys.executable, '-m', 'pytest', '-q', '-p', 'no:cacheprovider', tmp_path]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    done = finished(command, cwd=tmp_path, timeout=300.0)
     assert done.returncode == 1, done.stdout
     assert 'it is that of ring_teeth 80, satellite_teeth 76' in done.stdout
 

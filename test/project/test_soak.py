@@ -4,13 +4,13 @@
 import json
 import math
 import os
-import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 import soak
+from blocked_bags import finished
 from geometry_msgs.msg import PoseArray
 from rclpy.serialization import deserialize_message, serialize_message
 from rotor_driver import counted_stamp, rotor_motion
@@ -32,10 +32,8 @@ TOPICS = {
 def test_twenty_seconds_lose_nothing_and_keep_their_memory():
     # Measuring the node's coverage would slow it down.
     environment = {k: v for k, v in os.environ.items() if not k.startswith('COVERAGE_')}
-    done = subprocess.run(
-        [sys.executable, str(BENCHMARK / 'soak.py'), '--minutes', str(20 / 60), '--json'],
-        check=False, capture_output=True, text=True, timeout=240.0, env=environment,
-    )  # fmt: skip
+    command = [sys.executable, BENCHMARK / 'soak.py', '--minutes', 20 / 60, '--json']
+    done = finished(command, timeout=240.0, env=environment)
     assert done.stdout, done.stderr
     result = json.loads(done.stdout)
     assert result['sent'] == 20_000

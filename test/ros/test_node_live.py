@@ -4,7 +4,6 @@
 import os
 import random
 import signal
-import subprocess
 import sys
 import time
 from collections import deque
@@ -14,7 +13,7 @@ import oracle
 import pytest
 import rosbag2_recorder
 import yaml
-from blocked_bags import gearkin_here
+from blocked_bags import finished, gearkin_here
 from expected_outputs import Settings, all_right
 from live import DEADLINE, PATIENT, SECOND, START, live_node, parameter, rotor_state, stamp_of
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -324,11 +323,8 @@ FILES = {'others.yaml': '/left/gear_state:\n  ros__parameters: {ring_teeth: 90}\
 def test_unusable_arguments_end_the_start_with_2_and_one_line(tmp_path, arguments, words):
     for name, text in FILES.items():
         (tmp_path / name).write_text(text)
-    done = subprocess.run(
-        [sys.executable, '-m', 'gear_kinematics.ros', '--ros-args', *arguments],
-        check=False, capture_output=True, text=True, timeout=DEADLINE, cwd=tmp_path,
-        env={**os.environ, 'ROS_LOG_DIR': str(tmp_path)},
-    )  # fmt: skip
+    command = [sys.executable, '-m', 'gear_kinematics.ros', '--ros-args', *arguments]
+    done = finished(command, cwd=tmp_path, env={**os.environ, 'ROS_LOG_DIR': str(tmp_path)})
     assert (done.returncode, done.stdout) == (2, ''), done.stderr
     assert 'Traceback' not in done.stderr
     # rcl may have logged before it raised.
@@ -340,9 +336,7 @@ def test_unusable_arguments_end_the_start_with_2_and_one_line(tmp_path, argument
 def test_node_imports_nothing_heavy():
     modules = 'gear_kinematics.ros.node, gear_kinematics.ros.process'
     code = f'import sys, {modules}; print(*sorted(sys.modules))'
-    done = subprocess.run(
-        [sys.executable, '-c', code], check=True, capture_output=True, text=True, timeout=DEADLINE
-    )
+    done = finished([sys.executable, '-c', code])
     imported = {name.partition('.')[0] for name in done.stdout.split()}
     assert {'gear_kinematics', 'rclpy'} <= imported
     assert not imported & {'rosbags', 'matplotlib', 'plotly', 'rich', 'scipy', 'pandas', 'mpmath'}
