@@ -8,7 +8,6 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from gear_kinematics.measurement.recording import Array, Loading
@@ -168,7 +167,10 @@ def longest(time: Array, *, timed: bool) -> Observed:
 
 def usual(values: Array) -> Array:
     """Values (n,) without stray ones."""
-    middle = _WINDOW // 2
-    windows = sliding_window_view(np.pad(values, middle, 'edge'), _WINDOW).copy()
-    windows.partition(middle, axis=1)
-    return windows[:, middle].copy()
+    padded = np.pad(values, _WINDOW // 2, 'edge')
+    a, b, c, d, e = (padded[k : k + len(values)] for k in range(_WINDOW))
+    # The median of five is neither the least nor the greatest of four: it lies between the other
+    # two of them, or is the fifth. So many comparisons take a third of the time of a partition.
+    low = np.maximum(np.minimum(a, b), np.minimum(c, d))
+    high = np.minimum(np.maximum(a, b), np.maximum(c, d))
+    return np.asarray(np.maximum(np.minimum(low, high), np.minimum(e, np.maximum(low, high))))
