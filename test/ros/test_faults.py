@@ -29,7 +29,6 @@ from live import (
 from rclpy.duration import Duration
 from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
 from gear_kinematics.ros.live import running_node
@@ -67,13 +66,6 @@ def message_at(stamp):
 def rejected_in(status) -> str | None:
     values = {pair.key: pair.value for pair in status.values}
     return values.get('rejected: out of order')
-
-
-def another_driver(peer, depth):
-    """Create a driver that is connected to the node, with a history of `depth` messages."""
-    driver = peer.node.create_publisher(JointState, 'rotor_state', QoSProfile(depth=depth))
-    peer.wait_until(driver.get_subscription_count, 'the node to hear the driver')
-    return driver
 
 
 def heard(listener) -> int:
@@ -168,7 +160,7 @@ def test_node_killed_and_restarted_while_the_driver_runs(tmp_path):
         with running_node(command, env=environment) as process:
             peer.connect()
             # With a full history, what is missing is made up for at once and not every 3 s.
-            driver = another_driver(peer, depth=100)
+            driver = peer.driver('rotor_state', depth=100)
             sent = []
 
             def send():
@@ -237,7 +229,7 @@ def test_what_was_received_before_the_signal_is_answered(tmp_path):
         peer.connect()
         # With a full history, acknowledgement is asked for at once.
         burst = 100
-        driver = another_driver(peer, depth=burst)
+        driver = peer.driver('rotor_state', depth=burst)
         sent = []
 
         def send_burst():

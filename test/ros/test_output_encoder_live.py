@@ -20,13 +20,6 @@ COUNT = 400
 QUEUE = QoSProfile(depth=2000)
 
 
-def encoder_driver(peer):
-    """Return the publisher of the output's encoder, connected to the node."""
-    driver = peer.node.create_publisher(JointState, 'output_encoder', QUEUE)
-    peer.wait_until(driver.get_subscription_count, 'a subscription to output_encoder')
-    return driver
-
-
 def encoder_report(peer, condition, what, meanwhile=lambda: None):
     return peer.status(
         lambda s: s.name.endswith(': transmission error') and condition(s), what, meanwhile
@@ -43,7 +36,7 @@ def listen(peer, *topics):
 
 def test_error_is_published_with_the_encoders_stamp_and_judged(tmp_path):
     with connected(tmp_path, *parameter('transmission_error_limit', 1e-3)) as peer:
-        driver = encoder_driver(peer)
+        driver = peer.driver('output_encoder')
         [received] = listen(peer, 'transmission_error')
 
         def send(stamp, output_angle, rotor_angle):

@@ -193,6 +193,12 @@ class Peer(Listener):
         for name in STATES:
             self.received[name].clear()
 
+    def driver(self, topic: str, depth: int = 2000):
+        """Create a driver that is connected to the node, with a history of `depth` messages."""
+        driver = self.node.create_publisher(JointState, topic, QoSProfile(depth=depth))
+        self.wait_until(driver.get_subscription_count, f'a subscription to {topic}')
+        return driver
+
     def _heard(self, stamp: int) -> bool:
         return all(
             any(stamp_of(message) == stamp for message in self.received[name]) for name in STATES
