@@ -40,16 +40,11 @@ def recorded() -> list[Message]:
 
 def change_one(messages: list[Message], topic: str, edit: Callable) -> tuple[list[Message], int]:
     """Change one message of a topic; also return its original stamp."""
-    changed, count, stamp = [], 0, 0
-    for name, received, data in messages:
-        if name == topic:
-            count += 1
-            if count == CHANGED:
-                stamp = replaying.stamp_of(replaying.decode(data, TYPES[topic]))
-                data = edited(data, TYPES[topic], edit)  # noqa: PLW2901
-        changed.append((name, received, data))
-    assert stamp
-    return changed, stamp
+    place = index_of(messages, topic)
+    _, received, data = messages[place]
+    changed = topic, received, edited(data, TYPES[topic], edit)
+    stamp = replaying.stamp_of(replaying.decode(data, TYPES[topic]))
+    return [*messages[:place], changed, *messages[place + 1 :]], stamp
 
 
 def change_all(messages: list[Message], topic: str, edit: Callable) -> list[Message]:
