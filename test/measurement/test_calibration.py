@@ -100,7 +100,9 @@ def test_a_slip_no_larger_than_the_error_is_named_with_its_moment(slip, share):
     assert result.helps is not (slip > 0.0)
     assert (result.moved is not None) is (slip > 0.0)
     if slip and not share:
-        text = document(result, 'gear.yaml').sections[0].findings[0].text
+        report = document(result, 'gear.yaml')
+        text = report.sections[0].findings[0].text
+        assert report.data['moved'] == text
         assert result.moved.values['angle'] == pytest.approx(np.radians(slip), rel=0.05)
         assert 'against the rotor at 18.04 s' in text
 

@@ -71,6 +71,7 @@ def document(fit: Fit, target: str) -> Document:
         'version': 1,
         'coverage': COVERAGE,
         'helps': fit.helps,
+        'moved': plain(fit.moved),
         'gear_ratio': str(made.gear_ratio),
         'left_out': plain(errors) | widths,
         'terms': plain(fit.terms),
