@@ -155,7 +155,7 @@ def test_an_interrupted_computation_leaves_nothing(number, tmp_path):
     ('name', 'out', 'cause'),
     [
         ('good', 'there', 'there: exists already'),
-        ('good', 'nowhere/out', 'No such file or directory'),
+        ('good', 'there/file/out', 'Not a directory'),
         ('garbage.mcap', 'out', 'garbage.mcap: not a bag of a known kind'),
         ('missing', 'out', 'missing: no such file or folder'),
         ('left_and_right', 'out', 'left_and_right: which topic is rotor_state? /left/rotor_state'),
@@ -163,8 +163,9 @@ def test_an_interrupted_computation_leaves_nothing(number, tmp_path):
 )
 def test_what_cannot_be_computed_gets_one_line_and_code_2(name, out, cause, bags, tmp_path):
     (tmp_path / 'there').mkdir()
+    (tmp_path / 'there' / 'file').touch()
     assert cause in refusal('compute', bags / name, tmp_path / out)
-    assert list(tmp_path.rglob('*')) == [tmp_path / 'there']
+    assert {*tmp_path.rglob('*')} == {tmp_path / 'there', tmp_path / 'there' / 'file'}
 
 
 def test_other_joints_on_the_topic_are_no_fault(shared_path, tmp_path, capsys):

@@ -23,7 +23,9 @@ def moments(seconds: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 @contextmanager
-def played(readings: np.ndarray, motor: str, encoder: str, every: int = 1) -> Iterator[int]:
+def played(
+    readings: np.ndarray, motor: str, encoder: str, every: int = 1, late: str = 'sent'
+) -> Iterator[int]:
     """Run the drivers, and kill them at the end; yields the first stamp, ns.
 
     Args:
@@ -31,11 +33,12 @@ def played(readings: np.ndarray, motor: str, encoder: str, every: int = 1) -> It
         motor: the topic of the rotor, which is m1 beside a brake.
         encoder: the topic of the output's encoder, `shaft`.
         every: of how many readings the encoder publishes one.
+        late: whether readings that are late on a busy machine are 'sent' or 'left out'.
     """
     with tempfile.NamedTemporaryFile(suffix='.npy') as file:
         np.save(file, readings)
         file.flush()
-        command = [sys.executable, __file__, file.name, motor, encoder, str(every)]
+        command = [sys.executable, __file__, file.name, motor, encoder, str(every), late]
         with subprocess.Popen(command, stdout=subprocess.PIPE) as process:
             try:
                 yield int(process.stdout.readline())
@@ -45,7 +48,7 @@ def played(readings: np.ndarray, motor: str, encoder: str, every: int = 1) -> It
 
 def main() -> None:
     """Publish until killed."""
-    file, motor_topic, encoder_topic, every = sys.argv[1:]
+    file, motor_topic, encoder_topic, every, late = sys.argv[1:]
     seconds, rotor, output = np.load(file).T
     after, rows = moments(seconds, 10**6)
     rclpy.init()
@@ -57,9 +60,10 @@ def main() -> None:
     print(first, flush=True)
     number = sent = -1
     while True:
-        # On a busy machine it leaves messages out: late ones would look like a clock set back.
-        due = np.searchsorted(after, 1e9 * (time.monotonic() - start), 'right') - 1
-        number = max(number + 1, int(due))
+        number += 1
+        if late == 'left out':
+            due = np.searchsorted(after, 1e9 * (time.monotonic() - start), 'right') - 1
+            number = max(number, int(due))
         moment, row = int(after[number]), rows[number]
         time.sleep(max(0.0, start + 1e-9 * moment - time.monotonic()))
         message = JointState(name=['brake', 'm1'], position=[0.0, rotor[row]])

@@ -92,7 +92,9 @@ def driving(rate: int = 200):
     rotor = 60.0 * np.sin(math.tau * seconds / 4.0)
     angle = rotor / RATIO
     output = angle + 1e-4 * np.sin(4.0 * angle)  # rad, the transmission error
-    with played(np.stack([seconds, rotor, output], 1), MOTOR, ENCODER, rate // ENCODER_RATE):
+    readings, every = np.stack([seconds, rotor, output], 1), rate // ENCODER_RATE
+    # Late ones would look like a clock set back.
+    with played(readings, MOTOR, ENCODER, every, 'left out'):
         yield
 
 

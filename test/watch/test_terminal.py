@@ -111,7 +111,7 @@ def test_init_lists_the_joints_and_asks_in_a_terminal(tmp_path):
         choice = terminal.wait_for(rf'\d  m1 on {MOTOR}')
         terminal.wait_for('Number of the joint of the rotor; gearkin init --arm sets up all: ')
         terminal.type(f'{choice[0]}\n')
-        terminal.wait_for('Ratio of the gear, .*: ')
+        terminal.wait_for('ratio of the gear, .*: ')
         terminal.type('50.5\n')
         terminal.wait_for(f'mine.yaml is for the joint m1 on {MOTOR}, with the gear ratio 101/2')
         assert terminal.end() == 0
