@@ -52,7 +52,8 @@ def questions(
     steps = np.abs(np.diff(values[:, 0]))
     given = values[np.isfinite(values[:, 1]), 1]
     velocities = VelocityField(float(1 / ratio) if ratio else np.nan)
-    velocities.believed(stamp, values, float(np.min(steps[steps > _EQUAL], initial=1.0)))
+    noise = 2.0 * float(np.min(steps[steps > _EQUAL], initial=1.0))
+    velocities.believed(stamp, values, noise)
     if len(given) and not given.any() and np.ptp(values[:, 0]) > _MOVED:
         yield Condition.VELOCITIES_ARE(meaning=VelocityMeaning.ZERO)
     elif velocities.meaning:

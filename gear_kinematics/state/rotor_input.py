@@ -233,8 +233,7 @@ class RotorInput:
     ) -> RotorSamples:
         turns, angle = split_turns(values[:, 0])
         direction = self._parameters.rotor_direction
-        field, finest = self.velocity_field, 0.5 * self.plausibility.noise
-        velocity = field.believed(stamps, values[:-1], finest)
+        velocity = self.velocity_field.believed(stamps, values[:-1], self.plausibility.noise)
         efforts = self.effort_field.all_believed(values[:, 0], values[:, 2])
         if len(stamps):
             _, repeats = order(stamps)
@@ -327,7 +326,7 @@ class RotorInput:
             field.add(velocity)
             return None
         position = self._unwrapped(position)
-        field.note(stamp, position, velocity, 0.5 * self.plausibility.noise)
+        field.note(stamp, position, velocity, self.plausibility.noise)
         return None if field.contradicts else velocity
 
     def _unwrapped(self, position: float) -> float:

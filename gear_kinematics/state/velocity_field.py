@@ -24,7 +24,7 @@ _STEADY = 0.1  # of the speed: what it may vary by in a comparison
 _AGREES = 0.25  # of the slope: delays of filters and the rest of the acceleration
 _ALIKE = 0.1  # of a factor that has a name
 _TRAVEL = 3.0  # rad, at least, in a comparison
-_STEPS = 20  # of the encoder, at least, in a comparison
+_NOISES = 10  # of a reading, at least, in a comparison
 _FEWEST = 10  # turns between readings in a comparison of an unsteady motion
 _ALIGNED = 0.95  # the square of a correlation from which a factor explains the velocities
 
@@ -70,7 +70,7 @@ class VelocityField:
         """Forget the readings, but not what was found."""
         self.due = 0  # ns, the stamp from which on the next reading is wanted
         self.quiet_until = 0  # ns: `due`, or 0 while the velocities are not to be used
-        self.total, self.count = 0.0, 0  # of the velocities since the last reading
+        self._total, self._count = 0.0, 0  # of the velocities since the last reading
         self._readings: list[tuple[int, float, float]] = []
         """Each stamp, ns, its position, rad, and the mean velocity since the one before, rad/s."""
         self._begin_block()
@@ -88,12 +88,12 @@ class VelocityField:
             return Condition.VELOCITIES_UNKNOWN(meaning=self.finding, factor=self.factor)
         return Condition.VELOCITIES_ARE(meaning=self.finding)
 
-    def believed(self, stamps: Array, values: Array, finest: float) -> Array:
+    def believed(self, stamps: Array, values: Array, noise: float) -> Array:
         """Note readings in order of time, and return their velocities, (n,).
 
         Stamps, ns, are those of (n,) rows or more; values, (n, 3), are position, velocity and
-        effort; `finest` is the smallest step of the encoder, rad. Velocities that contradict the
-        positions become NaN.
+        effort; `noise` is that of a reading, rad. Velocities that contradict the positions become
+        NaN.
         """
         velocity, start, noted = values[:, 1].copy(), 0, 0
         times, end = _listed(stamps), len(values)
@@ -103,7 +103,7 @@ class VelocityField:
                 velocity[start:row] = np.nan
             start, noted = row, row + 1
             position, given, _ = values[row].tolist()
-            self.note(times[row], position, None if math.isnan(given) else given, finest)
+            self.note(times[row], position, None if math.isnan(given) else given, noise)
         self._add(values[noted:, 1])
         if self.contradicts:
             velocity[start:] = np.nan
@@ -112,24 +112,24 @@ class VelocityField:
     def _add(self, velocities: Array) -> None:
         """Add velocities of messages between readings, NaN for none, as one by one."""
         given = velocities[~np.isnan(velocities)]
-        self.total = float(np.cumsum(np.append(self.total, given))[-1])
-        self.count += len(given)
+        self._total = float(np.cumsum(np.append(self._total, given))[-1])
+        self._count += len(given)
 
     def add(self, velocity: float | None) -> None:
         """Take the velocity of a message, rad/s, without comparing it yet."""
         if velocity is not None:
-            self.total, self.count = self.total + velocity, self.count + 1
+            self._total, self._count = self._total + velocity, self._count + 1
 
-    def note(self, stamp: int, position: float, velocity: float | None, finest: float) -> None:
-        """Take a reading: ns, rad, rad/s if given, and the smallest step of the encoder, rad."""
+    def note(self, stamp: int, position: float, velocity: float | None, noise: float) -> None:
+        """Take a reading: ns, rad, rad/s if given, and the noise of a reading, rad."""
         self.due = stamp + SPAN
         readings = self._readings
         self.add(velocity)
-        if not self.count or (readings and stamp > readings[-1][0] + 2 * SPAN):
+        if not self._count or (readings and stamp > readings[-1][0] + 2 * SPAN):
             readings.clear()
-        travel = max(_TRAVEL, _STEPS * finest)
-        if self.count:
-            mean, self.total, self.count = self.total / self.count, 0.0, 0
+        travel = max(_TRAVEL, _NOISES * noise)
+        if self._count:
+            mean, self._total, self._count = self._total / self._count, 0.0, 0
             self._moved |= mean != 0.0
             readings.append((stamp, position, mean))
             if len(readings) > 1:
