@@ -74,7 +74,7 @@ def at_common_torque(reports: Sequence[LostMotion]) -> list[LostMotion]:
         return [*reports]
     torque = min(min(own.rated_torque, own.ramps[-1].amplitude) for own in known)
     return [
-        replace(report, figures=gear_figures(own.ramps, own.angle_step, torque))
+        replace(report, figures=gear_figures(own.ramps, torque))
         if (own := report.figures)
         else report
         for report in reports

@@ -9,7 +9,6 @@ import numpy as np
 from gear_kinematics.measurement.figures import LOST_MOTION_SHARE
 from gear_kinematics.measurement.loops import Ramps
 from gear_kinematics.measurement.lost_motion import LostMotion
-from gear_kinematics.measurement.middle_line import middle_lines
 from gear_kinematics.measurement.transmission import TransmissionFigures
 from gear_kinematics.measurement.wording import ARC_MINUTES
 from gear_kinematics.report.document import MOST_POINTS, Line, Panel, Pen, number
@@ -41,7 +40,7 @@ def _ramp_panel(ramps: Ramps, at: float) -> Panel:
         name, pen = _HALVES[half.rising]
         angle = (half.angle[rows] - centre) * ARC_MINUTES
         lines.append(Line(name, pen, half.torque[rows], angle))
-    for line in middle_lines(ramps):
+    for line in ramps.lines:
         angle = (line.angle - centre) * ARC_MINUTES
         lines.append(Line('middle line: without friction', Pen.MODEL, line.load, angle))
     return Panel(

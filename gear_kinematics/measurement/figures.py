@@ -8,18 +8,15 @@ from itertools import pairwise
 
 import numpy as np
 
-from gear_kinematics.measurement.loops import HalfLoop, Loop, RampError, Ramps
-from gear_kinematics.measurement.measured import HYSTERESIS, LOST_MOTION, Measured
-from gear_kinematics.measurement.middle_line import (
-    MOST_FRICTION,
+from gear_kinematics.measurement.backlash import (
     Backlash,
-    MiddleLine,
     backlash_of,
     mean_line,
-    middle_lines,
     reconciled,
     stiffness_of,
 )
+from gear_kinematics.measurement.loops import MOST_FRICTION, HalfLoop, MiddleLine, RampError, Ramps
+from gear_kinematics.measurement.measured import HYSTERESIS, LOST_MOTION, Measured
 from gear_kinematics.report.document import number
 from gear_kinematics.statistics.uncertainty import Component, Estimate, resolution
 
@@ -44,7 +41,6 @@ class GearFigures:
     """Figures of a gear: angles in rad, torques in N·m."""
 
     rated_torque: float
-    angle_step: float  #: rad at the output, between readings of the encoder; 0 if unknown
     ramps: tuple[Ramps, ...]  #: ascending; the first give figures with friction, the last others
     hysteresis: Estimate  #: the width of the curve at zero torque
     friction: Estimate | None  #: half the width in torque, N·m; None without a complete loop
@@ -73,19 +69,16 @@ class GearFigures:
         yield Measured('overall stiffness', 'N·m/rad', self.overall)
 
 
-def gear_figures(
-    ramps: Sequence[Ramps], angle_step: float, rated_torque: float | None = None
-) -> GearFigures:
+def gear_figures(ramps: Sequence[Ramps], rated_torque: float | None = None) -> GearFigures:
     """Compute the figures of the ramps of a recording, in ascending order of amplitude.
 
-    `angle_step` is in rad at the output, 0 if unknown. Without a rated torque, N·m, that is the
-    amplitude of the largest ramps.
+    Without a rated torque, N·m, that is the amplitude of the largest ramps.
 
     Raises:
         RampError: if the angle does not grow with the torque.
     """
     # Friction may hold the gear in the others.
-    ramps = [group for group in ramps if _moves(group, angle_step)]
+    ramps = [group for group in ramps if _moves(group)]
     if not ramps:
         raise RampError(
             'the angle does not grow with the torque: it stands still, or one of them has the '
@@ -93,57 +86,54 @@ def gear_figures(
         )
     small, large = ramps[0], ramps[-1]
     rated = rated_torque or large.amplitude
-    lines = [middle_lines(group) for group in ramps]
-    widths = [_hysteresis(group.loops, angle_step) for group in ramps]
-    loaded = stiffness_of(lines[-1], large)
+    widths = [_hysteresis(group) for group in ramps]
+    loaded = stiffness_of(large)
     # Where lost motion is read, unless friction may keep small ramps from loading the spring.
     light = min(LOST_MOTION_SHARE * rated, (1.0 - MOST_FRICTION) * small.amplitude)
-    rooms = [
-        backlash_of(own, group, width, angle_step, loaded, light)
-        for own, group, width in zip(lines, ramps, widths, strict=True)
-    ]
+    bounds = [backlash_of(*pair, loaded, light) for pair in zip(ramps, widths, strict=True)]
     return GearFigures(
         rated,
-        angle_step,
         tuple(ramps),
         widths[0],
-        _friction(lines[0], small, angle_step),
-        mean_line(lines[-1], large),
-        reconciled(rooms),
-        _lost_motion(large.loops, rated, angle_step),
-        _stiffness(large, rated, angle_step),
+        _friction(small),
+        mean_line(large),
+        reconciled(bounds),
+        _lost_motion(large, rated),
+        _stiffness(large, rated),
         _overall(large),
     )
 
 
-def _moves(ramps: Ramps, angle_step: float) -> bool:
+def _moves(ramps: Ramps) -> bool:
     """Whether the angle grows with the torque."""
     ways = [loop.fall.angle[0] - loop.rise.angle[0] for loop in ramps.loops]
-    return float(np.mean(ways)) > _still(ramps, angle_step)
+    return float(np.mean(ways)) > _still(ramps)
 
 
-def _still(ramps: Ramps, angle_step: float) -> float:
+def _still(ramps: Ramps) -> float:
     """Difference up to which two angles may be equal, rad."""
     greatest = max(float(np.max(np.abs(half.angle))) for half in ramps.halves)
-    return max(angle_step, _ROUNDING * greatest)
+    return max(ramps.step, _ROUNDING * greatest)
 
 
-def _hysteresis(loops: Sequence[Loop], angle_step: float) -> Estimate:
+def _hysteresis(ramps: Ramps) -> Estimate:
+    loops = ramps.loops
     return Estimate.of_mean(
         [loop.width(0.0) for loop in loops],
-        _drifted(loops),
-        Component(math.sqrt(2.0) * resolution(angle_step)),  # of two readings
+        _drifted(ramps),
+        Component(math.sqrt(2.0) * resolution(ramps.step)),  # of two readings
         _rounded([loop.fall.rounding(0.0) - loop.rise.rounding(0.0) for loop in loops]),
     )
 
 
-def _drifted(loops: Sequence[Loop]) -> Component:
+def _drifted(ramps: Ramps) -> Component:
     """Angle that an even drift of the zero adds between the halves of a loop, rad."""
-    middles = [loop.middle(0.0) for loop in loops]
-    if len(loops) < 3:  # noqa: PLR2004, no line with a scatter
+    middles = [loop.middle(0.0) for loop in ramps.loops]
+    count = len(middles)
+    if count < 3:  # noqa: PLR2004, no line with a scatter
         return Component(0.0)
-    per_loop = float(np.polynomial.polynomial.polyfit(range(len(loops)), middles, 1)[1])
-    return Component(0.5 * per_loop, len(loops) - 2)
+    per_loop = float(np.polynomial.polynomial.polyfit(range(count), middles, 1)[1])
+    return Component(0.5 * per_loop, count - 2)
 
 
 def _rounded(roundings: Sequence[float]) -> Component:
@@ -157,12 +147,12 @@ def _rounded(roundings: Sequence[float]) -> Component:
     return Component(math.sqrt(max(0.0, square) / 3.0))
 
 
-def _friction(lines: Sequence[MiddleLine], ramps: Ramps, angle_step: float) -> Estimate | None:
+def _friction(ramps: Ramps) -> Estimate | None:
     """Half the width of the loops in torque at up to a quarter of their load, N·m.
 
     Its ± contains how much that differs from the friction at up to half of the load.
     """
-    if not lines:
+    if not (lines := ramps.lines):
         return None
     near, far = (
         [line.friction_within(share * float(np.ptp(line.load))) for line in lines]
@@ -171,32 +161,32 @@ def _friction(lines: Sequence[MiddleLine], ramps: Ramps, angle_step: float) -> E
     uneven = float(np.mean(far) - np.mean(near)) / math.sqrt(3.0)
     stiffness = float(np.mean([np.ptp(line.load) / np.ptp(line.angle) for line in lines]))
     # Half the difference of two torques, read at many angles that are off by the step.
-    steps = max(1.0, float(np.ptp(lines[0].angle)) / angle_step) if angle_step else 1.0
-    reading = resolution(angle_step) / math.sqrt(2.0 * steps)
-    drifted = 0.5 * _drifted(ramps.loops).standard
+    steps = max(1.0, float(np.ptp(lines[0].angle)) / ramps.step) if ramps.step else 1.0
+    reading = resolution(ramps.step) / math.sqrt(2.0 * steps)
+    drifted = 0.5 * _drifted(ramps).standard
     others = (uneven, stiffness * math.hypot(reading, drifted))
     return Estimate.of_mean(near, *(Component(other, len(lines) - 1) for other in others))
 
 
-def _lost_motion(loops: Sequence[Loop], rated: float, angle_step: float) -> Estimate | None:
+def _lost_motion(ramps: Ramps, rated: float) -> Estimate | None:
     torque = LOST_MOTION_SHARE * rated
     ways = [
         [half for half in halves if half.reaches(torque) and half.reaches(-torque)]
-        for halves in zip(*loops, strict=True)
+        for halves in zip(*ramps.loops, strict=True)
     ]
     if not all(ways):
         return None
     angles = [[float(b.angle_at(torque) - b.angle_at(-torque)) for b in way] for way in ways]
     rounding = [b.rounding(torque) - b.rounding(-torque) for way in ways for b in way]
-    reading = Component(resolution(angle_step))  # the mean of two differences of two readings
+    reading = Component(resolution(ramps.step))  # the mean of two differences of two readings
     return Estimate.of_sum([(0.5, way) for way in angles], reading, _rounded(rounding))
 
 
 # Stiffness
 
 
-def _stiffness(ramps: Ramps, rated: float, angle_step: float) -> tuple[MeasuredStiffness, ...]:
-    reach, still = min(rated, ramps.amplitude), _still(ramps, angle_step)
+def _stiffness(ramps: Ramps, rated: float) -> tuple[MeasuredStiffness, ...]:
+    reach, still = min(rated, ramps.amplitude), _still(ramps)
     corners = (corner for share in STIFFNESS_SHARES if (corner := share * rated) < reach)
     found = []
     for low, high in pairwise((0.0, *corners, reach)):
@@ -209,7 +199,7 @@ def _stiffness(ramps: Ramps, rated: float, angle_step: float) -> tuple[MeasuredS
         ]
         # Else friction holds the gear throughout.
         if compliances and float(np.mean(compliances)) * (high - low) > still:
-            steps = Component(math.sqrt(2.0) * resolution(angle_step) / (high - low))
+            steps = Component(math.sqrt(2.0) * resolution(ramps.step) / (high - low))
             found.append(
                 MeasuredStiffness(low, high, Estimate.of_mean(compliances, steps).inverse())
             )

@@ -1,9 +1,16 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Hysteresis loops of torque ramps: found by the torque alone, without numbers of tests."""
+"""Hysteresis loops of torque ramps, found by the torque alone, and their middle lines.
+
+At one angle, the torque exceeds the load on the spring by the friction while it rises, and falls
+short of it by the friction while it falls. Half the sum of both is the load, and half the
+difference the friction, whatever it depends on. What is left is the curve of a spring without
+friction: the middle line.
+"""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import groupby, pairwise
 from typing import NamedTuple
 
@@ -21,6 +28,12 @@ _SMOOTHED = 0.01  # share of a ramp's amplitude to which a moving mean reduces t
 ALIKE = 1.5  #: ratio up to which ramps count as of one amplitude, in a recording and among several
 _ROUNDING = 1e-9  # relative differences of torques by rounding, as where a torque stands still
 _COMPLETE = 0.9  # share of the amplitude that both halves of a complete loop reach on both sides
+ANGLES = 400  #: number of angles at which the middle line of a loop is known
+_LOADS = 40  # number of loads at which its angle is read for a line through one side
+SIDE = 0.1, 0.9
+"""Part of either side of a middle line that friction at the reversals leaves, as shares of the
+greatest load."""
+MOST_FRICTION = 0.8  #: share of the torque beyond which friction hardly lets the spring be loaded
 
 
 class RampError(ValueError):
@@ -102,10 +115,76 @@ class Loop(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class MiddleLine:
+    """Middle line of a loop, in the order of the angle: (n,) each, rad and N·m."""
+
+    angle: Array
+    load: Array  #: non-decreasing
+    friction: Array
+
+    @classmethod
+    def of(cls, loop: Loop) -> 'MiddleLine':
+        """Read the middle line of a complete loop."""
+        fall, rise = loop.fall, loop.rise
+        ways = [
+            (half.torque[::way], _monotonic(half.angle[::way]))
+            for half, way in ((rise, 1), (fall, -1))
+        ]
+        low = max(angle[0] for _, angle in ways)
+        high = min(angle[-1] for _, angle in ways)
+        at = np.linspace(low, high, ANGLES)
+        forth, back = (np.interp(at, _distinct(angle), torque) for torque, angle in ways)
+        return cls(at, _monotonic(0.5 * (forth + back)), 0.5 * (forth - back))
+
+    def angle_at(self, load: Array | float) -> Array:
+        """The angle at loads, rad, of the same shape."""
+        return np.asarray(np.interp(load, _distinct(self.load), self.angle))
+
+    def width(self, load: float) -> float:
+        """The angle between a load and the same load of the other sign, rad."""
+        return float(self.angle_at(load) - self.angle_at(-load))
+
+    def dead_band(self, low: float, high: float) -> tuple[float, float]:
+        """Where straight lines through both sides, between two loads, meet no load.
+
+        Returns:
+            The angle between them, rad, and the mean of their compliances, rad/(N·m).
+        """
+        loads = np.linspace(low, high, _LOADS)
+        (right, slope), (left, other) = (
+            np.polynomial.polynomial.polyfit(loads, self.angle_at(sign * loads), 1)
+            for sign in (1.0, -1.0)
+        )
+        return float(right - left), float(0.5 * (slope - other))
+
+    def stiffness_within(self, width: float) -> float:
+        """Mean stiffness over an angle about the middle, N·m/rad."""
+        load = SIDE[0] * 0.5 * float(np.ptp(self.load))
+        middle = 0.5 * float(self.angle_at(load) + self.angle_at(-load))
+        ends = middle + 0.5 * width * np.array([-1.0, 1.0])
+        return float(np.diff(np.interp(ends, self.angle, self.load))[0]) / width
+
+    def friction_within(self, load: float) -> float:
+        """Mean friction at loads up to one of either sign, N·m."""
+        angles = self.angle_at(np.linspace(-load, load, _LOADS))
+        return float(np.mean(np.interp(angles, self.angle, self.friction)))
+
+    def friction_of_gap(self) -> float:
+        """By how much friction at less than a tenth of the load exceeds that beyond, N·m."""
+        reach = 0.5 * float(np.ptp(self.load))
+        within = np.abs(self.load) < SIDE[0] * reach
+        beyond = ~within & (np.abs(self.load) < MOST_FRICTION * reach)
+        if not (within.any() and beyond.any()):
+            return 0.0
+        return float(np.mean(self.friction[within]) - np.mean(self.friction[beyond]))
+
+
+@dataclass(frozen=True, eq=False)
 class Ramps:
     """Ramps of one amplitude."""
 
     amplitude: float  #: N·m, the mean
+    step: float  #: rad at the output, between readings of the encoder; 0 if unknown
     loops: tuple[Loop, ...]
     pulls: tuple[tuple[HalfLoop, HalfLoop], ...]  #: to the positive and to the negative peak
     sides: tuple[tuple[HalfLoop, HalfLoop], ...]  #: to a peak and back from it, in order of time
@@ -115,9 +194,17 @@ class Ramps:
         """The halves of the loops."""
         return [half for loop in self.loops for half in loop]
 
+    @cached_property
+    def lines(self) -> list[MiddleLine]:
+        """Middle lines of the complete loops, without those in which nothing moves."""
+        lines = (MiddleLine.of(loop) for loop in self.loops if loop.complete)
+        return [line for line in lines if np.ptp(line.angle) > 0.0]
 
-def find_ramps(torque: Array, angle: Array) -> tuple[Ramps, ...]:
+
+def find_ramps(torque: Array, angle: Array, step: float = 0.0) -> tuple[Ramps, ...]:
     """Find the ramps in torques, N·m, and angles, rad, (n,) each, in ascending order of amplitude.
+
+    The step between readings of the angle is in rad, 0 if unknown.
 
     Raises:
         RampError: if the torque never goes to both sides and back.
@@ -135,15 +222,18 @@ def find_ramps(torque: Array, angle: Array) -> tuple[Ramps, ...]:
             groups[-1].append(loop)
         else:
             groups.append([loop])
-    return tuple(_ramps(group, loops, halves) for group in groups)
+    return tuple(_ramps(group, loops, halves, step) for group in groups)
 
 
-def _ramps(group: Sequence[Loop], loops: Sequence[Loop], halves: Sequence[HalfLoop]) -> Ramps:
+def _ramps(
+    group: Sequence[Loop], loops: Sequence[Loop], halves: Sequence[HalfLoop], step: float
+) -> Ramps:
     low, high = group[0].amplitude / ALIKE, group[-1].amplitude * ALIKE
     alike = [half for half in halves if low <= abs(half.end) <= high]
     rises, falls = ([half for half in alike if half.rising == up] for up in (True, False))
     return Ramps(
         float(np.mean([loop.amplitude for loop in group])),
+        step,
         tuple(loop for loop in loops if loop in group),
         tuple(zip(rises, falls, strict=False)),
         tuple((there, back) for there, back in pairwise(halves) if there in alike),
@@ -236,3 +326,16 @@ def _mean_rows(torque: Array, noise: float) -> int:
 def _line(values: Array) -> Array:
     rows = np.arange(len(values)) - 0.5 * (len(values) - 1)
     return np.asarray(np.mean(values) + rows @ values / (rows @ rows) * rows)
+
+
+def _monotonic(values: Array) -> Array:
+    """A non-decreasing sequence: midway between what was reached before and what stays behind."""
+    reached = np.maximum.accumulate(values)
+    left: Array = np.minimum.accumulate(values[::-1])[::-1]
+    return 0.5 * (reached + left)
+
+
+def _distinct(values: Array) -> Array:
+    """Tell equal values apart, by rounding errors of the greatest, in their order."""
+    apart: Array = np.spacing(np.max(np.abs(values))) * np.arange(len(values))
+    return values + apart

@@ -66,8 +66,8 @@ def measure(
         loading, found_now = gated_ramps(loading)
         faults = (*recording.faults, *found_now)
         try:
-            ramps = find_ramps(loading.torque, loading.angle)
-            figures = gear_figures(ramps, loading.angle_step.size, rated_torque)
+            ramps = find_ramps(loading.torque, loading.angle, loading.angle_step.size)
+            figures = gear_figures(ramps, rated_torque)
         except RampError as error:
             if not found:
                 raise RampError('; '.join(map(str, (error, *faults)))) from error

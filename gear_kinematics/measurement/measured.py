@@ -3,7 +3,7 @@
 
 from typing import NamedTuple
 
-from gear_kinematics.measurement.middle_line import Backlash
+from gear_kinematics.measurement.backlash import Backlash
 from gear_kinematics.measurement.wording import ARC_MINUTES, plus_minus
 from gear_kinematics.report.document import Cell, Tone, number
 from gear_kinematics.statistics.uncertainty import Estimate

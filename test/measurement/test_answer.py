@@ -9,10 +9,10 @@ import pytest
 from gear_recordings import Gear, creep, ramps, write_csv
 
 from gear_kinematics.measurement.answer import Limits, answer, remarks
+from gear_kinematics.measurement.backlash import Backlash
 from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.measured import Measured
-from gear_kinematics.measurement.middle_line import Backlash
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.sentences import Cause, Observation
 from gear_kinematics.measurement.wording import plus_minus

@@ -8,7 +8,7 @@ import pytest
 from gear_recordings import Gear, creep, ramps
 from simulated_ramps import SCENARIOS, Scenario, judge, measured
 
-from gear_kinematics.measurement.middle_line import Backlash, Cause, reconciled
+from gear_kinematics.measurement.backlash import Backlash, Cause, reconciled
 
 ARC_MINUTE = math.radians(1.0 / 60.0)
 TEN = 10.0 * ARC_MINUTE

@@ -100,7 +100,7 @@ def test_an_unchanged_gear_shows_a_change_in_at_most_5_percent():
 def measured(name, play, *, friction=0.8, stiffness=300.0, tests=((5.0, 100),) * 3, top=40.0):
     torque = ramps(*tests, (top, 100))
     found = find_ramps(torque, creep(Gear(play, stiffness, friction), torque))
-    return LostMotion(name, None, None, gear_figures(found, 0.0))
+    return LostMotion(name, None, None, gear_figures(found))
 
 
 @pytest.fixture(scope='module')

@@ -45,7 +45,7 @@ def truth(gear: Gear) -> dict[str, float]:
 
 
 def measured(torque, angle, step=STEP, rated=RATED) -> GearFigures:
-    return gear_figures(find_ramps(torque, angle), step, rated)
+    return gear_figures(find_ramps(torque, angle, step), rated)
 
 
 def estimates(found: GearFigures) -> dict:

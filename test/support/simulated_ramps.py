@@ -364,7 +364,7 @@ def judge(scenario: Scenario, count: int, seed: int = 1, *, alike: bool = False)
 
 
 def measured(torque: np.ndarray, angle: np.ndarray) -> GearFigures:
-    return gear_figures(find_ramps(torque, angle), STEP)
+    return gear_figures(find_ramps(torque, angle, STEP))
 
 
 def _share(found: Iterable[Estimate], true: Sequence[float]) -> float:

@@ -1,33 +1,31 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The middle line of hysteresis loops, and the backlash that it leaves room for.
-
-At one angle, the torque exceeds the load on the spring by the friction while it rises, and falls
-short of it by the friction while it falls. Half the sum of both is the load, half the difference
-the friction, whatever it depends on. What is left is the curve of a spring without friction, and
-the backlash is the angle in its middle over which there is no load.
-"""
+"""The backlash that middle lines leave room for: the angle in their middle without a load."""
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
 
-from gear_kinematics.measurement.loops import Array, Loop, Ramps
+from gear_kinematics.measurement.loops import (
+    ANGLES,
+    MOST_FRICTION,
+    SIDE,
+    Array,
+    MiddleLine,
+    Ramps,
+)
 from gear_kinematics.measurement.sentences import Cause
 from gear_kinematics.statistics.uncertainty import Estimate, resolution, student_t
 
-_ANGLES = 400  # number of angles at which a loop is known
 _POINTS = 20
 """Number of points of the mean line on either side: springs and frictions of 5, 10, 20 and 40
 points give back the loops of 30 real recordings within 3.1, 2.2, 1.8 and 1.7 mrad (median), whose
 repeats differ by 2.5."""
-_LOADS = 40  # number of loads at which the angle is read for a line through one side
-_SIDE, _LOWER_HALF, _UPPER_HALF = (0.1, 0.9), (0.1, 0.35), (0.35, 0.9)
-"""Parts of either side of the curve, as shares of the greatest load: of all of it that friction
-at the reversals leaves, and of its two halves, between which a bent spring differs."""
+_LOWER_HALF, _UPPER_HALF = (0.1, 0.35), (0.35, 0.9)
+"""The two halves of `SIDE`, between which a bent spring differs."""
 _EXTRAPOLATED = 2.0
 """By how many times the difference of the halves a bent spring goes on towards no load: more than
 by the power 1/2 of the load, whose dead band goes on by 1.9 times (1.2 times by Hertz's 2/3)."""
@@ -38,7 +36,6 @@ _MIDDLE, _DEAD = 2.0 / 3.0, 0.15
 """A dead band yields over this share of its width at less than this share of the stiffness beside
 it. Simulated: a fifth takes a soft middle of 60 in 300 N·m/rad for play, a tenth misses one of ten
 plays of 10′ where friction takes up half of the torque."""
-MOST_FRICTION = 0.8  #: share of the torque beyond which friction hardly lets the spring be loaded
 _MOST_COMPLIANT = 1.5
 """Ratio of the compliances of small and large ramps from which on the small ones are in a soft
 middle: springs that bend by less keep a backlash of 0 and of 10′ in their intervals."""
@@ -64,85 +61,14 @@ class Backlash(NamedTuple):
         return Estimate(self.low + half, half / student_t(_NORMAL), math.inf, 1)
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class MiddleLine:
-    """Middle line of a loop, in the order of the angle: (n,) each, rad and N·m."""
+def mean_line(ramps: Ramps) -> MiddleLine:
+    """Return the mean of the middle lines of ramps, with its zero where there is no load.
 
-    angle: Array
-    load: Array  #: non-decreasing
-    friction: Array
-
-    @classmethod
-    def of(cls, loop: Loop) -> 'MiddleLine':
-        """Read the middle line of a complete loop."""
-        fall, rise = loop.fall, loop.rise
-        ways = [
-            (half.torque[::way], _monotonic(half.angle[::way]))
-            for half, way in ((rise, 1), (fall, -1))
-        ]
-        low = max(angle[0] for _, angle in ways)
-        high = min(angle[-1] for _, angle in ways)
-        at = np.linspace(low, high, _ANGLES)
-        forth, back = (np.interp(at, _distinct(angle), torque) for torque, angle in ways)
-        return cls(at, _monotonic(0.5 * (forth + back)), 0.5 * (forth - back))
-
-    def angle_at(self, load: Array | float) -> Array:
-        """The angle at loads, rad, of the same shape."""
-        return np.asarray(np.interp(load, _distinct(self.load), self.angle))
-
-    def width(self, load: float) -> float:
-        """The angle between a load and the same load of the other sign, rad."""
-        return float(self.angle_at(load) - self.angle_at(-load))
-
-    def dead_band(self, low: float, high: float) -> tuple[float, float]:
-        """Where straight lines through both sides, between two loads, meet no load.
-
-        Returns:
-            The angle between them, rad, and the mean of their compliances, rad/(N·m).
-        """
-        loads = np.linspace(low, high, _LOADS)
-        (right, slope), (left, other) = (
-            np.polynomial.polynomial.polyfit(loads, self.angle_at(sign * loads), 1)
-            for sign in (1.0, -1.0)
-        )
-        return float(right - left), float(0.5 * (slope - other))
-
-    def stiffness_within(self, width: float) -> float:
-        """Mean stiffness over an angle about the middle, N·m/rad."""
-        load = _SIDE[0] * 0.5 * float(np.ptp(self.load))
-        middle = 0.5 * float(self.angle_at(load) + self.angle_at(-load))
-        ends = middle + 0.5 * width * np.array([-1.0, 1.0])
-        return float(np.diff(np.interp(ends, self.angle, self.load))[0]) / width
-
-    def friction_within(self, load: float) -> float:
-        """Mean friction at loads up to one of either sign, N·m."""
-        angles = self.angle_at(np.linspace(-load, load, _LOADS))
-        return float(np.mean(np.interp(angles, self.angle, self.friction)))
-
-    def friction_of_gap(self) -> float:
-        """By how much friction at less than a tenth of the load exceeds that beyond, N·m."""
-        reach = 0.5 * float(np.ptp(self.load))
-        within = np.abs(self.load) < _SIDE[0] * reach
-        beyond = ~within & (np.abs(self.load) < MOST_FRICTION * reach)
-        if not (within.any() and beyond.any()):
-            return 0.0
-        return float(np.mean(self.friction[within]) - np.mean(self.friction[beyond]))
-
-
-def middle_lines(ramps: Ramps) -> list[MiddleLine]:
-    """The middle lines of the complete loops of ramps, without those in which nothing moves."""
-    lines = (MiddleLine.of(loop) for loop in ramps.loops if loop.complete)
-    return [line for line in lines if np.ptp(line.angle) > 0.0]
-
-
-def mean_line(lines: Sequence[MiddleLine], ramps: Ramps) -> MiddleLine:
-    """The mean of the middle lines of ramps: at 0 rad, there is no load.
-
-    If no loop is complete, so that there are none, each counts with one half and its image.
+    If no loop is complete, each counts with one half and its mirror image.
     """
     lines = [
         replace(line, angle=line.angle - line.angle_at(0.0))
-        for line in lines or [MiddleLine.of(loop.completed) for loop in ramps.loops]
+        for line in ramps.lines or [MiddleLine.of(loop.completed) for loop in ramps.loops]
     ]
     low, high = max(line.angle[0] for line in lines), min(line.angle[-1] for line in lines)
     angle = np.concatenate(
@@ -155,22 +81,15 @@ def mean_line(lines: Sequence[MiddleLine], ramps: Ramps) -> MiddleLine:
     return MiddleLine(angle, np.where(angle, load, 0.0), friction)
 
 
-def stiffness_of(lines: Sequence[MiddleLine], ramps: Ramps) -> float:
-    """Mean stiffness of both sides of middle lines, N·m/rad; 0 if there are none, or no load."""
-    reach = _reach(lines, ramps) if lines else 0.0
-    if reach <= 0.0:
+def stiffness_of(ramps: Ramps) -> float:
+    """Return the mean stiffness of both sides, N·m/rad; 0 without a middle line or a load."""
+    if not ramps.lines or (reach := _reach(ramps)) <= 0.0:
         return 0.0
-    low, high = _SIDE
-    return 1.0 / float(np.mean([line.dead_band(low * reach, high * reach)[1] for line in lines]))
+    return 1.0 / float(np.mean(_dead_bands(ramps, reach, SIDE)[:, 1]))
 
 
 def backlash_of(
-    lines: Sequence[MiddleLine],
-    ramps: Ramps,
-    hysteresis: Estimate,
-    step: float,
-    loaded: float,
-    light: float,
+    ramps: Ramps, hysteresis: Estimate, loaded: float, light: float
 ) -> Backlash | None:
     """Bound the backlash by ramps of one amplitude; None where they do not bound it.
 
@@ -182,31 +101,28 @@ def backlash_of(
     backlash: that is bounded by the angle between small loads alone.
 
     Args:
-        lines: of the complete loops.
-        ramps: with these loops.
-        hysteresis: of the same ramps, rad.
-        step: rad, between readings of the encoder; 0 if unknown.
+        ramps: the ramps.
+        hysteresis: their hysteresis, rad.
         loaded: stiffness of the largest ramps, N·m/rad; 0 if unknown.
         light: torque, N·m, that ramps with a soft middle certainly reach.
     """
     if hysteresis.uncertainty is None:
         return Backlash(0.0, None, Cause.REPEATS)
     most = hysteresis.value + hysteresis.expanded
+    lines = ramps.lines
     if not lines:
         return Backlash(0.0, most, Cause.REPEATS)
-    if _friction(lines) > MOST_FRICTION * ramps.amplitude:
+    if _friction(ramps) > MOST_FRICTION * ramps.amplitude:
         return None
-    reach = _reach(lines, ramps)
-    if reach <= 0.0:
+    if (reach := _reach(ramps)) <= 0.0:
         return Backlash(0.0, most, Cause.FRICTION)
     if len(lines) == 1:
         return Backlash(0.0, most, Cause.REPEATS)
     side, near, far = (
-        np.array([line.dead_band(low * reach, high * reach) for line in lines])
-        for low, high in (_SIDE, _LOWER_HALF, _UPPER_HALF)
+        _dead_bands(ramps, reach, part) for part in (SIDE, _LOWER_HALF, _UPPER_HALF)
     )
     stiffness = 1.0 / float(np.mean(side[:, 1]))
-    reading = resolution(step) + resolution(_spacing(ramps)) / stiffness
+    reading = resolution(ramps.step) + resolution(_spacing(ramps)) / stiffness
     whole, bend = Estimate.of_mean(side[:, 0]), Estimate.of_mean(far[:, 0] - near[:, 0])
     bent = abs(bend.value) > bend.expanded + reading
     if bent:
@@ -225,7 +141,7 @@ def backlash_of(
     if soft:
         wide = Estimate.of_mean([line.width(light) for line in lines])
         low, high = 0.0, max(high, wide.value + wide.expanded)
-    high = min(max(high, step), most)
+    high = min(max(high, ramps.step), most)
     if low <= 0.0:
         return Backlash(0.0, high, Cause.SOFT if soft else Cause.BENT if bent else Cause.NONE)
     within = Estimate.of_mean([line.stiffness_within(_MIDDLE * whole.value) for line in lines])
@@ -250,30 +166,23 @@ def reconciled(found: Sequence[Backlash | None]) -> Backlash:
     return Backlash(max(lows), high, cause)
 
 
-def _monotonic(values: Array) -> Array:
-    """A non-decreasing sequence: midway between what was reached before and what stays behind."""
-    reached = np.maximum.accumulate(values)
-    left: Array = np.minimum.accumulate(values[::-1])[::-1]
-    return 0.5 * (reached + left)
-
-
-def _distinct(values: Array) -> Array:
-    """Tell equal values apart, by rounding errors of the greatest, in their order."""
-    apart: Array = np.spacing(np.max(np.abs(values))) * np.arange(len(values))
-    return values + apart
-
-
 def _spacing(ramps: Ramps) -> float:
-    """Between samples of the torque, N·m."""
+    """Usual distance between samples of the torque, N·m."""
     return float(np.mean([np.median(np.abs(np.diff(half.torque))) for half in ramps.halves]))
 
 
-def _friction(lines: Sequence[MiddleLine]) -> float:
-    return float(np.mean([np.mean(line.friction) for line in lines]))
+def _dead_bands(ramps: Ramps, reach: float, part: tuple[float, float]) -> Array:
+    """Dead band and compliance of each middle line by a part of the loads reached, (lines, 2)."""
+    low, high = part
+    return np.array([line.dead_band(low * reach, high * reach) for line in ramps.lines])
 
 
-def _reach(lines: Sequence[MiddleLine], ramps: Ramps) -> float:
+def _friction(ramps: Ramps) -> float:
+    return float(np.mean([np.mean(line.friction) for line in ramps.lines]))
+
+
+def _reach(ramps: Ramps) -> float:
     """Load that the gear certainly reaches on both sides, N·m, clear of the reversals."""
-    margin = _ANGLES // 40
-    reached = (min(float(line.load[-margin]), -float(line.load[margin])) for line in lines)
-    return min(ramps.amplitude - _friction(lines), *reached)
+    margin = ANGLES // 40
+    reached = (min(float(line.load[-margin]), -float(line.load[margin])) for line in ramps.lines)
+    return min(ramps.amplitude - _friction(ramps), *reached)
