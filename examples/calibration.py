@@ -19,7 +19,7 @@ first, second, ratio = given.first, given.second, given.ratio
 config = replace(NodeParameters.load(), gear_ratio=str(ratio))
 result = fit([read_encoders(first, config)], ratio)
 Path('calibration.yaml').write_text(result.calibration.text(), 'utf-8')  # a parameter of the node
-judged = judge(*read_encoders(second, config), result.calibration)
+judged = judge(read_encoders(second, config), result.calibration)
 print(f'rms of the error on {second.name}: {1e3 * judged.rms_before:.2f} mrad before, ', end='')
 width = 1e3 * result.calibration.half_width
 print(f'{1e3 * judged.rms_after:.2f} mrad after; interval ± {width:.2f} mrad')

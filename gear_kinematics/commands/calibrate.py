@@ -16,7 +16,7 @@ from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.measurement.calibration import fit, judge
 from gear_kinematics.measurement.calibration.document import check_document, document
 from gear_kinematics.measurement.reading import read_encoders
-from gear_kinematics.measurement.recording import Encoders, Recording, RecordingError
+from gear_kinematics.measurement.recording import Recording, RecordingError
 from gear_kinematics.parameters import NodeParameters
 
 
@@ -55,7 +55,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         return ExitCode.UNUSABLE
     mechanism = gear if isinstance(gear, Mechanism) else None
     result = fit(recordings, gear.gear_ratio, mechanism)
-    for recording, _ in recordings:
+    for recording in recordings:
         say_columns(recording, options)
     if result.helps:
         write_text(options.output, result.calibration.text())
@@ -68,9 +68,9 @@ def _check(options: argparse.Namespace, config: NodeParameters, reporter: Report
     calibration = Calibration.load(options.check)
     config = replace(config, gear_ratio=str(calibration.gear_ratio))
     judgements = []
-    for recording, encoders in _read(options, config):
+    for recording in _read(options, config):
         try:
-            judgements.append(judge(recording, encoders, calibration))
+            judgements.append(judge(recording, calibration))
             say_columns(recording, options)
         except RecordingError as error:
             complain(error)
@@ -81,9 +81,7 @@ def _check(options: argparse.Namespace, config: NodeParameters, reporter: Report
     return code if len(judgements) == len(options.recordings) else ExitCode.UNUSABLE
 
 
-def _read(
-    options: argparse.Namespace, config: NodeParameters
-) -> Iterator[tuple[Recording, Encoders]]:
+def _read(options: argparse.Namespace, config: NodeParameters) -> Iterator[Recording]:
     """Read the recordings, and report those that cannot be read."""
     for path in options.recordings:
         try:

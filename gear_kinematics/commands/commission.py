@@ -96,10 +96,9 @@ def _read(options: argparse.Namespace, request: analysis.Request) -> analysis.Co
         with message_progress(path.name, quiet=options.quiet) as progress:
             recordings.append(read_encoders(path, joints, topics, progress))
     result = analysis.commission(recordings, request)
-    for recording, _ in recordings:
-        say_columns(recording, options)
     asked = dict[str, None]()
-    for recording, _ in recordings:
+    for recording in recordings:
+        say_columns(recording, options)
         if heard := recording.rotor_messages:
             found = questions(heard.data, heard.received, request.rotor.joint, result.between)
             asked |= dict.fromkeys(map(str, found))

@@ -269,7 +269,7 @@ def _without(both: Encoders, rotor: Array, kept: Array, stray: Array) -> Encoder
     places = np.cumsum(good) - 1
     return replace(
         both,
-        rotor=RotorMotion._make(None if each is None else each[good] for each in both.rotor),
+        rotor=RotorMotion._make(each[good] for each in both.rotor),
         before=places[both.before[kept]],
         share=both.share[kept],
         measured=measured[kept],

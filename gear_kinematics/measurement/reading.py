@@ -62,7 +62,7 @@ def read_encoders(
     parameters: NodeParameters,
     sources: Sources | None = None,
     progress: ReportProgress | None = None,
-) -> tuple[Recording, Encoders]:
+) -> Recording:
     """Read a recording as `read` does; RecordingError if it lacks one of both encoders."""
     sources = sources or Sources()
     if not is_table(path):
@@ -71,12 +71,8 @@ def read_encoders(
             if not find_encoder_topic(bag, rotor, sources.encoder_topic):
                 raise RecordingError(f'{path}: {missing_encoder(bag)}')
     recording = read(path, parameters, sources, progress)
-    if recording.encoders is None:
-        raise RecordingError(
-            f'{path}: not both a rotor and an output among the columns; name them with '
-            '--rotor-column and --output-column'
-        )
-    return recording, recording.encoders
+    recording.both  # noqa: B018, raises the error
+    return recording
 
 
 def _read_bag(
@@ -149,7 +145,7 @@ class States:
             raise BagError(f'{path}: no usable rotor states on {rotor}{why}')
         stamp, turns, angle, effort, segment = _in_order(columns, rotor, remarks)
         clock, has_effort = self._clock.steps, np.isfinite(effort).any()
-        motion = RotorMotion(stamp, turns, angle, effort if has_effort else None, segment)
+        motion = RotorMotion(stamp, turns, angle, effort, segment)
         described = [f'rotor {rotor}, joint {parameters.rotor_joint!r}, rad']
         encoders = locked = None
         if encoder:

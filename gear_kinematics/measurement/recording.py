@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.bag import TopicMessages
-from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.kinematics.rotor_turns import TURN, split_turns
 from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.wire.cdr import SECOND
@@ -33,8 +33,17 @@ class RotorMotion(NamedTuple):
     stamp: Array  #: ns; if time was not recorded, one second a sample
     turns: Array
     angle: Array  #: rad: the rotor angle φ2 is 2π turns + angle
-    effort: Array | None = None  #: N·m; NaN where missing, None if it was not recorded
-    segment: Array | None = None  #: changes where the motion before is unknown; None: nowhere
+    effort: Array  #: N·m; NaN where it was not recorded
+    segment: Array  #: number that changes where the motion before is unknown
+
+    @classmethod
+    def of(
+        cls, stamp: Array, angle: Array, effort: Array | None = None, segment: Array | None = None
+    ) -> Self:
+        """Make a motion of angles that may be beyond a turn, rad."""
+        effort = np.full(len(stamp), np.nan) if effort is None else effort
+        segment = np.zeros(len(stamp), np.int64) if segment is None else segment
+        return cls(stamp, *split_turns(angle), effort, segment)
 
     @property
     def seconds(self) -> Array:
@@ -162,9 +171,7 @@ class Encoders:
     def torque(self, ratio: Fraction) -> Array | None:
         """Torque at the output, N·m, at the measured angles; None if it has gaps."""
         effort = self.rotor.effort
-        if effort is None or not np.isfinite(effort).all():
-            return None
-        return float(ratio) * self.at_measured(effort)
+        return float(ratio) * self.at_measured(effort) if np.isfinite(effort).all() else None
 
     def earlier(self, delay: float) -> Self:
         """Return the angles as if they had been measured earlier by a delay, s or samples."""
@@ -172,7 +179,7 @@ class Encoders:
         before, share, kept = match(self.rotor.stamp, stamp)
         return replace(self, before=before, share=share, measured=self.measured[kept])
 
-    def chosen(self, rows: Array) -> Self:
+    def chosen(self, rows: Array | slice) -> Self:
         """Leave out measured angles but those of some rows; the rotor's motion stays as it is."""
         return replace(
             self, before=self.before[rows], share=self.share[rows], measured=self.measured[rows]
@@ -183,9 +190,7 @@ class Encoders:
 
         In a gap between rotor samples of more than `max_gap`, ns, motion was missed.
         """
-        unknown = np.zeros(len(self.rotor.stamp) - 1, bool)
-        if self.rotor.segment is not None:
-            unknown |= np.diff(self.rotor.segment) != 0
+        unknown = np.diff(self.rotor.segment) != 0
         if max_gap is not None and self.timed:
             unknown |= np.diff(self.rotor.stamp) > max_gap
         return np.append(0, 1 + np.flatnonzero(unknown))
@@ -225,6 +230,16 @@ class Recording:
     rotor_messages: TopicMessages | None = None  #: the first of a bag that is read as recorded
 
     @property
+    def both(self) -> Encoders:
+        """Both encoders; RecordingError if they were not recorded."""
+        if self.encoders is None:
+            raise RecordingError(
+                f'{self.path}: not both a rotor and an output among the columns; name them with '
+                '--rotor-column and --output-column'
+            )
+        return self.encoders
+
+    @property
     def computed(self) -> Observed | None:
         """The fault that the output follows the rotor more closely than that of a gear, if any."""
         return next((f for f in self.faults if f.what is Observation.COMPUTED), None)
@@ -238,7 +253,7 @@ class Recording:
     def loading(self, ratio: Fraction) -> Loading | None:
         """Torque and twist: of the gear if the output was measured, else of the whole drive."""
         both = self.encoders
-        if both is None or both.rotor.effort is None:
+        if both is None:
             return self.locked
         torque = float(ratio) * both.at_measured(both.rotor.effort)
         known = np.isfinite(torque)

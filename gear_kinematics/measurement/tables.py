@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_turns
+from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.measurement.clocks import FASTEST, MOST, stamps, with_unit
 from gear_kinematics.measurement.columns import (
     ColumnsError,
@@ -268,7 +268,7 @@ class _Samples:
             before, share, inside = match(main.stamp, other.stamp, gap)
         torque = self.torque_at(main) / float(self._ratio) if 'torque' in self.found else None
         effort = None if torque is None or not torque.any() else torque
-        motion = RotorMotion(main.stamp, *split_turns(rotor), effort, main.segment)
+        motion = RotorMotion.of(main.stamp, rotor, effort, main.segment)
         steps_of_both = steps['rotor'], steps['output']
         both = Encoders(motion, self.timed, before, share, output[inside], *steps_of_both)
         if not (self.found['rotor'].unit or self.found['output'].unit):

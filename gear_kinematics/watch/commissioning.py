@@ -84,8 +84,7 @@ class LiveCommissioning:
             self._count += len(messages)
         name = f'live on {datetime.now().astimezone():%Y-%m-%d at %H:%M}'
         recording = gated(self._states.recording(Path(name), Sources()))
-        assert recording.encoders  # noqa: S101, there is a topic of the output
-        return commission([(recording, recording.encoders)], self.request)
+        return commission([recording], self.request)
 
     def write(self, actuator: str = '') -> str:
         """Write the parameter file into the working directory, as `write_file` does."""

@@ -94,7 +94,7 @@ def test_a_slip_no_larger_than_the_error_is_named_with_its_moment(slip, share):
     slipped = np.radians(slip) * np.clip((time / 60.0 - 0.3) / max(share, 1e-9), 0.0, 1.0)
     measured = rotor / -19.0 + 2e-3 * np.sin(rotor) + slipped + 2e-5 * random.normal(size=1500)
     both = encoders(rotor, measured, np.round(time * 1e9).astype(np.int64), COUNTS, COUNTS)
-    result = fit([(Recording(Path(__file__), 'gear', (), 1500, both), both)], RATIO)
+    result = fit([Recording(Path(__file__), 'gear', (), 1500, both)], RATIO)
     errors = result.calibration.validation
     assert errors.rms_after < 0.7 * errors.rms_before
     assert result.helps is not (slip > 0.0)
@@ -141,7 +141,7 @@ def test_travel_of_less_than_a_turn_is_corrected_over_its_span(ratio, delay):
     # The second half reaches farther, where the interval has to be wider.
     assert np.ptp(second.rotor) > 1.3 * np.ptp(first.rotor)
     result = fit([recorded(first, 0)], Fraction(ratio))
-    judged = judge(*recorded(second, 0), result.calibration)
+    judged = judge(recorded(second, 0), result.calibration)
     # Every joint is to be improved by 2.5 at the least.
     assert judged.rms_after < judged.rms_before / 2.5
     assert 0.9 <= judged.within_interval <= 0.99
@@ -190,7 +190,7 @@ def test_recordings_that_tell_nothing_are_refused():
     angle = np.arange(-400.0, 400.0) / 512.0  # without rounding errors
     exact = encoders(4.0 * angle, angle)
     with pytest.raises(RecordingError, match='within 0′, as if it were computed'):
-        fit([(recorded(simulated, 0)[0], exact)], Fraction(4))
+        fit([replace(recorded(simulated, 0), encoders=exact)], Fraction(4))
     simulated = simulate(
         USUAL, gears(USUAL, np.random.default_rng(0)), np.zeros(500), np.random.default_rng(0)
     )

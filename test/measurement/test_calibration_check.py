@@ -30,7 +30,7 @@ def test_interval_holds_on_the_other_half_whatever_the_delay(delay):
     for seed in range(3):
         first, second = two_halves(setting, seed)
         for used, other in ((first, second), (second, first)):
-            judged = judge(*other, fit([used], Fraction(100)).calibration)
+            judged = judge(other, fit([used], Fraction(100)).calibration)
             assert judged.holds
             assert judged.rms_after < judged.rms_before / 4.0
             coverage.append(judged.within_interval)
@@ -43,7 +43,7 @@ def test_delay_of_each_recording_is_estimated_like_its_zero():
     for delay in (0.0, 2e-3):
         first, second = two_halves(replace(GearSet(1), delay=delay), 3, strokes, 40.0)
         calibrated = fit([first], Fraction(-19), MECHANISM)
-        delays[delay] = judge(*second, calibrated.calibration)
+        delays[delay] = judge(second, calibrated.calibration)
         assert calibrated.delays[0].value == pytest.approx(delay, abs=1.5e-4)
     found = delays[2e-3]
     difference = found.delay.value - delays[0.0].delay.value
@@ -51,7 +51,7 @@ def test_delay_of_each_recording_is_estimated_like_its_zero():
     assert found.delay.uncertainty < 2e-4
     assert found.holds
     # The delay alone makes 2 ms times the speed.
-    speed = np.sqrt(np.mean(second[1].speed(Fraction(-19)) ** 2))
+    speed = np.sqrt(np.mean(second.both.speed(Fraction(-19)) ** 2))
     before, after = found.rms_before_with_delay, found.rms_after_with_delay
     assert after == pytest.approx(np.hypot(found.rms_after, 2e-3 * speed), rel=0.1)
     assert before > found.rms_before
@@ -62,7 +62,7 @@ def test_without_times_there_is_no_delay():
     first, second = two_halves(GearSet(1), 3, strokes, 30.0, timed=False)
     result = fit([first], Fraction(-19), MECHANISM)
     assert result.delays == [None]
-    judged = judge(*second, result.calibration)
+    judged = judge(second, result.calibration)
     assert judged.delay is None
     assert judged.rms_after_with_delay == judged.rms_after
     assert judged.rms_after < 0.3 * judged.rms_before
@@ -72,7 +72,7 @@ def test_constant_speed_tells_no_delay():
     random = np.random.default_rng(0)
     setting = GearSet(1, rotor_counts=2**24)
     simulated = simulate(setting, gears(setting, random), np.arange(20_000) * 1e-3, random)
-    assert judge(*recorded(simulated, 0), calibration()).delay is None
+    assert judge(recorded(simulated, 0), calibration()).delay is None
 
 
 @pytest.mark.parametrize(

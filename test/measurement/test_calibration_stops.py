@@ -35,7 +35,7 @@ def states(x, starts, radius=RADIUS):
 def followed(both: Encoders):
     """What is said of them of a gear with a ratio of 1."""
     recording = Recording(Path(), '', (), len(both.measured), both)
-    return Samples(recording, both, Fraction(1)).stop_states(RADIUS)
+    return Samples(recording, Fraction(1)).stop_states(RADIUS)
 
 
 step = st.sampled_from([0.0, 0.01, -0.02, 0.1, -0.1, 0.3, -0.7])

@@ -29,7 +29,7 @@ FULL_TURN = ramped_strokes(STROKE, 10.0, 1.0)
 
 def recorded(rotor, output, times):
     both = encoders(rotor, output, stamps(times))
-    return Recording(Path('gear'), 'gear', (), len(rotor), both), both
+    return Recording(Path('gear'), 'gear', (), len(rotor), both)
 
 
 def wrapped(angle, turn, low=0.0):

@@ -72,7 +72,7 @@ def test_files_in_other_dialects(table, gear, name, given, rows):
 
 
 def test_times_in_iso_8601(table, gear):
-    _, both = read_encoders(table('time_in_iso8601'), gear)
+    both = read_encoders(table('time_in_iso8601'), gear).both
     # The file has a sample each 40 ms.
     np.testing.assert_allclose(both.seconds, 0.04 * np.arange(len(both.seconds)), atol=1e-6)
 
@@ -339,7 +339,7 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         read_encoders(
             saved(tmp_path, written([t, one, o], 'time,rotor_counts,output_rad')),
             gear, Sources(rotor_counts=4096),
-        )[1]
+        ).both
         for one in (counts, counts % 2**32)
     )  # fmt: skip
     assert np.ptp(np.sign(counts)) == 2.0

@@ -195,14 +195,14 @@ def test_wraps_of_encoders_of_one_turn_are_no_faults(clean, gate):
 def test_a_calibration_does_not_help_where_the_error_rises(shared_path):
     path = shared_path('data/faults/one_corrupt_rotor_reading_calibrate.csv')
     recording = read_table(path, Sources(), RATIO)  # without the gate
-    assert not fit([(recording, recording.encoders)], RATIO).helps
+    assert not fit([recording], RATIO).helps
 
 
 def test_exchanged_columns_are_named(shared_path):
     path = shared_path('data/faults/both_encoders_clean.csv')
     exchanged = read_table(path, Sources(rotor='output_rad', output='rotor_rad'), RATIO)
     with pytest.raises(RecordingError, match='more than the rotor: exchange the two'):
-        fit([(exchanged, exchanged.encoders)], RATIO)
+        fit([exchanged], RATIO)
 
 
 @pytest.mark.parametrize(

@@ -202,7 +202,7 @@ def test_real_joints_are_left_open_with_the_true_ratio_in_the_interval(
     path = shared_path(f'data/dual_encoders/{name}.csv')
     counts = 2**24 if ratio.denominator == 1 else None
     sources = Sources(rotor_counts=counts, output_counts=counts)
-    _, both = read_encoders(path, replace(config, gear_ratio=str(ratio)), sources)
+    both = read_encoders(path, replace(config, gear_ratio=str(ratio)), sources).both
     found = estimate_ratio(both.at_measured(both.rotor.turned), both.measured, both.seconds)
     assert abs(found.measured.value - ratio) <= found.measured.uncertainty <= most * abs(ratio)
     assert (found.taken, ratio in found.candidates) == (None, True)

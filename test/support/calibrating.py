@@ -14,7 +14,7 @@ from simulated_gear import GearSet, Simulated, gears, simulate, strokes
 from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.measurement.calibration import Fit, fit
-from gear_kinematics.measurement.recording import Encoders, Recording
+from gear_kinematics.measurement.recording import Recording
 
 LIMITED = GearSet(
     1, rotor_errors=(2e-3, 1e-3, 5e-4), output_error=2.5e-3, satellite_error=0.0, tooth_error=0.0,
@@ -56,7 +56,7 @@ class Judged(NamedTuple):
     fit: Fit
 
 
-def recorded(simulated: Simulated, gear: int, *, timed: bool = True) -> tuple[Recording, Encoders]:
+def recorded(simulated: Simulated, gear: int, *, timed: bool = True) -> Recording:
     """What the encoders of one gear read."""
     stamp = np.round(simulated.time * 1e9).astype(np.int64) if timed else None
     angles = (
@@ -67,7 +67,7 @@ def recorded(simulated: Simulated, gear: int, *, timed: bool = True) -> tuple[Re
     both = encoders(rotor, measured, stamp, COUNTS, COUNTS)
     both = replace(both, rotor=both.rotor._replace(effort=effort))
     path = Path(__file__)  # of no importance but for its hash
-    return Recording(path, f'gear {gear}', (), len(rotor), both), both
+    return Recording(path, f'gear {gear}', (), len(rotor), both)
 
 
 def halves(simulated: Simulated) -> tuple[Simulated, Simulated]:
@@ -84,7 +84,7 @@ def halves(simulated: Simulated) -> tuple[Simulated, Simulated]:
 
 def judge(result: Fit, simulated: Simulated, gear: int) -> Judged:
     """Correct another recording as the node does."""
-    rotor = recorded(simulated, gear)[1].rotor
+    rotor = recorded(simulated, gear).both.rotor
     count = len(rotor.stamp)
     correction = Corrector(result.calibration).correct_batch(
         rotor.stamp, rotor.turns, rotor.angle, np.full(count, np.nan), rotor.effort,

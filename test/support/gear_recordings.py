@@ -14,7 +14,6 @@ import numpy as np
 from shipped_bags import JOINT_STATE, write_bag
 from simulated_gear import GearSet, gears, simulate, strokes
 
-from gear_kinematics.kinematics.rotor_turns import split_turns
 from gear_kinematics.measurement.encoder_step import step_of
 from gear_kinematics.measurement.recording import Encoders, RotorMotion
 from gear_kinematics.wire.cdr import JointStateTemplate
@@ -74,7 +73,7 @@ def encoders(
     """Angles of rotor and output at the same times, rad; without stamps, rows."""
     rows = np.arange(len(rotor))
     return Encoders(
-        RotorMotion(rows * 10**9 if stamp is None else stamp, *split_turns(rotor)),
+        RotorMotion.of(rows * 10**9 if stamp is None else stamp, rotor),
         timed=stamp is not None,
         before=rows,
         share=np.zeros(len(rows)),

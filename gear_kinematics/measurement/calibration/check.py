@@ -13,7 +13,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.calibration.model import GearModel, without_delays
 from gear_kinematics.measurement.calibration.terms import Samples
 from gear_kinematics.measurement.ratio import wrong_ratio
-from gear_kinematics.measurement.recording import Array, Encoders, Recording, RecordingError
+from gear_kinematics.measurement.recording import Array, Recording, RecordingError
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.statistics.uncertainty import Estimate
@@ -47,7 +47,7 @@ class Judgement:
     after: Array  # measured minus corrected output angle less its mean, without the delay
 
 
-def judge(recording: Recording, encoders: Encoders, calibration: Calibration) -> Judgement:
+def judge(recording: Recording, calibration: Calibration) -> Judgement:
     """Correct the output of a recording as the node does, and compare it with the measured one.
 
     The zero of the recording and the delay of its stamps are taken out: they are not the gear's.
@@ -55,12 +55,11 @@ def judge(recording: Recording, encoders: Encoders, calibration: Calibration) ->
     Raises:
         RecordingError: if the recording has another gear ratio.
     """
-    rotor, ratio = encoders.rotor, calibration.gear_ratio
+    encoders, ratio = recording.both, calibration.gear_ratio
+    rotor = encoders.rotor
     if wrong := wrong_ratio(encoders, ratio):
         raise RecordingError(f'{recording.name}: {wrong}')
-    effort = np.full(len(rotor.turns), np.nan) if rotor.effort is None else rotor.effort
-    segment = np.zeros(len(effort), np.int64) if rotor.segment is None else rotor.segment
-    seconds, velocity = rotor.seconds, np.full(len(effort), np.nan)
+    seconds, velocity = rotor.seconds, np.full(len(rotor.stamp), np.nan)
     if encoders.timed:
         before, after = (np.interp(seconds + t, seconds, rotor.turned) for t in (-_STEP, _STEP))
         velocity = (after - before) / (2.0 * _STEP)
@@ -70,11 +69,11 @@ def judge(recording: Recording, encoders: Encoders, calibration: Calibration) ->
     corrector = GearState(unbounded, calibration).corrector
     assert corrector  # noqa: S101, there is a calibration
     correction = corrector.correct_batch(
-        stamp, rotor.turns, rotor.angle, velocity, effort, segment
+        stamp, rotor.turns, rotor.angle, velocity, rotor.effort, rotor.segment
     )
 
     def samples_of(shift: float) -> Samples:
-        return Samples(recording, encoders, ratio, shift, correction.deviation)
+        return Samples(recording, ratio, shift, correction.deviation)
 
     model, (delay,) = without_delays(lambda shifts: GearModel([samples_of(*shifts)], []), 1)
     delayed, (samples,) = samples_of(0.0), model.samples

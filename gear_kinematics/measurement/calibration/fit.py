@@ -33,7 +33,7 @@ from gear_kinematics.measurement.calibration.model import (
     half_width,
     without_delays,
 )
-from gear_kinematics.measurement.calibration.terms import Recorded, Samples, thinned
+from gear_kinematics.measurement.calibration.terms import Samples, thinned
 from gear_kinematics.measurement.gate import NO_ENCODER
 from gear_kinematics.measurement.ratio import wrong_ratio
 from gear_kinematics.measurement.recording import Array, Recording, RecordingError
@@ -77,7 +77,7 @@ class Fit:
 
 
 def fit(
-    recordings: Sequence[Recorded], ratio: Fraction, mechanism: Mechanism | None = None
+    recordings: Sequence[Recording], ratio: Fraction, mechanism: Mechanism | None = None
 ) -> Fit:
     """Calibrate a gear of an exact ratio i by one recording or more.
 
@@ -87,14 +87,14 @@ def fit(
         RecordingError: if the recordings do not suffice, or have another ratio.
     """
     recordings = thinned(recordings)
-    for recording, encoders in recordings:
-        if (count := len(encoders.measured)) < _FEWEST:
+    for recording in recordings:
+        if (count := len(recording.both.measured)) < _FEWEST:
             raise RecordingError(f'{recording.name}: {count} output angles are too few')
-        if not np.ptp(encoders.ideal(ratio)) > 0.0:
+        if not np.ptp(recording.both.ideal(ratio)) > 0.0:
             raise RecordingError(f'{recording.name}: the rotor does not move')
-        if wrong := wrong_ratio(encoders, ratio):
+        if wrong := wrong_ratio(recording.both, ratio):
             raise RecordingError(f'{recording.name}: {wrong}')
-    samples = [Samples(*recording, ratio) for recording in recordings]
+    samples = [Samples(recording, ratio) for recording in recordings]
     if (deviation := max(float(np.ptp(s.error)) for s in samples)) < NO_ENCODER:
         raise RecordingError(str(Observation.COMPUTED(deviation=deviation)))
     refused: dict[str, Observed] = {}
@@ -102,7 +102,7 @@ def fit(
 
     def model_of(shifts: Sequence[float]) -> GearModel:
         pairs = zip(recordings, shifts, strict=True)
-        samples = [Samples(*recorded, ratio, shift) for recorded, shift in pairs]
+        samples = [Samples(recording, ratio, shift) for recording, shift in pairs]
         others = (*candidates.stops(samples, refused), *candidates.wind_up(samples, refused))
         return GearModel(samples, [*orders, *others])  # in the order of the file
 

@@ -6,6 +6,7 @@ contains.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from itertools import count, islice
 from typing import NamedTuple
@@ -16,13 +17,11 @@ from gear_kinematics.correction.calibration_file import Compliance, Order, Stop
 from gear_kinematics.correction.corrector import MAX_GAP
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.measurement.recording import Array, Encoders, Recording
+from gear_kinematics.measurement.recording import Array, Recording
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.two_encoders import play_bounds
 from gear_kinematics.measurement.wording import ARC_MINUTES
 from gear_kinematics.report.document import number
-
-Recorded = tuple[Recording, Encoders]
 
 _MOST = 400_000  # measured angles that are used, of all recordings; more would only take time
 _MOVING = 0.05  # share of the greatest speed above which the output moves
@@ -44,13 +43,10 @@ _KNOWN = 0.8  # share of the samples at which the state of a stop operator must 
 _LARGEST_DENOMINATOR = 2**16  # of an order; a ratio that was fitted may have a longer one
 
 
-def thinned(recordings: Sequence[Recorded]) -> list[Recorded]:
+def thinned(recordings: Sequence[Recording]) -> list[Recording]:
     """Leave out measured angles if there are very many; the rotor's motion stays as it is."""
-    step = max(1, -(-sum(len(encoders.measured) for _, encoders in recordings) // _MOST))
-    return [
-        (recording, encoders.chosen(np.arange(0, len(encoders.measured), step)))
-        for recording, encoders in recordings
-    ]
+    every = max(1, -(-sum(len(one.both.measured) for one in recordings) // _MOST))
+    return [replace(one, encoders=one.both.chosen(slice(None, None, every))) for one in recordings]
 
 
 class Samples:
@@ -59,7 +55,6 @@ class Samples:
     def __init__(
         self,
         recording: Recording,
-        encoders: Encoders,
         ratio: Fraction,
         shift: float = 0.0,
         deviation: Array | None = None,
@@ -68,7 +63,7 @@ class Samples:
 
         What is known of the error, `deviation` at the rotor's samples, rad, is taken out of it.
         """
-        encoders = encoders.earlier(shift) if shift else encoders
+        encoders = recording.both.earlier(shift) if shift else recording.both
         self.recording, self.encoders, self.shift = recording, encoders, shift
         self.turns, self.angle = encoders.position()
         self.known = 0.0 if deviation is None else encoders.at_measured(deviation)

@@ -18,7 +18,7 @@ from gear_kinematics.kinematics.gear_ratio import GearRatio, tooth_pairs
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.commissioning.joint import Joint
 from gear_kinematics.measurement.ratio import RatioEstimate, estimate_ratio
-from gear_kinematics.measurement.recording import Encoders, Recording, RecordingError
+from gear_kinematics.measurement.recording import Recording, RecordingError
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.transmission import transmission_figures
 from gear_kinematics.measurement.two_encoders import ENCODER_ERROR
@@ -80,9 +80,7 @@ class Commissioning:
         return {name: (old, new) for name, old, new in pairs if new not in (None, old)}
 
 
-def commission(
-    recordings: Sequence[tuple[Recording, Encoders]], request: Request
-) -> Commissioning:
+def commission(recordings: Sequence[Recording], request: Request) -> Commissioning:
     """Determine the parameters of the node for a gear.
 
     Args:
@@ -94,7 +92,7 @@ def commission(
         RecordingError: if a recording has too few samples, no times, positions in another unit
             than rad, or no sample at `zero_here`.
     """
-    joints = tuple(Joint.of(*recording) for recording in recordings)
+    joints = tuple(map(Joint.of, recordings))
     longest = max(joints, key=lambda joint: joint.travel)
     ratio, between, evidence = _decided(longest, request.ratio)
     answer, encoders, known = evidence, longest.encoders, request.file or NodeParameters.load()

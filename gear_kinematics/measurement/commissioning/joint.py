@@ -39,13 +39,14 @@ class Joint:
     rotor_range: float  # angle after which the rotor's position repeats, rad; 0 if it does not
 
     @classmethod
-    def of(cls, recording: Recording, encoders: Encoders) -> 'Joint':
+    def of(cls, recording: Recording) -> 'Joint':
         """Take the wraps out of a recording of positions as they are.
 
         Raises:
             RecordingError: if there are too few samples, no times, or another unit than rad.
         """
-        motion, measured, path = encoders.rotor, encoders.measured, recording.path
+        encoders, path = recording.both, recording.path
+        motion, measured = encoders.rotor, encoders.measured
         if len(measured) <= 1:
             raise RecordingError(f'{path}: only one sample of both encoders')
         if not encoders.timed:
