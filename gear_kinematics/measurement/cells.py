@@ -17,17 +17,17 @@ MOMENT = re.compile(
 
 
 def cells_of(line: str, separator: str) -> list[str]:
-    """Divide a line; a separator that is a space may be several."""
+    """Divide a line into cells; a space as separator stands for any number of them."""
     if separator == ' ':
         return line.split()
     return [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
 
 
 def numbers(column: Any, point: str = '.') -> Any:
-    """Return a column of pandas as numbers or datetime64[ns]; NaN or NaT where it has none."""
+    """Convert a column of pandas to numbers or datetime64[ns]; NaN or NaT where it has none."""
     import pandas as pd  # noqa: PLC0415, of an extra
 
-    if column.dtype.kind == 'm':  # since the start
+    if column.dtype.kind == 'm':  # times since the start
         column = pd.Timestamp(0) + column
     if column.dtype.kind == 'M':
         return column.to_numpy('datetime64[ns]')
@@ -54,7 +54,7 @@ def numbers(column: Any, point: str = '.') -> Any:
         text, of_day = text.str.rstrip('APMapm '), of_day.str.rstrip('APMapm ')
         plain = of_day.str.replace(r'^\d+:\d+[.].*', r'0:\g<0>', regex=True)
         moments = pd.Timestamp(0) + pd.to_timedelta(plain, errors='coerce') + later
-    if not moments.notna().any():  # others, of which 1/2/2026 is in January
+    if not moments.notna().any():  # other dates, of which 1/2/2026 is in January
         date = r'\d\d?[./-](\d\d?|[A-Za-z]{3})[./-](\d{4}|(?<=[./])\d\d) +\d\d?:\d\d'
         dates = text.where(text.str.match(date))
         dates = dates.str.replace(r'([./])(\d\d)(?= )', r'\g<1>20\2', regex=True)
@@ -65,7 +65,7 @@ def numbers(column: Any, point: str = '.') -> Any:
 
 
 def weight(cell: str, point: str) -> float:
-    """How sure it is that this is a number or a time: 0 to 1."""
+    """Return how certainly a cell is a number or a time: 0 to 1."""
     if elements := _array(cell):
         return min(weight(one, '.') for one in elements)
     mark, other = re.escape(point), re.escape('.' if point == ',' else ',')
@@ -76,14 +76,14 @@ def weight(cell: str, point: str) -> float:
 
 
 class Element(NamedTuple):
-    """An element of the arrays in the cells of a column, as JSON has them."""
+    """An element of the arrays in the cells of a column, which are written as in JSON."""
 
     place: int
-    beside: int  # place of the column whose arrays name the elements, or of the arrays
-    key: int | str  # its number, or its name, as in sensor_msgs/JointState
+    beside: int  # place of the column that names the elements, if any; otherwise `place`
+    key: int | str  # its index, or its name as in sensor_msgs/JointState
 
     def of(self, frame: Any) -> Any:
-        """The column of it; `nan` in rows without it."""
+        """Return its column, with `nan` in rows without it."""
         import pandas as pd  # noqa: PLC0415, of an extra
 
         rows: Iterable[Iterable[tuple[Any, str]]]
@@ -104,7 +104,7 @@ def _array(cell: Any) -> list[str]:
 
 
 def elements_of(lines: Sequence[str], names: Sequence[str], separator: str) -> dict[str, Element]:
-    """Elements of arrays, by names: of sensor_msgs/JointState, with those of the joints."""
+    """Find the elements of arrays by name; those of sensor_msgs/JointState bear their joint's."""
     rows = [cells_of(line, separator) for line in lines]
     found = {}
     for place, column in enumerate(names):

@@ -1,8 +1,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Differences between states of a gear, by recordings at one torque, and their certainty.
+"""Changes of a gear between recordings at a common torque, and their significance.
 
-Figures are positive and scatter in proportion to their values, so that logarithms are compared:
-Student's test, with one scatter for all groups.
+Figures are positive and scatter in proportion to their values. So their logarithms are compared,
+by Student's t-test with a pooled variance of all groups.
 """
 
 import fnmatch
@@ -23,14 +23,14 @@ from gear_kinematics.measurement.measured import HYSTERESIS
 from gear_kinematics.statistics.uncertainty import COVERAGE, Component, Estimate, combined
 
 _OF_SMALL_RAMPS = (HYSTERESIS, 'friction')
-SIGNIFICANCE = 1.0 - COVERAGE  # probability of a false alarm in each of both families of `judged`
+SIGNIFICANCE = 1.0 - COVERAGE  # probability of a false alarm in either family of `judged`
 
 
 class Group(NamedTuple):
     """Recordings of one state of the gear."""
 
     name: str
-    members: tuple[int, ...]  # numbers of the recordings
+    members: tuple[int, ...]  # indices of the recordings
 
 
 def single(names: Sequence[str]) -> list[Group]:
@@ -40,9 +40,10 @@ def single(names: Sequence[str]) -> list[Group]:
 
 
 def grouped(names: Sequence[str], patterns: Sequence[str]) -> list[Group]:
-    """Group recordings by globs, in their order; the first that matches a name counts.
+    """Group recordings by globs, in their order; each name belongs to the first that matches.
 
-    Raises ValueError if there are not at least two groups.
+    Raises:
+        ValueError: if there are fewer than two groups.
     """
     firsts = [next((p for p in patterns if fnmatch.fnmatchcase(n, p)), None) for n in names]
     groups = [
@@ -68,7 +69,7 @@ class Quantity(NamedTuple):
 
 
 def at_common_torque(reports: Sequence[LostMotion]) -> list[LostMotion]:
-    """Compute the figures of ramps at the least of their rated torques and amplitudes, N·m."""
+    """Compute the figures anew at the least of all rated torques and amplitudes."""
     known = [own for report in reports if (own := report.figures)]
     if len(known) < 2:  # noqa: PLR2004, nothing to compare
         return [*reports]
@@ -82,11 +83,11 @@ def at_common_torque(reports: Sequence[LostMotion]) -> list[LostMotion]:
 
 
 def quantities(reports: Sequence[LostMotion]) -> tuple[list[Quantity], list[str]]:
-    """Choose the figures of recordings, which `at_common_torque` returns, for a comparison.
+    """Choose the figures to compare from recordings that `at_common_torque` returns.
 
     Returns:
-        Those of at least two recordings; and the names of recordings whose hysteresis and friction
-        are left out, as their smallest ramps are not of the amplitude of the others.
+        The figures that at least two recordings have; and the names of recordings whose hysteresis
+        and friction are left out, as their smallest ramps are smaller than those of the others.
     """
     smallest = {own.name: own.figures.ramps[0].amplitude for own in reports if own.figures}
     unlike = [name for name, own in smallest.items() if own < max(smallest.values()) / ALIKE]
@@ -120,21 +121,21 @@ class Change:
     second: str
     before: float  # geometric mean, SI
     after: float
-    interval: tuple[float, ...]  # limits of after / before with `COVERAGE`; none if unknown
-    probability: float | None  # probability of as much by chance; None if unknown
-    repeated: bool  # whether these are by the scatter between recordings, else by that within them
+    interval: tuple[float, ...]  # `COVERAGE` interval of after / before; empty if unknown
+    probability: float | None  # probability of at least this change by chance; None if unknown
+    repeated: bool  # whether these are by the scatter between recordings, not within them
     significant: bool = False  # among all changes of its family
 
     @property
     def judgement(self) -> str:
-        """What is said of it."""
+        """The judgement in words."""
         if self.significant:
             return 'significant'
         return 'not judged' if self.probability is None else 'not significant'
 
 
 def changes_of(quantity: Quantity, groups: Sequence[Group]) -> list[Change]:
-    """Compare a figure of groups with that of the first, not yet judging changes together."""
+    """Compare a figure of each group with that of the first, without judging the changes."""
     known = [
         [v for k in group.members if (v := quantity.values[k]) and v.value > 0.0]
         for group in groups
@@ -144,7 +145,7 @@ def changes_of(quantity: Quantity, groups: Sequence[Group]) -> list[Change]:
     squares = sum(float(np.sum((own - own.mean()) ** 2)) for own in logs if len(own))
 
     def scatter(values: Sequence[Estimate]) -> Component | None:
-        """Return the scatter of the mean of a group's logarithms; None if it is unknown."""
+        """Return the uncertainty of the mean of a group's logarithms; None if it is unknown."""
         if degrees:
             return Component(math.sqrt(squares / degrees / len(values)), degrees)
         (value,) = values
@@ -171,7 +172,7 @@ def changes_of(quantity: Quantity, groups: Sequence[Group]) -> list[Change]:
 
 
 def _chance(estimate: Estimate) -> float | None:
-    """Probability of a value as far from zero if the quantity is zero; None if unknown."""
+    """Probability of a value at least as far from zero if the quantity is 0; None if unknown."""
     if estimate.standard is None:
         return None
     if not estimate.standard:
@@ -181,7 +182,7 @@ def _chance(estimate: Estimate) -> float | None:
 
 
 def judged(changes: Sequence[Change]) -> list[Change]:
-    """Judge changes together, by Bonferroni: those of the hysteresis, and apart all others."""
+    """Judge changes by Bonferroni's method: those of the hysteresis, and apart, the rest."""
     tested = [change for change in changes if change.probability is not None]
     count = Counter(change.quantity.name == HYSTERESIS for change in tested)
     return [

@@ -13,22 +13,23 @@ from gear_kinematics.measurement.recording import Array
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.wire.cdr import SECOND
 
-_DATES = 978_307_200.0, 4_102_444_800.0  # s since 1970: in 2001 and in 2100
+_DATES = 978_307_200.0, 4_102_444_800.0  # s since 1970: the years 2001 and 2100
 _LEAST_STEP, _MOST_STEP = {'s': 1e-6, 'ms': 5e-5, 'us': 5e-5, 'ns': 5e-5}, 1.0
-"""s between samples that are likely, of times in a unit."""
+"""Likely intervals between samples, s: least for times in a unit, and greatest."""
 _EXCEL = 25_569
-"""Days from the epoch of workbooks to 1970."""
-_UNREADABLE = 0.01  # share of times that cannot be read, at most
-_LATE_ROWS = 25  # rows in succession out of order, at most; after more the clock was set back
+"""Days between the epoch of workbooks and 1970."""
+_UNREADABLE = 0.01  # greatest share of times that cannot be read
+_LATE_ROWS = 25  # most successive rows out of order; more show a clock that was set back
 _FEWEST_AGAIN, _EVEN = 2, 1.5
-"""Rows whose times come again after a clock was set back; usual steps, the longest of theirs."""
+"""Least number of rows that repeat times after a clock was set back; their greatest step, in usual
+steps."""
 _DAY = 86_400 * SECOND
 FASTEST, MOST = 1000.0, 0.9
-"""rad/s, which hardly any rotor exceeds; share of the samples in motion that are slower."""
+"""Speed that hardly any rotor exceeds, rad/s; share of the samples in motion that are slower."""
 
 
 def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
-    """Times in the unit that their sampling shows; ValueError if it does not."""
+    """Return the clock with the unit that the sampling shows; ValueError if it shows none."""
     if times.dtype.kind == 'M':
         return clock._replace(unit='date')
     known = np.isfinite(times) & np.isfinite(angle)
@@ -40,7 +41,7 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
     steps = np.diff(times)[later]
     step = float(np.median(steps))
     speed = float(np.quantile(np.abs(np.diff(angle)[later]) / steps, MOST))
-    if role == 'angle':  # of a locked shaft, whose times tell the order alone
+    if role == 'angle':  # a locked shaft, whose times only give the order
         speed = 0.0
     spans = {unit: (step * TIME_UNITS[unit], times[0] * TIME_UNITS[unit]) for unit in _LEAST_STEP}
     dated = [unit for unit, (_, at) in spans.items() if _DATES[0] < at < _DATES[1]]
@@ -73,10 +74,10 @@ def stamps(
     *,
     alone: bool,
 ) -> tuple[Array, Array]:
-    """Stamps, ns, of the rows that are kept and in order, and the numbers of these rows.
+    """Return stamps, ns, of the kept rows that are in order, and the indices of these rows.
 
-    After a clock was set back, they go on if no other rows are `alone` with times of that clock;
-    otherwise they end there. ValueError: the times cannot be read.
+    Where a clock was set back, the stamps go on if there are no other rows (`alone`), and end
+    otherwise. ValueError if the times cannot be read.
     """
     rows = np.flatnonzero(kept)
     if clock is None or times is None:
@@ -88,7 +89,7 @@ def stamps(
     else:
         readable = np.abs(times * clock.scale) < _DATES[1]  # NaN compares false
         factor = clock.scale * SECOND
-        exact = times.dtype.kind in 'iu'  # also of more digits than floating point has
+        exact = times.dtype.kind in 'iu'  # with more digits than floating point has
         seconds = times * round(factor) if exact else np.where(readable, times, 0.0) * factor
         stamp = np.round(seconds).astype(np.int64)
     if np.mean(~readable) > _UNREADABLE:
@@ -125,9 +126,9 @@ def stamps(
 
 
 def _restore(stamp: Array) -> Iterator[tuple[int, int]]:
-    """Let stamps, ns, go on where the clock was set back; yield the last before, and by how much.
+    """Make stamps, ns, go on where the clock was set back; yield the last before, and the size.
 
-    Rows that are written late are few, or the time jumps on behind them.
+    Rows that were written late are few, or time jumps forward after them.
     """
     steps = np.diff(stamp)
     usual = np.median(steps[steps > 0]) if np.any(steps > 0) else 0
@@ -144,7 +145,7 @@ def _restore(stamp: Array) -> Iterator[tuple[int, int]]:
 def _order(stamp: Array) -> tuple[Array, int]:
     """Find the rows that are in order, and the row where the clock was set back.
 
-    Of rows that contradict each other, the fewest are left out, be they late or early.
+    As few rows as possible are left out, whether they are late or early.
     """
     late = stamp < np.maximum.accumulate(stamp)
     early = stamp > np.minimum.accumulate(stamp[::-1])[::-1]
@@ -161,7 +162,7 @@ def _order(stamp: Array) -> tuple[Array, int]:
 
 
 def _longest(values: list[int]) -> NDArray[np.bool_]:
-    """Find the longest selection of values that never falls."""
+    """Find the longest non-decreasing selection of values."""
     ends: list[int] = []
     places: list[int] = []
     before = []

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The meaning of a table's columns: quantities and units by their names, or as given."""
+"""The meaning of a table's columns: quantities and units, by their names or as given."""
 
 import re
 import shlex
@@ -13,7 +13,7 @@ from gear_kinematics.wire.nearest import among
 
 _ROTOR = ('rotor', 'motor', 'mot', 'odrive', 'antrieb')
 _OUTPUT = ('output', 'out', 'load', 'shaft', 'link', 'joint', 'abtrieb')
-"""Words for either side of the gear, the likeliest first."""
+"""Words for the two sides of the gear, the likeliest first."""
 _ANGLE = (
     'position', 'positions', 'pos', 'angle', 'encoder', 'enc', 'theta', 'deflection', 'twist',
     'winkel',
@@ -28,10 +28,10 @@ _FILLING = {
     'in', 'ist', 'host', 'pi', 'ros', 'system', 'unix', 'epoch', 'fb', 'fbk', 'ave', 'estimate',
     'scalars',
 }  # fmt: skip
-"""Words that may stand beside the others; all of them exclude commands, speeds and the like."""
+"""Words that may accompany the others; any other word shows a command, a speed or the like."""
 _COUNTS = ('counts', 'count', 'cnt', 'inc', 'increments', 'ticks', 'pulse', 'pulses')
 _NANOSECONDS = ('ns', 'nsec', 'nsecs', 'nanosec', 'nanosecs', 'nanoseconds')
-ANGLE_UNITS = (*UNITS, 'counts')  # units of angle that can be given
+ANGLE_UNITS = (*UNITS, 'counts')  # units of angle that users can give
 _ANGULAR = ('angle', 'rotor', 'output')
 _OF_ANGLE = {
     **UNITS,
@@ -57,13 +57,13 @@ _UNITS: Mapping[str, Mapping[str, float | None]] = {
         **dict.fromkeys(('day', 'days'), 86_400.0),
     },
 }
-"""In SI units, of each the usual word first; None: counts of an encoder."""
+"""Units by role, in SI units, the usual word of each first; None stands for counts."""
 TIME_UNITS: Mapping[str, Any] = _UNITS['time']
 _KNOWN = {unit for units in _UNITS.values() for unit in units}
 _NO_UNIT = {'-', 'none', 'n/a', '1', ':'}
 _SPEEDS = {'rpm', 'rps', 'dps', 'cps'}
 _SCALED = re.compile(r'(?<![^\W_])(?:\d+\.\d+ ?|\d+)([^\W\d_]+|°)$')
-"""Numbers of a unit, as in rotor_0.1deg, which are no part of a name."""
+"""A unit with a number, as in rotor_0.1deg, which is not part of the name."""
 _BRACKETS = re.compile(r'[\[(]\s*([^\])]*?)\s*[\])]')
 _CAMEL = re.compile(r'[A-Z]+(?![a-zµ])|[A-Z]?[^\W\d_A-Z]+|\d+|°')
 _MOTEUS = {'position', 'torque', 'q_current'}
@@ -73,21 +73,21 @@ _REVOLUTIONS = re.compile(r'(?i)servo_stats.*position|pos_estimate|pos_rel|pos_a
 
 @dataclass(frozen=True, slots=True)
 class Sources:
-    """Columns of a table and topics of a bag; those that are None are found by their names."""
+    """Columns of a table and topics of a bag; None for those to be found by their names."""
 
     angle: str | None = None
     torque: str | None = None
     rotor: str | None = None
     output: str | None = None
     time: str | None = None
-    unit: str | None = None  # unit of all angles, one of ANGLE_UNITS; None: by their names, or rad
-    on_rotor: bool = False  # whether angle and torque are the rotor's, unless named the output's
+    unit: str | None = None  # of all angles, one of ANGLE_UNITS; None: by their names, or rad
+    on_rotor: bool = False  # whether angle and torque are the rotor's, unless named otherwise
     rotor_counts: int | None = None  # per turn of the encoder of the rotor, or of the angle column
     output_counts: int | None = None  # per turn of the output's encoder
-    as_recorded: bool = False  # whether wraps and unknown counts stay, and rotor messages are kept
+    as_recorded: bool = False  # whether to keep wraps, unknown counts and rotor messages
     rotor_topic: str | None = None
     encoder_topic: str | None = None
-    command: str = 'gearkin lost-motion'  # words before the recording, for advice
+    command: str = 'gearkin lost-motion'  # command before the recording, for advice
 
 
 class Column(NamedTuple):
@@ -98,27 +98,27 @@ class Column(NamedTuple):
     unit: str  # empty where nothing is known
     on_rotor: bool
     on_output: bool  # whether its name says so
-    borrowed: bool = False  # whether only the other angle has the unit
+    borrowed: bool = False  # whether its unit is that of the other angle
 
 
 class ColumnsError(ValueError):
-    """Columns that do not suffice for a measurement."""
+    """Too few columns for a measurement."""
 
 
 def find_columns(
     header: Sequence[str], given: Sources, below: Mapping[str, str], clocks: Mapping[str, str]
 ) -> dict[str, Column]:
-    """Find what can be read: angle and torque, or rotor and output, with torque and time if any.
+    """Find angle and torque, or rotor and output, with torque and time if there are any.
 
     Args:
-        header: the names in a file.
-        given: what is known of them; a name may end with its unit in brackets.
-        below: the units that the file gives elsewhere than in the names, by name.
-        clocks: the columns of times of those that have their own.
+        header: names of all columns.
+        given: names and units that the user gives; a name may end with its unit in brackets.
+        below: units that the file gives elsewhere than in the names, by name.
+        clocks: columns of times, by the names of columns that have their own.
 
     Raises:
-        ColumnsError: if they do not suffice.
-        ValueError: if a name or a unit is not known, or a name is there more than once.
+        ColumnsError: if too few columns are found.
+        ValueError: if a name or a unit is unknown, or a name occurs more than once.
     """
     named, below = {}, dict(below)
     for role in ('time', *_ANGULAR, 'torque'):
@@ -137,7 +137,7 @@ def find_columns(
     for role, those in ranks.items():
         rank, _, name = min(those)
         alike = {other for same, _, other in those if same == rank}
-        if role and (len(alike) == 1 or role == 'time'):  # not of position[0] and position[1]
+        if role and (len(alike) == 1 or role == 'time'):  # not if position[0] and position[1]
             found[role] = name
     found |= named
     if {'rotor', 'output'} <= found.keys() and 'angle' not in named:
@@ -165,7 +165,7 @@ def find_columns(
 
 
 def described(role: str, column: Column) -> str:
-    """Say of a column what is taken for its unit, and on which side of the gear it is."""
+    """Describe a column by its unit, and by the side of the gear where it was measured."""
     unit = column.unit + ', assumed' * column.borrowed
     unit = unit or {'torque': 'N·m'}.get(role, 'rad, assumed')
     side = ' of the rotor' if column.on_rotor else ' at the output'
@@ -174,7 +174,7 @@ def described(role: str, column: Column) -> str:
 
 
 def known_units(cells: Sequence[str]) -> list[str]:
-    """Return the units in the cells of a row, if most of them are known; otherwise nothing."""
+    """Return the units in the cells of a row if most of them are known, otherwise nothing."""
     units = [_unit(cell) for cell in cells]
     known = len([unit for unit in units if unit in _KNOWN])
     return units if 2 * known > len([*filter(None, units)]) else []
@@ -206,20 +206,20 @@ def _column(role: str, name: str, given: Sources, common: str, below: Mapping[st
     elif unit:
         unit = next(one for one, size in _UNITS[role].items() if size == scale)
     on_output = bool(set(words) & set(_OUTPUT))
-    # The current of a motor says a torque of either side.
+    # The current of a motor may give the torque of either side.
     on_rotor = given.on_rotor or (bool(set(words) & set(_ROTOR)) and 'current' not in words)
     borrowed = role in _ANGULAR and bool(unit) and not own
     return Column(name, scale, unit, on_rotor and not on_output, on_output, borrowed)
 
 
 def _role(name: str) -> tuple[str, tuple[int, ...]]:
-    """What a column may be by its name, if anything, and a rank: the likeliest has the lowest."""
+    """Return the role of a column by its name, if any, and its rank, lowest for the likeliest."""
     words, unit = _split(name)
     told = [word for word in words if word not in _FILLING and not word.isdigit()]
     if not words and unit in _UNITS['time']:
         return 'time', (9,)
     if told and {*told} <= {*_TIME} and (told != ['x'] or 'value' in words):
-        # The stamp of a message is when it was sampled; a log has when it was received.
+        # A message's stamp is the time of sampling, that of a log the time of reception.
         first = 0 if told == ['stamp'] and 'header' in words and not unit else len(words)
         return 'time', (first, _TIME.index(told[0]))
     sides = [one for one, those in (('rotor', _ROTOR), ('output', _OUTPUT)) if {*told} & {*those}]
@@ -234,7 +234,7 @@ def _role(name: str) -> tuple[str, tuple[int, ...]]:
 
 
 def _unknown(role: str, words: Sequence[str]) -> str:
-    """The last word behind others that are known: it seems to be a unit."""
+    """Return the last word if all others are known: it seems to be an unknown unit."""
     *first, last = words or ('',)
     known = {*(_TIME if role == 'time' else _KNOWN_WORDS), *_FILLING}
     seems = first and known.issuperset(first) and last not in known and not last.isdigit()
@@ -242,7 +242,7 @@ def _unknown(role: str, words: Sequence[str]) -> str:
 
 
 def _unit(text: str) -> str:
-    """A unit as `_UNITS` has it, if it is one of them."""
+    """Normalise a unit to the spelling of `_UNITS`."""
     plain = re.sub(r'\s|units?:', '', text.lower().replace('μ', 'µ')).strip('[]')
     plain = re.sub(r'n(ewton)?[-_.*·⋅]?([cm]?)m(et(er|re)s?)?(?!\w)', r'n\2m', plain)
     outer, _, inner = plain.partition('(')  # as in "° (Degree)" and "(deg)"
@@ -251,7 +251,7 @@ def _unit(text: str) -> str:
 
 
 def _split(name: str) -> tuple[tuple[str, ...], str]:
-    """Words of a name, in lower case and without its unit, and the unit, in brackets or known."""
+    """Divide a name into words, in lower case, and its unit, in brackets or a known word."""
     text = name.strip().strip('%#"').replace('{name==', '{')  # of a joint, in paths of Foxglove
     text = re.sub(r'\\\w+:\d+$', '', text)  # device and raster, of INCA
     text = re.sub(r'(?i)(?<![a-z])([mk]?n)[-_.*·⋅](m?m)(?![a-z])', r'\1\2', text)
@@ -277,21 +277,21 @@ def _split(name: str) -> tuple[tuple[str, ...], str]:
                 continue
             unit = words.pop(at)
     if 'joint' in words and {'state', 'states'} & {*words}:
-        words.remove('joint')  # of the name of a topic
-    if 'm' in words:  # as drivers name motors, as m1
+        words.remove('joint')  # part of the name of a topic
+    if 'm' in words:  # drivers name motors m1, m2
         words = ['motor' if word == 'm' else word for word in words]
     return tuple(words), unit
 
 
 def time_among(names: Sequence[str]) -> tuple[str, str]:
-    """Return the column of times and its unit, as far as names say them."""
+    """Return the column of times and its unit, as far as the names tell."""
     times = [(_role(name)[1], name) for name in names if _role(name)[0] == 'time']
     name = min(times, default=('', ''))[1]
     return name, _split(name)[1]
 
 
 def nanoseconds_beside(name: str, names: Sequence[str]) -> str | None:
-    """Return the column of nanoseconds that belongs to one of whole seconds, as ROS has them."""
+    """Return the column of nanoseconds that belongs to a column of whole seconds, as in ROS."""
     words, unit = _split(name)
     beside = {_split(one)[0]: one for one in names if _split(one)[1] in _NANOSECONDS}
     return beside.get(words) if TIME_UNITS.get(unit) == TIME_UNITS['s'] else None

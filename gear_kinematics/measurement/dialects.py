@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Tables as text, in the dialects that benches write: where names, units and numbers are."""
+"""Tables as text in the dialects of test benches: where names, units and numbers are."""
 
 import codecs
 import io
@@ -25,24 +25,24 @@ from gear_kinematics.measurement.cells import (
 )
 from gear_kinematics.measurement.columns import known_units, time_among
 
-_MOST_ROWS = 1_000_000  # 15 minutes at 1 kHz, of up to 250 bytes a row beside those of pandas
-_HEAD, _BLOCK = 2**16, 2**17  # bytes in which the dialect shows; characters that are read at once
-_ROWS, _BEGIN = 100, 3  # rows that show what columns contain; rows of numbers that begin a table
+_MOST_ROWS = 1_000_000  # 15 minutes at 1 kHz; a row takes up to 250 bytes besides those of pandas
+_HEAD, _BLOCK = 2**16, 2**17  # bytes that show the dialect; characters that are read at a time
+_ROWS, _BEGIN = 100, 3  # rows that show the kinds of columns; rows of numbers that begin a table
 _SEPARATORS = ';', '\t', ',', '|', ' '
 _COMMENT = ('#', '//', '%', 'sep=', 'SEP=')
 _BOMS = {b'\xef\xbb\xbf': 'utf-8-sig', b'\xff\xfe': 'utf-16', b'\xfe\xff': 'utf-16'}
 _TYPES = re.compile(r'(?i)[iuf]\d+|(float|double|u?int)\d*|(type|interp|blockpath|portindex): *.+')
-"""Rows between names and numbers that say what types the numbers have, of INCA and Simulink."""
+"""Cells of rows between names and numbers that give types, as INCA and Simulink write them."""
 _FRAMES = re.compile(r'\s*\(\d+\.\d+\)\s+\w+\s+[0-9A-F]+#|;\$FILEVERSION')
-"""How logs of a CAN bus begin, of candump and PCAN-View."""
+"""Beginnings of CAN bus logs of candump and PCAN-View."""
 _MISSING = {'', 'nan', '-nan', 'inf', '-inf', 'null', 'none', 'n/a', 'na', '-', '[]'}
 _CLOCKS = {'name': 'ms', 'x_value': 's'}
-"""Words before the names of channels with their own times, besides those for a time: units."""
+"""Words, other than those for time, before names of channels with their own times; and units."""
 _TOPICS, _VALUE = (
     ('topic', 'message path', 'series', 'signal', 'channel', 'label', 'field', 'name'),
     'value',
 )
-"""Columns of a table with a row for each value."""
+"""Names of the columns of a table with a row for each value."""
 
 
 class TableFile(NamedTuple):
@@ -50,13 +50,13 @@ class TableFile(NamedTuple):
 
     names: Sequence[str]
     units: Mapping[str, str]
-    """Units that the file gives elsewhere than in the names."""
+    """Units that the file gives elsewhere than in the names, by name."""
     clocks: Mapping[str, str]
-    """The columns of times of those that have their own."""
+    """Columns of times, by the names of columns that have their own."""
     first: Mapping[str, str]
-    """The first values, as they are written."""
+    """First values as written, by name."""
     load: Callable[[Sequence[str]], tuple[dict[str, Any], int]]
-    """Returns columns as numbers or datetime64, by name, and of how many rows these are one."""
+    """Returns columns by name as numbers or datetime64, with one row in n; and that n."""
 
 
 def loaded(
@@ -64,14 +64,14 @@ def loaded(
     units: Mapping[str, str] | None = None,
     clocks: Mapping[str, str] | None = None,
 ) -> TableFile:
-    """Return a table of columns that are in memory."""
+    """Return a table of columns in memory."""
     first = {name: str(values[0]) for name, values in columns.items() if len(values)}
     load = lambda names: ({name: columns[name] for name in names}, 1)  # noqa: E731
     return TableFile([*columns], units or {}, clocks or {}, first, load)
 
 
 class _Layout(NamedTuple):
-    """The positions of names, units and numbers in a text."""
+    """Names and units in a text, and where its numbers are."""
 
     separator: str
     point: str
@@ -83,7 +83,7 @@ class _Layout(NamedTuple):
 
 
 class _Rows(io.TextIOBase):
-    """One row in so many of a text, so that pandas need not parse the others."""
+    """Passes on one row in `every`, so that pandas need not parse the others."""
 
     def __init__(self, file: IO[str], every: int) -> None:
         self._file, self._every, self._skip = file, every, 0
@@ -92,12 +92,12 @@ class _Rows(io.TextIOBase):
     def read(self, _size: int | None = None) -> str:
         chosen = b''
         while not chosen and (text := self._file.read(_BLOCK) + self._file.readline()):
-            # Rows are found faster in bytes by numpy than in a text.
+            # Numpy finds rows in bytes faster than Python does in text.
             block = self._newlines.decode(text, final=True).encode()
             ends = 1 + np.flatnonzero(np.frombuffer(block, np.uint8) == ord('\n'))
             if not block.endswith(b'\n'):
                 sizes = np.diff(ends, prepend=0, append=len(block))
-                if len(sizes) == 1 or sizes[-1] >= sizes[:-1].min() - 1:  # else it was cut
+                if len(sizes) == 1 or sizes[-1] >= sizes[:-1].min() - 1:  # otherwise it was cut
                     ends = np.append(ends, len(block))
             begins = np.append(0, ends)[self._skip : len(ends) : self._every].tolist()
             pairs = zip(begins, ends[self._skip :: self._every].tolist(), strict=True)
@@ -107,11 +107,11 @@ class _Rows(io.TextIOBase):
 
 
 def open_text(path: Path, content: bytes | None = None) -> TableFile:
-    """Find out the dialect of a text, which may be compressed, or of the content of a workbook.
+    """Open a text, which may be compressed, or the `content` of a workbook, in its dialect.
 
     Raises:
         OSError: if it cannot be read.
-        ValueError: if it is no table.
+        ValueError: if it is not a table.
     """
     import pandas as pd  # noqa: PLC0415, of an extra
     from pandas.io.common import get_handle  # noqa: PLC0415, which decompresses
@@ -171,7 +171,7 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
 
 
 def _encoding(head: bytes) -> str:
-    """The encoding of a text; ValueError if it is none."""
+    """Return the encoding of a text; ValueError if it is not text."""
     if encoding := next((_BOMS[mark] for mark in _BOMS if head.startswith(mark)), ''):
         return encoding
     if 0 in head:
@@ -203,7 +203,7 @@ def _layout(lines: Sequence[str]) -> _Layout:
         for kind, cell in zip(kinds, cells, strict=False):
             kind.extend([weight(cell, point)] * (cell.lower() not in _MISSING))
     shares = [sum(map(bool, kind)) / len(kind) if kind else 0.0 for kind in kinds]
-    least = 1.0 if 1.0 in shares else 0.5  # texts among numbers, as of states, are no names
+    least = 1.0 if 1.0 in shares else 0.5  # words among numbers, such as states, are no names
     numeric = [k for k, share in enumerate(shares) if share >= least]
 
     def has_numbers(place: int) -> bool:
@@ -229,7 +229,7 @@ def _layout(lines: Sequence[str]) -> _Layout:
 
 
 def _score(lines: Sequence[str], separator: str, point: str) -> float:
-    """How many numbers lines have if they are divided so, less what is none."""
+    """Count the numbers in lines that are divided so, less the other cells."""
     cells = (cell for line in lines for cell in cells_of(line, separator) if cell)
     return sum(weight(cell, point) or -1.0 for cell in cells)
 
@@ -237,10 +237,10 @@ def _score(lines: Sequence[str], separator: str, point: str) -> float:
 def _names(
     above: Sequence[str], separator: str, width: int, numbers: int
 ) -> tuple[list[str], dict[str, str], dict[str, str]]:
-    """Find names of columns, units and clocks in the lines above rows of a width.
+    """Find names of columns, their units and clocks in the lines above rows of a width.
 
     Raises:
-        ValueError: if they do not name each of the numbers of a row, or more.
+        ValueError: if the names do not fit the numbers of a row.
     """
     rows = [cells_of(line.lstrip('#%/ '), separator) for line in above]
     plain = [k for k, row in enumerate(rows) if not all(map(_TYPES.fullmatch, filter(None, row)))]
@@ -283,7 +283,7 @@ def _names(
 
 
 def _joint_state(row: Sequence[str]) -> tuple[list[str], dict[str, str], dict[str, str]]:
-    """Name the columns that `ros2 topic echo --csv` writes; ValueError for others."""
+    """Name the columns of `ros2 topic echo --csv`; ValueError if they are not of that kind."""
     joints = [*takewhile(lambda cell: cell and not weight(cell, '.'), row[3:])]
     fields = (len(row) - 3) / max(len(joints), 1) - 1.0
     if fields not in {1.0, 2.0, 3.0} or not all(map(str.isdecimal, row[:2])):
@@ -295,7 +295,7 @@ def _joint_state(row: Sequence[str]) -> tuple[list[str], dict[str, str], dict[st
 
 
 def _long(frame: Any, point: str, topic: str, value: str) -> TableFile:
-    """Return the series in a table with a row for each value, as exports of plots have them."""
+    """Return the series of a table with a row for each value, as exported from plots."""
     clock, unit = time_among(frame.columns)
     columns, clocks = {}, {}
     for name, series in frame.groupby(topic, sort=False):

@@ -1,8 +1,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The step of an encoder, found in its readings.
 
-Distances of readings are multiples of it. They are multiples as well of the resolution in which
-they are recorded, as decimals or in single precision; a step is at least twice as coarse.
+Differences of readings are multiples of the step. They are also multiples of the resolution in
+which they are recorded, as decimals or in single precision; a step is at least twice as coarse.
 """
 
 import math
@@ -18,22 +18,22 @@ Array = NDArray[np.float64]
 UNITS = {'rad': 1.0, 'mrad': 1e-3, 'deg': math.radians(1.0), 'rev': TURN}
 """Units of angle in which readings may have been recorded, rad."""
 _DIGITS = 12  # most decimals that are recognised
-_USUAL = 0.95  # share of levels that are no stray ones
-_ROUNDING = 8.0  # rounding errors of a reading, in its spacing: of a few conversions between units
+_USUAL = 0.95  # share of levels that are not stray
+_ROUNDING = 8.0  # error of a reading after a few conversions of its unit, in its spacing
 _LEAST = 4  # least number of levels: with fewer, any step fits
 _COARSER = 1.9
-"""A step is at least this many times the resolution of the recording: twice, less rounding."""
+"""Least ratio of a step to the resolution of the recording: 2, less rounding."""
 _FITS = 0.15
-"""Greatest root mean square distance from multiples of a step, in steps. It is 0.29 without any
-step, and 0.15 where the readings are rounded to half a step."""
-_MAX_STEPS = 100.0  # steps between levels that are counted without an error
-_CHANCE = 1e-3  # greatest probability with which readings that have no step fit one
+"""Greatest root mean square distance from multiples of a step, in steps. It is 0.29 if there is no
+step, and 0.15 if the readings are rounded to half a step."""
+_MAX_STEPS = 100.0  # steps between levels that are counted without error
+_CHANCE = 1e-3  # greatest probability that readings without a step fit one
 _EXACT, _BETTER = 1e-3, 0.3
-"""Distance, in steps, below which no finer step is sought; share of the distance within which a
-finer one has to fit: by chance, half a step fits twice as badly."""
+"""Distance, in steps, below which no finer step is tried; share of the distance so far that a
+finer step must reach. By chance, half a step fits twice as badly."""
 _EVEN = 0.9
-"""From this share of changes on that are as the one before, levels are those of an even motion,
-not of an encoder."""
+"""Share of changes equal to the previous one from which on levels are those of an even motion, not
+of an encoder."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,19 +41,19 @@ class Step:
     """The step between the readings of an encoder."""
 
     size: float  # in the unit of the readings; 0 if unknown
-    seen: bool  # whether it shows in the readings; else it was given, or is that of the recording
+    seen: bool  # whether it shows in the readings; otherwise given, or that of the recording
 
     def scaled(self, factor: float) -> 'Step':
-        """The step of readings that are multiplied by a factor."""
+        """Return the step of readings multiplied by a factor."""
         return Step(self.size * abs(factor), self.seen)
 
     def joined(self, other: 'Step') -> 'Step':
-        """The step of a difference of readings, whose variance is the sum of both."""
+        """Return the step of a difference of readings, whose variance is the sum of both."""
         return Step(math.hypot(self.size, other.size), self.seen and other.seen)
 
 
 def step_of(counts: int | None, readings: Array) -> Step:
-    """The step of an encoder, rad, from its counts per turn, or from its readings."""
+    """Return the step of an encoder, rad, from its counts per turn or its readings."""
     return Step(TURN / counts, seen=False) if counts else find_step(readings)
 
 
@@ -67,7 +67,7 @@ def find_step(readings: Array) -> Step:
     if len(levels) < _LEAST:
         return Step(0.0, seen=False)
     recorded = _recording_resolution(levels)
-    # In an unknown unit, the resolution does not show: try all, from coarse to fine.
+    # In an unknown unit, the resolution does not show: try all of them, from coarse to fine.
     finest = max(recorded, _ROUNDING * float(np.max(np.spacing(np.abs(levels)))))
     coarser = math.ceil(math.log2(max(1.0, np.ptp(levels) / finest)))
     best, nearest, tried = 0.0, _FITS / _BETTER, {0.0}
@@ -77,7 +77,7 @@ def find_step(readings: Array) -> Step:
             continue
         tried.add(divisor)
         step, distance = _fitted(levels, readings, divisor)
-        # Any finer step fits; it has to fit better.
+        # Any finer step fits as well; it must fit better.
         if distance < _BETTER * nearest:
             best, nearest = step, distance
         if nearest <= _EXACT:
@@ -86,7 +86,7 @@ def find_step(readings: Array) -> Step:
 
 
 def _recording_resolution(levels: Array) -> float:
-    """Distance of the recorded numbers, where decimals or single precision show; else 0."""
+    """Return the resolution of decimals or of single precision, if it shows; otherwise 0."""
     large = levels[_large(levels)]
     found = [0.0]
     for unit in UNITS.values():
@@ -106,11 +106,11 @@ def _recording_resolution(levels: Array) -> float:
 
 
 def _common_divisor(levels: Array, resolution: float) -> float:
-    """The greatest common divisor of the gaps between levels, by Euclid's algorithm; or 0."""
+    """Return the greatest common divisor of the gaps, by Euclid's algorithm; 0 if none."""
     between = np.diff(levels)
     gaps, step = between[between > 0.5 * resolution], 0.0
     while len(gaps):
-        # Rounded to a resolution, equal gaps differ by it.
+        # Equal gaps can differ by the resolution, by rounding.
         step = float(np.mean(gaps[gaps <= np.min(gaps) + 1.01 * resolution]))
         if step < _COARSER * resolution:
             return 0.0
@@ -122,9 +122,9 @@ def _common_divisor(levels: Array, resolution: float) -> float:
 
 
 def _fitted(levels: Array, readings: Array, step: float) -> tuple[float, float]:
-    """The step by least squares, and the root mean square distance of levels from its multiples.
+    """Fit a step by least squares; return it and the rms distance of levels from its multiples.
 
-    In steps; infinite if they are no levels of an encoder.
+    The distance is in steps; infinite if the levels are not those of an encoder.
     """
     none = 0.0, math.inf
     numbers = np.cumsum(np.round(np.diff(levels, prepend=levels[0]) / step))
@@ -141,9 +141,9 @@ def _fitted(levels: Array, readings: Array, step: float) -> tuple[float, float]:
 
 
 def _large(levels: Array) -> NDArray[np.bool_]:
-    """Find the levels whose floating-point numbers are the farthest apart: those of the greatest.
+    """Find the greatest levels, whose floating-point numbers are the farthest apart.
 
-    A single corrupt reading, which may be greater by far, is not all of them.
+    A single corrupt reading, which may be far greater, must not be the only one.
     """
     sizes = np.abs(levels)
     large: NDArray[np.bool_] = 2.0 * sizes > np.quantile(sizes, _USUAL)

@@ -21,8 +21,8 @@ from gear_kinematics.report.document import number
 from gear_kinematics.statistics.uncertainty import Component, Estimate, resolution
 
 LOST_MOTION_SHARE = 0.03  #: lost motion is measured between ± this share of the rated torque
-STIFFNESS_SHARES = (0.15, 0.5)  #: between the ranges of stiffness, as shares of the rated torque
-_LEAST_RANGE = 1.5  # least ratio of the torques at the end and the beginning of such a range
+STIFFNESS_SHARES = (0.15, 0.5)  #: limits between ranges of stiffness, shares of the rated torque
+_LEAST_RANGE = 1.5  # least ratio of the torques at the end and at the beginning of a range
 _ROUNDING = 1e-11  # relative rounding error of sums of many angles
 _TORQUES = 200  # at which a curve is compared with a straight line
 
@@ -41,18 +41,18 @@ class GearFigures:
     """Figures of a gear: angles in rad, torques in N·m."""
 
     rated_torque: float
-    ramps: tuple[Ramps, ...]  #: ascending; the first give figures with friction, the last others
+    ramps: tuple[Ramps, ...]  #: ascending; hysteresis and friction are of the first, the rest last
     hysteresis: Estimate  #: the width of the curve at zero torque
     friction: Estimate | None  #: half the width in torque, N·m; None without a complete loop
     middle_line: MiddleLine  #: the mean of the largest ramps
-    backlash: Backlash  #: what all ramps together leave room for
+    backlash: Backlash  #: by all ramps together
     lost_motion: Estimate | None  #: at ± `LOST_MOTION_SHARE` of the rated torque, if reached
     stiffness: tuple[MeasuredStiffness, ...]  #: in the ranges covered, as the torque increases
     overall: Estimate | None  #: N·m/rad: slope of a line through each whole side of the loop
 
     @property
     def held_by_friction(self) -> bool:
-        """Whether lost motion is read at a torque below the friction, which hides the play."""
+        """Whether lost motion is read at a torque below the friction, so that play is hidden."""
         reading = LOST_MOTION_SHARE * self.rated_torque
         return self.friction is not None and reading < self.friction.value
 
@@ -77,7 +77,7 @@ def gear_figures(ramps: Sequence[Ramps], rated_torque: float | None = None) -> G
     Raises:
         RampError: if the angle does not grow with the torque.
     """
-    # Friction may hold the gear in the others.
+    # In smaller ramps, friction may hold the gear.
     ramps = [group for group in ramps if _moves(group)]
     if not ramps:
         raise RampError(
@@ -88,7 +88,7 @@ def gear_figures(ramps: Sequence[Ramps], rated_torque: float | None = None) -> G
     rated = rated_torque or large.amplitude
     widths = [_hysteresis(group) for group in ramps]
     loaded = stiffness_of(large)
-    # Where lost motion is read, unless friction may keep small ramps from loading the spring.
+    # Where lost motion is read, or less if friction may keep small ramps from loading the spring.
     light = min(LOST_MOTION_SHARE * rated, (1.0 - MOST_FRICTION) * small.amplitude)
     bounds = [backlash_of(*pair, loaded, light) for pair in zip(ramps, widths, strict=True)]
     return GearFigures(
@@ -137,9 +137,9 @@ def _drifted(ramps: Ramps) -> Component:
 
 
 def _rounded(roundings: Sequence[float]) -> Component:
-    """Take errors up to the rounding of corners, rad, as equally likely (GUM 4.3.7).
+    """Take all errors up to the rounding of corners, rad, to be equally likely (GUM 4.3.7).
 
-    It is the part that is the same in all repeats, without what their scatter adds to the mean.
+    Only the part that all repeats have in common counts, without what their scatter adds.
     """
     if len(roundings) < 2:  # noqa: PLR2004, nothing to compare
         return Component(0.0)
@@ -148,9 +148,9 @@ def _rounded(roundings: Sequence[float]) -> Component:
 
 
 def _friction(ramps: Ramps) -> Estimate | None:
-    """Half the width of the loops in torque at up to a quarter of their load, N·m.
+    """Half the width of the loops in torque, at up to a quarter of their load, N·m.
 
-    Its ± contains how much that differs from the friction at up to half of the load.
+    Its ± includes the difference from the friction at up to half of the load.
     """
     if not (lines := ramps.lines):
         return None
@@ -160,7 +160,7 @@ def _friction(ramps: Ramps) -> Estimate | None:
     )
     uneven = float(np.mean(far) - np.mean(near)) / math.sqrt(3.0)
     stiffness = float(np.mean([np.ptp(line.load) / np.ptp(line.angle) for line in lines]))
-    # Half the difference of two torques, read at many angles that are off by the step.
+    # Half the difference of two torques, read at many angles with the error of a step.
     steps = max(1.0, float(np.ptp(lines[0].angle)) / ramps.step) if ramps.step else 1.0
     reading = resolution(ramps.step) / math.sqrt(2.0 * steps)
     drifted = 0.5 * _drifted(ramps).standard
@@ -197,7 +197,7 @@ def _stiffness(ramps: Ramps, rated: float) -> tuple[MeasuredStiffness, ...]:
             for pull in ramps.pulls
             if all(_loads(half, low, ramps) for half in pull)
         ]
-        # Else friction holds the gear throughout.
+        # Otherwise friction holds the gear throughout.
         if compliances and float(np.mean(compliances)) * (high - low) > still:
             steps = Component(math.sqrt(2.0) * resolution(ramps.step) / (high - low))
             found.append(
@@ -221,17 +221,17 @@ def _overall(ramps: Ramps) -> Estimate | None:
 
 
 def _loads(half: HalfLoop, low: float, ramps: Ramps) -> bool:
-    """Whether, from the torque `low` on, a half loop is like a full loading of these ramps.
+    """Whether a half loop is like a full loading of these ramps from the torque `low` on.
 
-    One from a smaller peak is so beyond that peak, where hysteresis has lost its memory of it.
+    One that starts at a smaller peak is, beyond that peak, where hysteresis forgets it.
     """
     return abs(half.start) < low or abs(half.start) > 0.5 * ramps.amplitude
 
 
 def _compliance(half: HalfLoop, low: float, high: float, way: float = 1.0) -> float:
-    """Slope of the line through the angles over the torques of a range, rad/(N·m).
+    """Slope of the angle over a range of torque magnitudes, rad/(N·m).
 
-    The torques are magnitudes: to the end of the half loop (way 1), or from its start (way -1).
+    The range is on the side of the end of the half loop (`way` 1), or of its start (-1).
     """
     peak = half.end if way > 0.0 else half.start
     torque = math.copysign(1.0, peak) * np.linspace(low, high, _TORQUES)

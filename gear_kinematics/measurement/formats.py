@@ -1,9 +1,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The formats of tables, and the libraries that read those that are not text.
 
-A table becomes a recording in steps, each of which has a file: `open_table` here finds what reads
-the format; `dialects` finds names, units and numbers in a text, whose `cells` are numbers, times
-or arrays; `columns` finds what names and units mean; `clocks` gives the rows their times; and
+A table becomes a recording in steps, each in a module of its own: `open_table` here chooses the
+reader; `dialects` finds names, units and numbers in a text, whose `cells` are numbers, times or
+arrays; `columns` finds the meaning of names and units; `clocks` gives the rows their times; and
 `tables` decides which rows are used.
 """
 
@@ -22,7 +22,7 @@ from gear_kinematics.measurement.dialects import TableFile, loaded, open_text
 
 
 def _parquet(path: Path) -> TableFile:
-    """Columns of numbers, and the elements of vectors, as LeRobot has them."""
+    """Read columns of numbers, and the elements of vectors, as LeRobot writes them."""
     import pandas as pd  # noqa: PLC0415, of an extra
 
     columns: dict[str, Any] = {}
@@ -37,7 +37,7 @@ def _parquet(path: Path) -> TableFile:
 
 
 def _mat(path: Path) -> TableFile:
-    """Vectors, columns of matrices, and those in structures."""
+    """Read vectors and the columns of matrices, also those in structures."""
     from scipy.io import loadmat  # noqa: PLC0415, of an extra
 
     columns: dict[str, Any] = {}
@@ -50,7 +50,7 @@ def _mat(path: Path) -> TableFile:
             values = np.squeeze(value)
             if values.ndim == 1 and values.size > 1:
                 columns[name] = values
-            elif values.ndim == 2:  # noqa: PLR2004, a matrix, of Simulink with a row for a signal
+            elif values.ndim == 2:  # noqa: PLR2004, a matrix; Simulink has a row for each signal
                 values = min(values, values.T, key=len)
                 columns.update({f'{name}[{k}]': one for k, one in enumerate(values)})
 
@@ -68,7 +68,7 @@ def _mat(path: Path) -> TableFile:
 
 
 def _of_hdf5(group: Any) -> dict[str, Any]:
-    """Structures and matrices but texts, as MATLAB 7.3 writes them, by columns."""
+    """Read structures and matrices, without texts, as MATLAB 7.3 writes them, by columns."""
     return {
         key: _of_hdf5(one) if hasattr(one, 'keys') else one[()].T
         for key, one in group.items()
@@ -77,9 +77,9 @@ def _of_hdf5(group: Any) -> dict[str, Any]:
 
 
 def _of_channels(channels: Iterable[tuple[Any, str, Any, str, Any]]) -> TableFile:
-    """Return a table of channels, with their groups if they share a name.
+    """Return a table of channels, named with their groups if they share a name.
 
-    Of each the group, the name, the values, the unit, and the times, s, or None.
+    A channel is its group, name, values, unit, and times, s, or None.
     """
     columns: dict[str, Any] = {}
     units, clocks = {}, {}
@@ -95,7 +95,7 @@ def _of_channels(channels: Iterable[tuple[Any, str, Any, str, Any]]) -> TableFil
 
 
 def _tdms(path: Path) -> TableFile:
-    """Channels of LabVIEW, with their units and times."""
+    """Read the channels of LabVIEW, with their units and times."""
     from nptdms import TdmsFile  # noqa: PLC0415, of an extra
 
     found, begin = [], None
@@ -113,7 +113,7 @@ def _tdms(path: Path) -> TableFile:
 
 
 def _mf4(path: Path) -> TableFile:
-    """Channels of ASAM MDF, with their units and times, without samples marked as invalid."""
+    """Read the channels of ASAM MDF, with units and times, without samples marked as invalid."""
     from asammdf import MDF  # noqa: PLC0415, of an extra
 
     with MDF(path) as file:
@@ -126,7 +126,7 @@ def _mf4(path: Path) -> TableFile:
 
 
 def _workbook(path: Path) -> TableFile:
-    """The first sheet, in which names and units are found as in a text."""
+    """Read the first sheet, in which names and units are found as in a text."""
     import pandas as pd  # noqa: PLC0415, of an extra
 
     sheet = pd.read_excel(path, header=None)
@@ -141,17 +141,17 @@ _READERS: Mapping[str, Callable[[Path], TableFile]] = {
     'mf4': _mf4,
     'workbook': _workbook,
 }
-"""What opens a table, by the format that `TABLES` has for its name."""
+"""Readers, by the format that `TABLES` gives for a name."""
 
 
 def is_table(path: Path) -> bool:
-    """Return whether a recording is a table, by its name; otherwise it is a bag."""
+    """Return whether the name of a recording is that of a table; otherwise it is a bag."""
     return bool(table_format(path))
 
 
 @contextmanager
 def open_bag(path: Path) -> Iterator[Bag]:
-    """Open what is no table; a BagError names what can be read, unless the name is a bag's."""
+    """Open a bag; a BagError lists what can be read, unless the name is that of a bag."""
     try:
         with Bag(path) as bag:
             yield bag
@@ -173,5 +173,5 @@ def open_table(path: Path) -> TableFile:
         return _READERS[table_format(path)](path)
     except (ImportError, OSError, ValueError):
         raise
-    except Exception as error:  # of the libraries, each of which has its own
+    except Exception as error:  # each library has its own
         raise ValueError(f'cannot be read as {path.suffix}: {error}') from error

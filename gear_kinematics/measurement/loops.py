@@ -23,10 +23,10 @@ Array = NDArray[np.float64]
 _MIN_ROWS = 25  # least number of rows of a half cycle
 _MIN_SIGNAL_TO_NOISE = 5.0  # least peak of a half cycle, in standard deviations of the noise
 _MIN_SHARE = 0.01  # share of the largest torque that a half cycle has to exceed
-_EQUAL_TORQUES = 3.0  # standard deviations of the noise within which two torques count as equal
+_EQUAL_TORQUES = 3.0  # standard deviations of the noise within which torques count as equal
 _SMOOTHED = 0.01  # share of a ramp's amplitude to which a moving mean reduces the noise
-ALIKE = 1.5  #: ratio up to which ramps count as of one amplitude, in a recording and among several
-_ROUNDING = 1e-9  # relative differences of torques by rounding, as where a torque stands still
+ALIKE = 1.5  #: ratio up to which amplitudes of ramps count as equal
+_ROUNDING = 1e-9  # relative differences of torques by rounding, as of a constant torque
 _COMPLETE = 0.9  # share of the amplitude that both halves of a complete loop reach on both sides
 ANGLES = 400  #: number of angles at which the middle line of a loop is known
 _LOADS = 40  # number of loads at which its angle is read for a line through one side
@@ -71,12 +71,12 @@ class HalfLoop:
         return low - near <= torque <= high + near
 
     def angle_at(self, torque: Array | float) -> Array:
-        """The angle at torques, rad, of the same shape."""
+        """Return the angles at torques, rad, of the same shape."""
         sign = 1.0 if self.rising else -1.0
         return np.interp(sign * np.asarray(torque), sign * self.torque, self.angle)
 
     def rounding(self, torque: float) -> float:
-        """Greatest rise of the angle at a torque by noise, which rounds corners, rad."""
+        """Greatest error of the angle at a torque by noise, which rounds corners, rad."""
         before, at, after = self.angle_at(torque + 2.0 * self.blur * np.array([-1.0, 0.0, 1.0]))
         return float(0.5 * (before + after) - at)
 
@@ -94,12 +94,12 @@ class Loop(NamedTuple):
 
     @property
     def complete(self) -> bool:
-        """Whether both halves go from peak to peak; a recording may end before."""
+        """Whether both halves go from peak to peak; a recording may end earlier."""
         return min(-self.fall.end, self.rise.end) >= _COMPLETE * self.amplitude
 
     @property
     def completed(self) -> 'Loop':
-        """The longer half, and its image: the loop of a gear that is alike in both directions."""
+        """The loop of a gear that is alike in both directions: the longer half and its image."""
         half = max(self, key=lambda half: abs(half.end - half.start))
         angle = half.angle[0] + half.angle[-1] - half.angle
         image = replace(half, torque=-half.torque, angle=angle)
@@ -124,7 +124,7 @@ class MiddleLine:
 
     @classmethod
     def of(cls, loop: Loop) -> 'MiddleLine':
-        """Read the middle line of a complete loop."""
+        """Compute the middle line of a complete loop."""
         fall, rise = loop.fall, loop.rise
         ways = [
             (half.torque[::way], _monotonic(half.angle[::way]))
@@ -137,7 +137,7 @@ class MiddleLine:
         return cls(at, _monotonic(0.5 * (forth + back)), 0.5 * (forth - back))
 
     def angle_at(self, load: Array | float) -> Array:
-        """The angle at loads, rad, of the same shape."""
+        """Return the angles at loads, rad, of the same shape."""
         return np.asarray(np.interp(load, _distinct(self.load), self.angle))
 
     def width(self, load: float) -> float:
@@ -145,10 +145,10 @@ class MiddleLine:
         return float(self.angle_at(load) - self.angle_at(-load))
 
     def dead_band(self, low: float, high: float) -> tuple[float, float]:
-        """Where straight lines through both sides, between two loads, meet no load.
+        """Fit a straight line to each side, between two loads.
 
         Returns:
-            The angle between them, rad, and the mean of their compliances, rad/(N·m).
+            The angle between them at no load, rad, and their mean compliance, rad/(N·m).
         """
         loads = np.linspace(low, high, _LOADS)
         (right, slope), (left, other) = (
@@ -170,7 +170,7 @@ class MiddleLine:
         return float(np.mean(np.interp(angles, self.angle, self.friction)))
 
     def friction_of_gap(self) -> float:
-        """By how much friction at less than a tenth of the load exceeds that beyond, N·m."""
+        """Return by how much the friction is greater below a tenth of the load, N·m."""
         reach = 0.5 * float(np.ptp(self.load))
         within = np.abs(self.load) < SIDE[0] * reach
         beyond = ~within & (np.abs(self.load) < MOST_FRICTION * reach)
@@ -210,7 +210,7 @@ def find_ramps(torque: Array, angle: Array, step: float = 0.0) -> tuple[Ramps, .
         RampError: if the torque never goes to both sides and back.
     """
     halves = _half_loops(torque, angle)
-    # What preceded the first half loop is not known, so it belongs to no loop.
+    # What preceded the first half loop is unknown, so that it belongs to no loop.
     pairs = zip(halves[1::2], halves[2::2], strict=False)
     loops = [Loop(b, a) if a.rising else Loop(a, b) for a, b in pairs]
     loops = [loop for loop in loops if all(half.reaches(0.0) for half in loop)]
@@ -241,7 +241,7 @@ def _ramps(
 
 
 def _isotonic(values: Array) -> NDArray[np.intp]:
-    """Where the levels of the non-decreasing sequence nearest to values begin, with their end.
+    """Find where the levels of the nearest non-decreasing sequence begin, and the end of the last.
 
     The levels are the slopes of the greatest convex minorant of the cumulative sums (R. E. Barlow
     et al., Statistical Inference under Order Restrictions, 1972, p. 9).
@@ -318,7 +318,7 @@ def _smooth(torque: Array, noise: float) -> Array:
 
 
 def _mean_rows(torque: Array, noise: float) -> int:
-    """Rows of the moving mean: no more than needed, as a ramp may pause."""
+    """Return the rows of the moving mean: no more than needed, as a ramp may pause."""
     enough = (noise / (_SMOOTHED * 0.5 * float(np.ptp(torque)))) ** 2 if noise else 0.0
     return 2 * (int(min(enough, len(torque) // 10)) // 2) + 1
 
@@ -329,13 +329,13 @@ def _line(values: Array) -> Array:
 
 
 def _monotonic(values: Array) -> Array:
-    """A non-decreasing sequence: midway between what was reached before and what stays behind."""
+    """Return a non-decreasing sequence: the mean of the greatest before and the least after."""
     reached = np.maximum.accumulate(values)
     left: Array = np.minimum.accumulate(values[::-1])[::-1]
     return 0.5 * (reached + left)
 
 
 def _distinct(values: Array) -> Array:
-    """Tell equal values apart, by rounding errors of the greatest, in their order."""
+    """Make equal values differ in their order, by rounding errors of the greatest."""
     apart: Array = np.spacing(np.max(np.abs(values))) * np.arange(len(values))
     return values + apart

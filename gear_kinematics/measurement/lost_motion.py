@@ -24,13 +24,13 @@ class LostMotion:
     recording: Recording
     gear_ratio: GearRatio  #: with which it was read
     figures: GearFigures | None = None  #: None where there are no torque ramps
-    measured: bool = False  #: whether an encoder measured the output, else taken to be locked
+    measured: bool = False  #: whether an encoder measured the output, otherwise taken as locked
     transmission: TransmissionFigures | None = None
-    wrong_ratio: Observed | None = None  #: what is wrong with the ratio, if anything shows
+    wrong_ratio: Observed | None = None  #: what contradicts the ratio, if anything
 
     @property
     def main_figures(self) -> tuple[Measured, ...]:
-        """The figures of a summary, to which limits apply; without a value where unknown."""
+        """Figures of the summary, to which limits apply; the value is None if unknown."""
         found, motion = self.figures, self.transmission
         moving = found or motion
         lost = moving.lost_motion if moving else None
@@ -49,9 +49,9 @@ class LostMotion:
 def measure(
     recording: Recording, parameters: NodeParameters, rated_torque: float | None = None
 ) -> LostMotion:
-    """Measure torque ramps, the motion of both encoders, or both, as far as a recording has them.
+    """Measure torque ramps and the motion of both encoders, as far as a recording has them.
 
-    Without a rated torque, N·m, that is the amplitude of the largest ramps.
+    The default of the rated torque, N·m, is the amplitude of the largest ramps.
 
     Raises:
         RampError, RecordingError: if nothing can be measured.

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The one reader of recordings: a bag or a table becomes a `Recording`."""
+"""The reader of recordings, which makes a `Recording` of a bag or a table."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -34,7 +34,7 @@ from gear_kinematics.wire.batches import JointStates, decode_joint_states
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.topics import OUTPUT_ENCODER
 
-_MOST_STATES = 1_800_000  # half an hour at 1 kHz, of up to 200 bytes for each state when measured
+_MOST_STATES = 1_800_000  # half an hour at 1 kHz; a state takes up to 200 bytes when measured
 
 
 def read(
@@ -43,9 +43,9 @@ def read(
     sources: Sources | None = None,
     progress: ReportProgress | None = None,
 ) -> Recording:
-    """Read a table or a bag, by what is known of its columns or topics, and of the encoders.
+    """Read a table or a bag, and leave out readings that contradict each other.
 
-    `progress` is called after each batch of a bag, with the messages on all of its topics.
+    `progress` is called after each batch of a bag, with the number of messages on all its topics.
 
     Raises:
         BagError, RecordingError: if it cannot be read, or contains nothing to measure.
@@ -98,12 +98,12 @@ def _read_bag(
 
 
 class States:
-    """The states on the topics of the rotor and of the output's encoder, batch by batch."""
+    """States of the rotor and of the output's encoder, collected batch by batch."""
 
     def __init__(
         self, rotor: str, encoder: str | None, parameters: NodeParameters, most: int
     ) -> None:
-        """Keep at most so many states of both topics; of more, one of every two, four, ..."""
+        """Keep at most `most` states of both topics; of more, one in two, four, ..."""
         self._rotor, self._encoder, self._parameters = rotor, encoder, parameters
         self._gear = GearState(parameters)
         self._inputs, self._outputs = _Columns(most // (2 if encoder else 1)), _Columns(most // 2)
@@ -112,7 +112,7 @@ class States:
         self._output_clock = RestoredClock(self._clock.steps)
 
     def add(self, rotor: TopicMessages, encoder: TopicMessages | None) -> None:
-        """Add what came on both topics."""
+        """Add the next messages of both topics."""
         data, later = self._clock.restored(rotor)
         new = self._gear.samples(data, rotor.received)
         segment = new.segment + later[new.row]
@@ -124,10 +124,10 @@ class States:
             self._outputs.add(_measured(states, encoder.received, self._parameters))
 
     def recording(self, path: Path, sources: Sources, damage: str | None = None) -> Recording:
-        """Return what has been added so far as a recording of a path.
+        """Return the states so far as a recording; `damage` is what ended the reading.
 
-        `damage` says what has ended the reading. BagError or RecordingError: there is nothing to
-        measure.
+        Raises:
+            BagError, RecordingError: if there is nothing to measure.
         """
         rotor, encoder, parameters = self._rotor, self._encoder, self._parameters
         rejected = self._gear.input.rejected
@@ -177,7 +177,7 @@ class States:
 def _measured(
     states: JointStates, received: Sequence[int], parameters: NodeParameters
 ) -> tuple[Array, Array]:
-    """Stamps and output angles of messages; a zero stamp is replaced by the time of reception."""
+    """Stamps and output angles of messages; the time of reception replaces a zero stamp."""
     angle = measured_angle(parameters, states.values[:, 0])
     usable = ~states.malformed & states.present[:, 0] & (np.abs(angle) <= LARGEST_ANGLE)
     stamp = np.where(states.stamp == 0, np.asarray(received, np.int64), states.stamp)
@@ -185,7 +185,7 @@ def _measured(
 
 
 class _Columns:
-    """The values in a topic's states, batch by batch; too many are thinned out evenly."""
+    """Values of the states of a topic, thinned out evenly if there are too many."""
 
     def __init__(self, most: int) -> None:
         self._most, self._seen, self.every = most, 0, 1
@@ -200,12 +200,12 @@ class _Columns:
             self._batches = [[column[::2].copy() for column in self.joined()]]
 
     def joined(self) -> list[Array]:
-        """Columns of all batches."""
+        """Join the columns of all batches."""
         return [np.concatenate(batches) for batches in zip(*self._batches, strict=True)]
 
 
 def _in_order(columns: Sequence[Array], topic: str, remarks: list[Observed]) -> list[Array]:
-    """Keep the rows whose stamps, the first column, are in order; remark what is left out."""
+    """Keep the rows whose stamps, the first column, are in order; remark on those left out."""
     kept, disordered = in_order(columns[0])
     if disordered:
         remarks.append(Observation.STATES_OUT_OF_ORDER(topic=topic, count=disordered))

@@ -24,7 +24,7 @@ _SPEED_WINDOW = 0.02  # s, over which the speed is averaged
 
 
 class RecordingError(ValueError):
-    """A recording that cannot be used; the text is one line on the cause."""
+    """A recording that cannot be used; the text gives the cause in one line."""
 
 
 class RotorMotion(NamedTuple):
@@ -47,32 +47,32 @@ class RotorMotion(NamedTuple):
 
     @property
     def seconds(self) -> Array:
-        """Times from the first sample, s, or sample numbers."""
+        """Times since the first sample, s, or sample numbers."""
         return np.asarray((self.stamp - self.stamp[0]) / SECOND)
 
     @property
     def turned(self) -> Array:
-        """Rotor angle from the whole turns of the first sample, rad."""
+        """Rotor angle counted from the whole turns of the first sample, rad."""
         return np.asarray((self.turns - self.turns[0]) * TURN + self.angle)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Loading:
-    """Angles under torque, (n,) each, in the order of their sampling."""
+    """Angles under torque in the order of sampling, (n,) each."""
 
     torque: Array  #: N·m, at the output
-    angle: Array  #: rad, at the output: the twist of the gear, from an arbitrary zero
+    angle: Array  #: rad, at the output: the twist of the gear from an arbitrary zero
     angle_step: Step  #: rad at the output, between readings of the angle
-    measured: bool  #: whether an encoder measured the output, else taken to be locked
-    seconds: Array | None = None  #: s, from the first sample; None if time was not recorded
+    measured: bool  #: whether an encoder measured the output; otherwise it is taken to be locked
+    seconds: Array | None = None  #: s, since the first sample; None if time was not recorded
 
     @property
     def moments(self) -> Array:
-        """Times of the samples, s, or their numbers from 1 on, (n,)."""
+        """Times of the samples, s, or their numbers from 1, (n,)."""
         return np.arange(1.0, len(self.torque) + 1.0) if self.seconds is None else self.seconds
 
     def chosen(self, rows: Array | slice) -> 'Loading':
-        """Leave out all but some rows."""
+        """Return the samples of some rows."""
         seconds = None if self.seconds is None else self.seconds[rows]
         return replace(self, torque=self.torque[rows], angle=self.angle[rows], seconds=seconds)
 
@@ -86,10 +86,10 @@ def locked_shaft(
     *,
     measured: bool,
 ) -> Loading:
-    """Angles of one shaft with an encoder of a step, under a torque at the output, N·m.
+    """Return angles of one shaft under torque; the other shaft is taken to be locked.
 
-    The other one is taken to be locked; the ratio is 1 where the angles are those at the output.
-    The stamps are in ns; None if time was not recorded.
+    The torque is that at the output, N·m. The angles, rad, are those of the rotor, or of the
+    output with a ratio of 1. The stamps are in ns; None if time was not recorded.
     """
     seconds = None if stamp is None else (stamp - stamp[0]) / SECOND
     return Loading(torque, angle / float(ratio), step.scaled(float(1 / ratio)), measured, seconds)
@@ -97,16 +97,16 @@ def locked_shaft(
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Encoders:
-    """Measured output angles, each with the motion of the rotor up to it."""
+    """Measured output angles, and the motion of the rotor around each of them."""
 
     rotor: RotorMotion
     timed: bool  #: whether stamps are times
     before: Array  #: (n,): index of the last rotor sample before each measured angle
-    share: Array  #: (n,): share of the way from there to the next rotor sample
+    share: Array  #: (n,): how far it is from there to the next rotor sample, 0 to 1
     measured: Array  #: (n,), rad
     rotor_step: Step  #: rad of the rotor, between readings of its encoder
     output_step: Step  #: rad, between readings of the output's encoder
-    unmatched: Mapping[str, int] = field(default_factory=dict)  #: without a rotor angle, by cause
+    unmatched: Mapping[str, int] = field(default_factory=dict)  #: numbers left out, by cause
 
     @property
     def duration(self) -> float:
@@ -115,17 +115,17 @@ class Encoders:
 
     @property
     def seconds(self) -> Array:
-        """Times of the measured angles from the first rotor sample, s, or sample numbers."""
+        """Times of the measured angles since the first rotor sample, s, or sample numbers."""
         return self.at_measured(self.rotor.seconds)
 
     @property
     def _after(self) -> Array:
-        """(n,): index of the next rotor sample, or of the last."""
+        """(n,): index of the next rotor sample, or of the last one."""
         return np.asarray(np.minimum(self.before + 1, len(self.rotor.stamp) - 1))
 
     @property
     def interpolated(self) -> float:
-        """Time between the rotor's samples, s; 0 if it was read with every measured angle."""
+        """Time between the rotor's samples, s; 0 if one belongs to every measured angle."""
         if not self.timed or not (self.share * (1.0 - self.share)).any():
             return 0.0
         return float(np.median(np.diff(self.rotor.stamp))) / SECOND
@@ -136,7 +136,7 @@ class Encoders:
         return np.asarray(before + self.share * (values[self._after] - before))
 
     def position(self) -> tuple[Array, Array]:
-        """Rotor angle at the measured angles: whole turns and the rest, rad."""
+        """Rotor angle at the measured angles: whole turns, and the remainder, rad."""
         turns, angle = self.rotor.turns[self.before], self.rotor.angle[self.before]
         step = (self.rotor.turns[self._after] - turns) * TURN
         step += self.rotor.angle[self._after] - angle
@@ -145,11 +145,11 @@ class Encoders:
         return turns + wraps, rest - TURN * wraps
 
     def ideal(self, ratio: Fraction) -> Array:
-        """Ideal output angle of the rotor samples, rad, from the whole turns of the first one."""
+        """Ideal output angle at the rotor samples, rad, as `RotorMotion.turned` counts it."""
         return self.rotor.turned * (ratio.denominator / ratio.numerator)
 
     def error_step(self, ratio: Fraction) -> Step:
-        """The step of the error, rad."""
+        """Step between readings of the error, rad."""
         return self.rotor_step.scaled(float(1 / ratio)).joined(self.output_step)
 
     def error(self, ratio: Fraction) -> Array:
@@ -161,7 +161,7 @@ class Encoders:
     def speed(self, ratio: Fraction) -> Array:
         """Speed of the output at the measured angles, rad/s, or rad a sample without times."""
         time, at = self.rotor.seconds, self.seconds
-        # No less than the rotor's own samples on both sides.
+        # The window includes at least the rotor samples on both sides.
         early = np.clip(at - 0.5 * _SPEED_WINDOW, time[0], time[self.before])
         late = np.clip(at + 0.5 * _SPEED_WINDOW, time[self._after], time[-1])
         ideal = self.ideal(ratio)
@@ -169,26 +169,26 @@ class Encoders:
         return np.asarray(travel / np.maximum(late - early, 1.0 / SECOND))
 
     def torque(self, ratio: Fraction) -> Array | None:
-        """Torque at the output, N·m, at the measured angles; None if it has gaps."""
+        """Torque at the output at the measured angles, N·m; None if it is not known throughout."""
         effort = self.rotor.effort
         return float(ratio) * self.at_measured(effort) if np.isfinite(effort).all() else None
 
     def earlier(self, delay: float) -> Self:
-        """Return the angles as if they had been measured earlier by a delay, s or samples."""
+        """Return the angles as if measured earlier by a delay, s or samples."""
         stamp = self.rotor.stamp[0] + np.round((self.seconds - delay) * SECOND).astype(np.int64)
         before, share, kept = match(self.rotor.stamp, stamp)
         return replace(self, before=before, share=share, measured=self.measured[kept])
 
     def chosen(self, rows: Array | slice) -> Self:
-        """Leave out measured angles but those of some rows; the rotor's motion stays as it is."""
+        """Return the measured angles of some rows, with all of the rotor's motion."""
         return replace(
             self, before=self.before[rows], share=self.share[rows], measured=self.measured[rows]
         )
 
     def starts(self, max_gap: int | None) -> Array:
-        """Indices of the rotor samples before which the motion is unknown, the first included.
+        """Indices of the rotor samples before which the motion is unknown, including the first.
 
-        In a gap between rotor samples of more than `max_gap`, ns, motion was missed.
+        It is also unknown in gaps of more than `max_gap`, ns, unless that is None.
         """
         unknown = np.diff(self.rotor.segment) != 0
         if max_gap is not None and self.timed:
@@ -199,11 +199,10 @@ class Encoders:
 def match(
     rotor: Array, measured: Array, max_gap: float = np.inf
 ) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """Find the rotor samples around each measured angle, by stamps in ns; the rotor's in order.
+    """Find the rotor samples around each measured angle by their stamps, ns; the rotor's in order.
 
-    Returns:
-        `before` and `share` of the angles between two rotor samples that are no more than
-        `max_gap`, ns, apart; and which angles these are.
+    Returns `before` and `share` of the angles between rotor samples at most `max_gap` apart, ns;
+    and which angles these are.
     """
     before = np.searchsorted(rotor, measured, side='right') - 1
     inside = (before >= 0) & (measured <= rotor[-1])
@@ -216,7 +215,7 @@ def match(
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """Content of a recording: angles under torque, both encoders, or all of it."""
+    """Contents of a recording: angles under torque, both encoders, or all of these."""
 
     path: Path
     name: str
@@ -225,9 +224,9 @@ class Recording:
     encoders: Encoders | None = None
     locked: Loading | None = None  #: angles under torque without an encoder at the output
     remarks: tuple[Observed, ...] = ()  #: what was left out or assumed
-    damage: str | None = None  #: at which reading ended
-    faults: tuple[Observed, ...] = ()  #: what cannot be true, such as a slip, each with its moment
-    rotor_messages: TopicMessages | None = None  #: the first of a bag that is read as recorded
+    damage: str | None = None  #: damage at which reading ended
+    faults: tuple[Observed, ...] = ()  #: what cannot be true, such as a slip, and when it was
+    rotor_messages: TopicMessages | None = None  #: first messages of a bag read as recorded
 
     @property
     def both(self) -> Encoders:
@@ -241,17 +240,17 @@ class Recording:
 
     @property
     def computed(self) -> Observed | None:
-        """The fault that the output follows the rotor more closely than that of a gear, if any."""
+        """The fault that the output was computed from the rotor, if it shows."""
         return next((f for f in self.faults if f.what is Observation.COMPUTED), None)
 
     @property
     def sentences(self) -> list[str]:
-        """Sentences on what cannot be true, was left out or assumed, and on damage."""
+        """Sentences on faults, on what was left out or assumed, and on damage."""
         damage = [f'{self.damage}; what is before it is used'] if self.damage else []
         return [f'{clause}.' for clause in (*self.faults, *self.remarks, *damage)]
 
     def loading(self, ratio: Fraction) -> Loading | None:
-        """Torque and twist: of the gear if the output was measured, else of the whole drive."""
+        """Torque and twist, of the gear if the output was measured, otherwise of the drive."""
         both = self.encoders
         if both is None:
             return self.locked
@@ -265,7 +264,7 @@ class Recording:
 
     @cached_property
     def sha256(self) -> str:
-        """Hash of the file, or of the files in the folder one after the other, by name."""
+        """Hash of the file, or of all files in the folder in the order of their names."""
         total = hashlib.sha256()
         files = sorted(self.path.rglob('*')) if self.path.is_dir() else [self.path]
         for file in filter(Path.is_file, files):

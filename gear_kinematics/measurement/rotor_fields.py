@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Guesses at the units of a driver's velocities and efforts that are not in rad/s and N·m."""
+"""What seems wrong with a driver's messages: sizes, stamps, and units of velocity and effort."""
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
@@ -16,10 +16,10 @@ from gear_kinematics.state.velocity_field import VelocityField, VelocityMeaning
 from gear_kinematics.wire.batches import decode_joint_states
 from gear_kinematics.wire.cdr import SECOND
 
-MOST = 500_000  # messages that are looked at; they take about 200 bytes each
+MOST = 500_000  # messages that are examined; they take about 200 bytes each
 _FEWEST = 10
-_MOVED = 1.0  # rad, by which a rotor has moved for certain
-_EQUAL = 1e-9  # rad, below which positions differ by rounding alone
+_MOVED = 1.0  # rad: a rotor that travels as far has certainly moved
+_EQUAL = 1e-9  # rad: positions that differ by less differ by rounding alone
 
 
 def questions(
@@ -28,10 +28,10 @@ def questions(
     """Yield what seems to be wrong with the fields of n messages.
 
     Args:
-        data: serialised sensor_msgs/JointState.
-        received: when they were, ns; these times replace missing stamps.
-        joint: the rotor's; '' takes the only one.
-        ratio: of the gear, if it is known, to recognise velocities of the output.
+        data: the messages, serialised sensor_msgs/JointState.
+        received: times of reception, ns, which replace missing stamps.
+        joint: name of the rotor's joint; '' takes the only one.
+        ratio: gear ratio if known, to recognise velocities of the output.
     """
     states = decode_joint_states(data, joint)
     if unfit := int(np.count_nonzero(states.joint_found & ~states.arrays_fit)):
@@ -79,5 +79,5 @@ def recorded_questions(
             if len(data) > MOST:
                 break
     except DamagedBagError:
-        pass  # which the reader of the recording says
+        pass  # the reader of the recording reports it
     yield from questions(data, received, joint, ratio)

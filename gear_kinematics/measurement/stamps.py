@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The stamps of recorded topics: those of a clock that was set back, and those out of order."""
+"""Stamps of recorded topics from a clock that was set back, or out of order."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -11,28 +11,28 @@ from gear_kinematics.measurement.recording import Array
 from gear_kinematics.wire.cdr import SECOND, header_stamp, with_stamp
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
-_CLOCK_STEP = 20_000_000  # ns by which a clock is set back, at least; computers slew it by less
-_STEADY = 25  # messages before and after, of which the age is the same
+_CLOCK_STEP = 20_000_000  # ns by which a clock is set back at least; it is slewed by less
+_STEADY = 25  # messages before and after a step whose age is steady
 
 
 class ClockStep(NamedTuple):
-    """A clock that was set back while it was recorded."""
+    """A step back of the clock during a recording."""
 
     received: int  # when the first message with a stamp of the new time was received, ns
     size: int  # ns
-    stamp: int  # the last one of the old time, ns
+    stamp: int  # last stamp before the step, ns
 
 
 class RestoredClock:
-    """Gives the messages of a topic the stamps of a clock that is never set back.
+    """Restamps the messages of a topic as if its clock had never been set back.
 
-    A step shows by a stamp that goes back, and by messages that are all older from then on when
-    they are received. One that is late is followed by others that are not, and after a stall of a
-    driver or a recorder the stamps go on.
+    At a step, a stamp goes back, and from then on all messages are older on reception. A late
+    message is followed by others that are not late, and after a stall of a driver or a recorder
+    the stamps do not go back.
     """
 
     def __init__(self, of_rotor: Sequence[ClockStep] = ()) -> None:
-        """Begin a topic; of two with the same clock, the second one follows the first."""
+        """Begin a topic; that of an encoder takes the steps from the rotor's, as of one clock."""
         self.steps: list[ClockStep] = []
         self._of_rotor = of_rotor
 
@@ -67,11 +67,10 @@ class RestoredClock:
 
 
 def in_order(stamps: Array) -> tuple[Array, int]:
-    """Choose stamps, ns, as the node does: those in disorder by up to a second are left out.
+    """Choose stamps, ns, as the node does: those up to a second out of order are left out.
 
-    Returns:
-        The indices that are kept, and how many are left out in disorder. A clock that was set back
-        further ends them.
+    Returns the indices that are kept, and how many are left out. Stamps that go back further end
+    the selection.
     """
     late = np.maximum.accumulate(stamps) - stamps
     late = late[~np.logical_or.accumulate(late > CLOCK_RESET)]

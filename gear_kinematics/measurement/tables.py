@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Tables as recordings: which rows are used, in what units, and at what times."""
+"""Tables as recordings: the rows that are used, their units and times."""
 
 import re
 import shlex
@@ -42,29 +42,29 @@ from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.wire.cdr import SECOND
 
 _LEAST = 1e-30
-"""Numbers that are smaller are 0: of none of those that follow, squares and inverses underflow."""
-_GAP = 5  # usual intervals of the rotor's samples over which its motion is interpolated, at most
-_HALF_TURN = 180.0  # degrees, by which the readings of a single-turn encoder jump at least
-_MOST_TWIST = 0.35  # rad of the output under torque: a shaft that turns further is not locked
+"""Smaller numbers are taken as 0, so that no squares or inverses underflow later."""
+_GAP = 5  # greatest gap, in usual intervals of the rotor's samples, that is interpolated
+_HALF_TURN = 180.0  # degrees: least jump of a single-turn encoder
+_MOST_TWIST = 0.35  # rad of the output under torque; a shaft that turns further is not locked
 _BLOCKS, _LIKE = 10, (0.08, 1.0)
-"""Parts of a recording; rad by which the output leaves the rotor in most of them, in degrees."""
-_WHOLE = 50  # levels that show whole numbers to be no coincidence
+"""Number of parts of a recording; error of the output within a part that shows degrees, rad."""
+_WHOLE = 50  # number of different whole numbers that are no coincidence
 _TRIED, _FEWEST, _ROWS = 12, 10, 10_000
-"""Columns among which two are sought for an example, least and most rows that tell them."""
+"""Number of columns that are tried for an example; least and most rows that are compared."""
 _NO_ANGLE = re.compile(
     r'(?i)torq|effort|curr|vel|speed|rpm|/ ?s|temp|time|stamp|target|goal|cmd|elec|^t$'
 )
-"""In names of columns that are not proposed as angles."""
+"""Words in names of columns that are not proposed as angles."""
 _LIKELY = re.compile(r'(?i)pos|ang|enc|theta|winkel|(rad|deg|rev|inc|cnt|counts)\b')
-"""In names of those that are proposed before others."""
-_COUNTS = '--rotor-counts', '4096', '--output-counts', '4096'  # an example for whole numbers
-_SHOWN = 800  # characters of an error, as those of a file can be many
+"""Words in names of columns that are proposed first."""
+_COUNTS = '--rotor-counts', '4096', '--output-counts', '4096'  # example for whole numbers
+_SHOWN = 800  # characters of an error, which may quote a long file
 
 
 def read_table(path: Path, sources: Sources, ratio: Fraction, period: float = 0.0) -> Recording:
     """Read a table of a gear with a ratio.
 
-    Positions of the rotor repeat after a period, rad; 0: as they show.
+    Positions of the rotor repeat after a period, rad; 0 if that is to be found.
 
     Raises:
         RecordingError: if it cannot be read, or has no such columns.
@@ -74,10 +74,10 @@ def read_table(path: Path, sources: Sources, ratio: Fraction, period: float = 0.
 
 
 def read_rotor(path: Path, sources: Sources, ratio: Fraction) -> tuple[Array, Array, Array, str]:
-    """Read how the rotor of a gear with a ratio moves under torque.
+    """Read the motion of a gear's rotor under torque.
 
     Returns:
-        Stamps, ns, the rotor's angle, rad, and its torque, N·m, (n,) each; what was taken.
+        Stamps, ns, angles of the rotor, rad, and its torque, N·m, (n,) each; the columns read.
 
     Raises:
         RecordingError: if it cannot be read, or has no such columns.
@@ -96,10 +96,10 @@ def read_rotor(path: Path, sources: Sources, ratio: Fraction) -> tuple[Array, Ar
 
 @contextmanager
 def _naming(path: Path) -> Iterator[None]:
-    """Raise errors as RecordingError that name the path."""
+    """Turn errors into a RecordingError that names the path."""
     try:
         yield
-    except (OSError, ValueError) as error:  # pandas raises the latter, too
+    except (OSError, ValueError) as error:  # pandas raises the latter as well
         text = getattr(error, 'strerror', None) or ' '.join(str(error).split())
         if len(text) > _SHOWN:
             text = f'{text[: _SHOWN // 2]} ... {text[-_SHOWN // 2 :]}'
@@ -112,14 +112,14 @@ class _Series(NamedTuple):
     stamp: Array  # ns; one second a row if times were not recorded
     values: dict[str, Array]  # in SI units, by role
     segment: Array
-    """Number that changes where rows were left out, as the motion in them is unknown."""
+    """Number that changes where rows were left out, whose motion is unknown."""
 
 
 class _Samples:
-    """Columns and samples of a table by role, what was taken, remarks and faults."""
+    """Columns and samples of a table by role, with remarks and faults."""
 
     def __init__(self, path: Path, table: TableFile, sources: Sources, ratio: Fraction) -> None:
-        """Read the columns; ValueError if there are no such ones, or they have no numbers."""
+        """Read the columns; ValueError if they are missing or contain no numbers."""
         self._sources, self._ratio = sources, ratio
         try:
             found = find_columns(table.names, sources, table.units, table.clocks)
@@ -152,7 +152,7 @@ class _Samples:
                 f'columns of {" and ".join(map(str, sorted(lengths)))} rows, without times'
             )
         both = np.zeros(1, bool) if apart else np.all([*usable.values()], axis=0)
-        # PlotJuggler writes each at its own times, with nothing in the columns of the others.
+        # PlotJuggler writes each series at its own times, and leaves the other columns empty.
         apart = apart or bool(clock and 2 * np.count_nonzero(both) < max(counts))
         if not fewest or not (apart or both.any()):
             names = ', '.join(column.name for column in found.values())
@@ -185,20 +185,20 @@ class _Samples:
         self.said.append(f'{self.used} of {rows} rows')
 
     def unwrapped(self, role: str, period: float = 0.0) -> Array:
-        """Positions without the wraps of an encoder with a period, rad, or with one that shows."""
+        """Return positions unwrapped by a period, rad, or by the one that they show."""
         series = self.series[role]
         values, seconds = series.values[role], (series.stamp - series.stamp[0]) / SECOND
         return unwrapped(values, seconds, self._shown[role], period)
 
     def torque_at(self, at: _Series) -> Array:
-        """Torque at the output, N·m, at the stamps of other samples."""
+        """Return the torque at the output, N·m, at the stamps of other samples."""
         own = self.series['torque']
         torque = own.values['torque']
         torque = torque if own is at else np.interp(at.stamp, own.stamp, torque)
         return torque * float(self._ratio) if self.found['torque'].on_rotor else torque
 
     def steps(self) -> dict[str, Step]:
-        """Steps of the encoders by role; ValueError if what is assumed of a unit cannot be."""
+        """Return the steps of encoders by role; ValueError if an assumed unit is impossible."""
         steps = {}
         for role, column in self.found.items():
             if role != 'torque':
@@ -213,7 +213,7 @@ class _Samples:
         return steps
 
     def _against(self, role: str, step: Step | None) -> str:
-        """What shows that numbers without a unit are not in rad or N·m, if anything."""
+        """Return what shows that numbers without a unit are not in rad or N·m, if anything."""
         column, stamp = self.found[role], self.series[role].stamp
         if column.unit and not column.borrowed:
             return ''
@@ -237,7 +237,7 @@ class _Samples:
         return ''
 
     def locked(self, period: float) -> Loading:
-        """Angles under torque; ValueError if the shaft turns."""
+        """Return the angles under torque; ValueError if the shaft turns."""
         angle = self.found['angle']
         locked = locked_shaft(
             self.torque_at(self.series['angle']),
@@ -247,7 +247,7 @@ class _Samples:
             self.series['angle'].stamp if self.timed else None,
             measured=angle.on_output,
         )
-        # Few readings can be stray.
+        # A few readings may be stray.
         if np.ptp(np.quantile(locked.angle, (0.01, 0.99))) > _MOST_TWIST:
             twist = np.ptp(locked.angle)
             raise ValueError(
@@ -257,7 +257,7 @@ class _Samples:
         return locked
 
     def encoders(self, period: float) -> Encoders:
-        """Both encoders; ValueError if they cannot be of one gear in rad, as is assumed."""
+        """Return both encoders; ValueError if they cannot be those of a gear in rad."""
         steps, main, other = self.steps(), self.series['rotor'], self.series['output']
         rotor, output = main.values['rotor'], other.values['output']
         if not self._sources.as_recorded:
@@ -294,7 +294,7 @@ def _recording(
 
 
 def _error(rotor: Array, output: Array) -> float:
-    """By how much the output leaves the rotor within most parts of a recording, rad."""
+    """Return the usual error of the output against the rotor within a part, rad."""
     output = np.unwrap(output) if count_wraps(output, TURN) else output
     every = max(1, len(rotor) // _ROWS)
     rotor, output = rotor[::every], output[::every]
@@ -310,7 +310,7 @@ def _error(rotor: Array, output: Array) -> float:
 
 
 def _advice(path: Path, table: TableFile, sources: Sources, ratio: Fraction) -> str:
-    """List the columns with their first values, and end with a command line that works, if any."""
+    """List the columns with their first values, and propose a command line that works, if any."""
     names = [name for name in table.names if name]
     listed = ', '.join(f'{name} ({table.first.get(name, "")})' for name in names)
     single = [name for name in filterfalse(_NO_ANGLE.search, names) if names.count(name) == 1]

@@ -13,23 +13,23 @@ from gear_kinematics.measurement.recording import Array, Encoders, RecordingErro
 from gear_kinematics.measurement.two_encoders import STEP, EncoderFit, directions
 from gear_kinematics.statistics.uncertainty import Component, Estimate, resolution
 
-_MIN_SHARE = 0.5  # runs of at least this share of the longest one are repeats of it
+_MIN_SHARE = 0.5  # share of the longest run from which on other runs count as its repeats
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TransmissionFigures:
-    """Results from a recording of both encoders: angles in rad."""
+    """Results of a recording of both encoders; angles in rad."""
 
     travel: float  #: range of the output angle
     offset: float  #: the mean error: the offset of the encoders' zeros
-    forward: Estimate | None  #: accuracy: peak-to-peak error of forward motion without a reversal
+    forward: Estimate | None  #: accuracy: peak-to-peak error of forward runs without a reversal
     backward: Estimate | None
     reversals: Estimate | None  #: error backward minus forward at the same angles, if any
-    lost_motion: Estimate | None  #: that error less what a delay adds; None if not told apart
-    delay: Estimate | None  #: of the output's stamps, s or rows, taken out if clear; None if open
+    lost_motion: Estimate | None  #: the same without the delay; None if inseparable from it
+    delay: Estimate | None  #: of the output's stamps, s or rows, removed if clear; None if unknown
     error: Array  #: (n,), measured minus ideal
     angle: Array  #: (n,), ideal, of the output
-    direction: NDArray[np.int8]  #: (n,): 1, -1, or 0 where unknown
+    direction: NDArray[np.int8]  #: (n,): 1, -1, or 0 if unknown
 
 
 class _Motion:
@@ -52,7 +52,7 @@ class _Motion:
                 yield int(self.direction[rows[0]]), rows
 
     def fits(self, encoders: Encoders, ratio: Fraction) -> list[EncoderFit]:
-        """Fit both encoders, and again if a delay can be told; none if too few samples move."""
+        """Fit both encoders, also with a delay if separable; no fit if too few samples move."""
         time = encoders.seconds * (1.0 if encoders.timed else STEP)
         angles = self.angle * float(ratio), self.angle + self.error, time, self.direction
         try:
@@ -62,7 +62,7 @@ class _Motion:
             return []
 
     def accuracy(self, way: int, reading: Component) -> Estimate | None:
-        """Estimate the peak-to-peak error of the runs in a direction that repeat the longest."""
+        """Estimate the peak-to-peak error of the longest run in a direction and of its repeats."""
         runs = [rows for sign, rows in self.runs() if sign == way]
         sizes = [(np.ptp(self.angle[rows]), float(np.ptp(self.error[rows]))) for rows in runs]
         least = _MIN_SHARE * max(sizes)[0] if sizes else 0.0
@@ -73,9 +73,9 @@ class _Motion:
 def transmission_figures(
     encoders: Encoders, ratio: Fraction, travel: float
 ) -> TransmissionFigures:
-    """Compute the figures of a recording, less a delay that is clear.
+    """Compute the figures of a recording; a clear delay is removed first.
 
-    A new direction counts after so much travel of the output, rad, from a reversal.
+    A new direction counts from a `travel` of the output, rad, after the reversal.
     """
     both = Component(math.sqrt(2.0) * resolution(encoders.error_step(ratio).size))
     motion = _Motion(encoders, ratio, travel)
@@ -86,12 +86,12 @@ def transmission_figures(
         for fit in fits[1:]:
             delay = replace(fit.delay(1.0 if encoders.timed else 1.0 / STEP), repeats=pairs)
             lost_motion = fit.lost_motion(both, delay=True)
-            if not delay.clear:  # it may as well be none
+            if not delay.clear:  # there may be no delay
                 off = abs(lost_motion.value - difference.value) / math.sqrt(3.0)
                 lost_motion = fit.lost_motion(both, Component(off), delay=True)
             lost_motion = replace(lost_motion, repeats=pairs)
     if delay and delay.clear:
-        # The error is in proportion to the delay only as long as the speed hardly changes in it.
+        # The error is proportional to the delay only while the speed hardly changes within it.
         motion = _Motion(encoders.earlier(delay.value), ratio, travel)
     forward, backward = (motion.accuracy(way, both) for way in (1, -1))
     error = max(one.value if one else 0.0 for one in (forward, backward))
@@ -110,6 +110,6 @@ def transmission_figures(
 
 
 def _meaningful(lost: Estimate | None, error: float) -> Estimate | None:
-    """Return a difference between directions, unless its ± exceeds it and the error in either."""
+    """Return what is lost on reversals, unless its ± exceeds both it and the error."""
     beyond = lost and math.inf > lost.expanded > max(abs(lost.value), error)
     return None if beyond else lost

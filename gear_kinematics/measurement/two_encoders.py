@@ -2,10 +2,10 @@
 """One fit of the angles of two encoders: ratio, offset, play, delay, and periodic errors of both.
 
 The output angle is slope · rotor angle + offset + play by direction - delay · speed + errors that
-repeat with each turn of output or rotor: for k cycles a turn, their amplitude is at most
-`ENCODER_ERROR`/k, with a probability of 95 %. What a travel of less than a turn leaves open of
-them is in the uncertainties; over more, they are fitted. All else is in the scatter of the fits
-without one block of successive samples.
+repeat with each turn of output or rotor. An error of k cycles per turn has an amplitude of at most
+`ENCODER_ERROR`/k, with a probability of 95 %. Over more than a turn these errors are fitted; what
+a shorter travel leaves open is in the uncertainties. Everything else is in the scatter of fits
+that each leave out one block of successive samples.
 """
 
 import math
@@ -20,49 +20,49 @@ from gear_kinematics.statistics.normal_equations import NormalEquations
 from gear_kinematics.statistics.uncertainty import Component, Estimate, jackknife
 
 ENCODER_ERROR = math.radians(1.0)
-"""rad. Magnetic encoders deviate by ±1° over a turn (datasheets of ams AS5046 and AS5600), and
-printed gears by about as much: that of the rotor's encoder, and of gear and output's encoder."""
-STEP = 0.01  # s around a sample, for its speed; of a row without times
+"""rad: error of the rotor's encoder, and of the gear with the output's encoder. Magnetic encoders
+deviate by ±1° over a turn (datasheets of ams AS5046 and AS5600), and printed gears by as much."""
+STEP = 0.01  # s before and after a sample, for its speed; also taken between rows without times
 _ACCURACY = math.radians(2.0 / 3600.0) / math.sqrt(3.0)
-"""rad, standard deviation. Few encoders are accurate to ±2″ over the travel, and a gear on its
-springs follows its errors a little more the faster it turns."""
-_BLOCKS = 23  # prime, as blocks of whole cycles of an error would not differ
-_MOST = 10_000  # samples that are used: more tell no more of errors that are correlated
-_MEANS = 115  # least number of means of successive samples whose scatter tells the correlation
-_CHUNK = 4096  # points, so that their arrays fit into the processor's cache
+"""rad, standard deviation. Few encoders are accurate to ±2″ over the travel, and the faster a gear
+on its springs turns, the more it follows its errors."""
+_BLOCKS = 23  # a prime number, since blocks of whole cycles of an error would be alike
+_MOST = 10_000  # samples that are used; with correlated errors, more would add nothing
+_MEANS = 115  # least number of means of successive samples whose scatter shows correlation
+_CHUNK = 4096  # points whose arrays fit into the processor's cache
 _ORDERS = 48, 4
 """Greatest numbers of cycles per turn of output and rotor. With amplitudes of 1/k they add up to a
-random walk, as pitch errors do. With 24, 3 of 200 simulated recordings of 340° were outside of
-twice the interval."""
-_ROTOR_SHARE = 0.1  # of `ENCODER_ERROR`: what the gear may add at the output per turn of the rotor
+random walk, as pitch errors do. With 24 cycles, 3 of 200 simulated recordings over 340° were
+beyond twice the interval."""
+_ROTOR_SHARE = 0.1  # of `ENCODER_ERROR`, that the gear may add at the output once per rotor turn
 _TO_STANDARD = math.sqrt(-2.0 * math.log(0.05))
-"""Amplitude that 95 % do not exceed, over the standard deviation of its sine and cosine."""
+"""Amplitude that 95 % do not exceed over the standard deviation of its sine and cosine."""
 _PLAY, _DELAY = 0.1, 0.05
-"""Standard deviations, rad and s, that hardly bind play and delay; 1 rad those of the travel."""
+"""Standard deviations expected of play, rad, and delay, s: so large that they hardly matter."""
 _LAG = 6e-5
-"""Standard deviation, s², of the lag by the acceleration: inertia over stiffness of the output, or
-1/ω² of one that oscillates at 20 Hz on the springs of its gear, as arms of robots do."""
+"""Standard deviation, s², of the lag per acceleration: inertia over stiffness of the output, or
+1/ω² of an output that oscillates at 20 Hz on the springs of its gear, as robot arms do."""
 _SLOPE, _WAY, _LATE = 0, 2, 3  # columns of the fit; 1 is the offset
-_LEAST_NOISE = 1e-7  # rad: step of an encoder of 26 bits; with less, rounding makes ratios wrong
-_ROUNDS = 5  # estimates of the noise, each by what the one before left; with 3, ± is 50 % off
+_LEAST_NOISE = 1e-7  # rad, the step of an encoder of 26 bits; below it, rounding falsifies ratios
+_ROUNDS = 5  # estimates of the noise, each from the residuals before; after 3, ± is 50 % off
 
 
 class EncoderFit:
-    """Fits to all samples, and then without each block of successive ones: (1 + blocks,)."""
+    """Fits to all samples, and then without each block of successive samples: (1 + blocks,)."""
 
     def __init__(
         self, rotor: Array, output: Array, time: Array, way: Array, slope: float, late: float = 0.0
     ) -> None:
-        """Fit angles of rotor and output, (n,) each, rad, counting turns, in the order of time, s.
+        """Fit multi-turn angles of rotor and output, (n,) each, rad, in the order of time, s.
 
         `way` is the direction of the motion, 1 or -1; samples with 0 are left out. The slope,
-        output angle over rotor angle, and the delay `late` of the output, s, are estimates.
+        output angle over rotor angle, and the delay `late` of the output, s, are first estimates.
 
         Raises:
             RecordingError: if there are too few samples.
         """
         self._angles = rotor, output, time, way
-        then = time - late  # when the rotor was where the output is measured
+        then = time - late  # when the rotor was at the measured output angle
         ways = way[np.rint(np.interp(then, time, np.arange(len(time)))).astype(int)]
         kept = np.flatnonzero(ways * (then >= time[0]) * (then <= time[-1]))
         kept = kept[:: -(-len(kept) // _MOST) or 1]
@@ -71,20 +71,20 @@ class EncoderFit:
         step = float(np.median(np.diff(time)))
         share = late / step % 1.0 if step else 0.0
         self._between = 0.5 * share * (1.0 - share) * step**2
-        """s², by which times the acceleration the angle between two samples is not their mean."""
+        """s²: times the acceleration, the error of interpolating between two samples."""
         around = (then[kept] + k * STEP for k in (-2, -1, 0, 1, 2))
         first, early, at, after, last = (np.interp(when, time, rotor) for when in around)
         speed = slope * (after - early) / (2.0 * STEP)
-        # Beside a reversal, the speed is not that of the sample.
+        # Near a reversal, the speed is not that at the sample.
         beside = (np.interp(then[kept] + k * STEP, time, way) for k in (-1, 1))
         steady = (ways[kept] * speed)[np.all([each == ways[kept] for each in beside], axis=0)]
         parts = np.array_split(steady, max(1, min(_MEANS, len(steady))))
         self.tells_delay = tells_delay(steady, np.array([np.mean(part) for part in parts]))
-        """Whether a delay can be told from play."""
+        """Whether the speed varies enough to separate a delay from play."""
         self.travel = float(np.ptp(at))
-        # The measured angle must not explain itself: errors are periodic in that of the rotor.
+        # The measured angle must not explain itself, so that errors are periodic in the rotor's.
         columns = _columns(at, slope, ways[kept], speed)
-        # Nor must its error: the reading of the rotor is not in its acceleration.
+        # The same holds for reading errors: the acceleration does not contain the reading itself.
         acceleration = slope * (first - early - after + last) / (3.0 * STEP**2)
         left = rest = output[kept] - slope * at - np.mean(output[kept] - slope * at)
         blocks = np.array_split(np.column_stack([columns, _LAG * acceleration, rest]), _BLOCKS)
@@ -99,22 +99,20 @@ class EncoderFit:
         self._delays = late - _DELAY * self._terms[:, _LATE]
 
     def refined(self) -> 'EncoderFit':
-        """Fit again with the slope and the delay that were found."""
+        """Fit again, from the slope and the delay found."""
         return EncoderFit(*self._angles, float(self.slope[0]), float(self._delays[0]))
 
     def slope_estimate(self, period: float) -> Estimate:
         """Estimate the slope, output angle over rotor angle.
 
-        By how much it changes if a lag by the acceleration is fitted, as of an inertia on springs,
-        or what is lost by interpolation, is in its uncertainty.
-
-        Args:
-            period: s between the samples between which the rotor is interpolated; 0 if it is not.
+        Its uncertainty includes by how much it changes if a lag proportional to the acceleration
+        is fitted, as of an inertia on springs, or the error of interpolating the rotor between
+        samples that are `period` apart, s; 0 if it is not interpolated.
         """
         lagging = self._equations.solve([*self._model, len(self._model)], slice(1))
         curvature = NormalEquations(self._products[:, :-1, :-1])
         curvature.noise = self._equations.noise
-        # Between samples the rotor is taken to move evenly: twice where there is a delay, too.
+        # The rotor is taken to move evenly between samples; with a delay, it is so twice.
         apart = max(period**2 / 4.0, self._between)
         curved = apart / _LAG * curvature.solve(self._model, slice(1))
         parts = (
@@ -126,16 +124,16 @@ class EncoderFit:
         return jackknife(self.slope, *(Component(float(part) / self.travel) for part in parts))
 
     def delay(self, unit: float = 1.0) -> Estimate:
-        """Estimate the delay of the output's samples, s times a unit."""
+        """Estimate the delay of the output's samples, in a unit of 1/`unit` s."""
         spread = Component(unit * _DELAY * float(self._equations.spreads(self._model)[_LATE]))
         return jackknife(unit * self._delays, spread)
 
     def lost_motion(self, *others: Component, delay: bool) -> Estimate:
-        """Estimate the angle lost on a reversal, rad, beside a delay or with what a delay adds."""
+        """Estimate the angle lost on a reversal, rad, separate from a delay or including it."""
         chosen = [k for k in self._model if delay or k != _LATE]
         fits = -2.0 * _PLAY * self._equations.first_order(chosen)[:, _WAY]
         spread = 2.0 * _PLAY * float(self._equations.spreads(chosen)[_WAY])
-        # Noise is in the spread, and in the scatter of the blocks: the greater of both counts.
+        # Both the spread and the scatter of blocks contain the noise: the greater of them counts.
         scatter = jackknife(fits).standard or 0.0
         rest = Component(math.sqrt(max(spread**2 - scatter**2, 0.0)))
         return jackknife(fits, rest, *others)
@@ -144,8 +142,8 @@ class EncoderFit:
 def directions(output: Array, travel: float, starts: Collection[int] = ()) -> Array:
     """Direction of an output angle, (n,), rad, in the order of time: 1, -1, or 0 if unknown.
 
-    A new one counts after so much travel, rad, from a reversal. The motion before the samples with
-    the indices `starts` is unknown.
+    A new direction counts from a `travel`, rad, after the reversal. The motion before the samples
+    with the indices `starts` is unknown.
     """
     way = np.zeros(len(output), np.int8)
     for begin, end in pairwise(sorted({0, *starts, len(output)})):
@@ -157,13 +155,10 @@ def directions(output: Array, travel: float, starts: Collection[int] = ()) -> Ar
 
 
 def play_bounds(x: Array, radius: float) -> Array:
-    """Follow a play operator along x, (n,), rad, before which its play is unknown.
+    """Follow a play operator along x, (n,), rad: its least and greatest possible plays, (2, n).
 
-    Clipping to one interval and then to another is clipping to one interval again, so that all
-    steps are composed in log2 n passes, without rounding.
-
-    Returns:
-        The least and the greatest possible plays, (2, n).
+    Before x, the play is unknown. Clipping to one interval and then to another equals clipping to
+    a single interval, so that all steps are composed in log2 n passes, without rounding.
     """
     parts, before = [], np.array([[-np.inf], [np.inf]])
     for start in range(0, len(x), _CHUNK):
@@ -180,7 +175,7 @@ def play_bounds(x: Array, radius: float) -> Array:
 
 
 def _columns(rotor: Array, slope: float, way: Array, speed: Array) -> Array:
-    """Each term as large as it may be: (n, terms); slope, offset, play and delay are first."""
+    """Terms scaled to their expected size, (n, terms): slope, offset, play, delay, then errors."""
     x = (rotor - np.mean(rotor)) / np.ptp(rotor)
     columns = [x, np.ones(len(x)), _PLAY * way, _DELAY * speed]
     amplitudes = ENCODER_ERROR, (abs(slope) + _ROTOR_SHARE) * ENCODER_ERROR
@@ -194,7 +189,7 @@ def _columns(rotor: Array, slope: float, way: Array, speed: Array) -> Array:
 
 
 def _noise(residual: Array) -> float:
-    """Variance of a sample; of correlated ones, the one that the scatter of means implies."""
+    """Variance of a sample; if samples are correlated, that which the scatter of means implies."""
     most, means, size = 0.0, residual, 1
     while len(means) >= _MEANS or size == 1:
         most = max(most, size * float(np.mean(means**2)))

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Calibrates the real output of a gear, from recordings of its rotor's and output's encoders.
+"""Calibration of the real output of a gear, from recordings of its rotor's and output's encoders.
 
 The method and its sources are in docs/calibration.md.
 """

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Checks a calibration by recordings that it was not made from."""
+"""Check of a calibration by recordings that it was not made from."""
 
 import math
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ from gear_kinematics.wire.cdr import SECOND
 
 _STEP = 0.01  # s before and after a sample, for its speed
 _PER_TURN = 'once', 'twice', '3 times', '4 times'  # orders of output and rotor that are tried
-_MOST = 0.5  # share of the variance that makes an order what is left of the error
+_MOST = 0.5  # share of the variance from which on an order explains the remaining error
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -29,28 +29,28 @@ class Judgement:
     """A calibration compared with a recording; arrays are (n,), of the measured angles, in rad."""
 
     name: str  # name of the recording
-    holds: bool  # whether the error is less with the correction, and within its interval
-    fits: bool  # whether it is within its interval
+    holds: bool  # whether the error is smaller with the correction, and within the interval
+    fits: bool  # whether it is within the interval
     rms_before: float  # root mean square error without the correction, rad
     rms_after: float  # root mean square error with the correction, rad
-    rms_before_with_delay: float  # `rms_before` if the delay is left in, rad
-    rms_after_with_delay: float  # `rms_after` if the delay is left in, rad
-    delay: Estimate | None  # of the output's angles, s; taken out if clear, None if unknown
+    rms_before_with_delay: float  # `rms_before` if the delay is not removed, rad
+    rms_after_with_delay: float  # `rms_after` if the delay is not removed, rad
+    delay: Estimate | None  # of the output's angles, s; removed if clear, None if unknown
     within_interval: float  # share of the samples
     within_interval_uncertainty: float  # expanded uncertainty (95 %) of that share
-    uncalibrated: float  # share of samples beyond what was calibrated, or of unknown history
+    uncalibrated: float  # share of samples outside the calibrated spans, or of unknown history
     samples: int
-    left_order: tuple[float, str] | None  # most of what is left: amplitude, rad, and how often
+    left_order: tuple[float, str] | None  # main remaining error: amplitude, rad, and how often
     remarks: Sequence[str]
     output: Array  # ideal output angle
-    before: Array  # measured minus ideal output angle less its mean, without the delay
-    after: Array  # measured minus corrected output angle less its mean, without the delay
+    before: Array  # measured minus ideal output angle, without delay and mean
+    after: Array  # measured minus corrected output angle, without delay and mean
 
 
 def judge(recording: Recording, calibration: Calibration) -> Judgement:
     """Correct the output of a recording as the node does, and compare it with the measured one.
 
-    The zero of the recording and the delay of its stamps are taken out: they are not the gear's.
+    The recording's zero and the delay of its stamps are not the gear's, and are removed.
 
     Raises:
         RecordingError: if the recording has another gear ratio.
@@ -63,8 +63,8 @@ def judge(recording: Recording, calibration: Calibration) -> Judgement:
     if encoders.timed:
         before, after = (np.interp(seconds + t, seconds, rotor.turned) for t in (-_STEP, _STEP))
         velocity = (after - before) / (2.0 * _STEP)
-    stamp = rotor.stamp if encoders.timed else rotor.stamp // SECOND  # no row is a gap
-    # Gaps of a recording can hide any motion.
+    stamp = rotor.stamp if encoders.timed else rotor.stamp // SECOND  # without gaps
+    # Any motion is possible in a gap of a recording.
     unbounded = replace(NodeParameters.load(), max_rotor_acceleration=math.inf)
     corrector = GearState(unbounded, calibration).corrector
     assert corrector  # noqa: S101, there is a calibration
@@ -103,7 +103,7 @@ def judge(recording: Recording, calibration: Calibration) -> Judgement:
 
 
 def _left_order(samples: Samples, left: Array) -> tuple[float, str] | None:
-    """Find the order that makes up most of the remaining error: amplitude, rad, and how often."""
+    """Find the order that explains most of the remaining error: amplitude, rad, and how often."""
     found = [(_MOST * np.var(left), 0.0, '')]
     for body, angle in (('output', samples.output), ('rotor', TURN * samples.rotor_turns)):
         for multiple, often in enumerate(_PER_TURN, start=1):

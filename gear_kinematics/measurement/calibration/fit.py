@@ -1,11 +1,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The calibration of a gear: what its output angle deviates by, fitted to recordings.
+"""The calibration of a gear: the deviation of its output angle, fitted to recordings.
 
-deviation = constant + Σ orders of the rotor's angle + Σ stop operators + wind-up by the torque.
+deviation = constant + Σ orders of the rotor's angle + Σ stop operators + wind-up by the torque
 
-It is linear in its coefficients. Terms stay that improve the prediction of blocks left out, and
-the interval is that of the errors in parts left out; the coefficients' uncertainties are those of
-the jackknife over the blocks. Neither needs white noise.
+is linear in its coefficients. Only terms that improve the prediction of left-out blocks are kept.
+The interval is that of the errors in left-out parts, and the uncertainties of the coefficients are
+those of the jackknife over the blocks, so that noise need not be white.
 """
 
 from collections.abc import Mapping, Sequence
@@ -42,11 +42,11 @@ from gear_kinematics.share import version
 from gear_kinematics.statistics.uncertainty import Estimate, jackknife
 
 _FEWEST = 100  # samples of a recording
-_LEAST_COVERAGE = 0.9  # of samples left out, by the interval that should have 95 % of them
-_WORTH = 0.5  # of the error without a correction: with less, errors beyond the interval are few
-_MOST = 0.75  # share of the variance that makes a step what is left of the error
-_MATTERS = 0.25  # of the error without a correction: a step of so much is no drift
-_MARGIN = 0.1  # share of the span of speed and torque beyond which they are not calibrated
+_LEAST_COVERAGE = 0.9  # share of left-out samples within the 95 % interval
+_WORTH = 0.5  # share of the original error: if less remains, few errors are beyond the interval
+_MOST = 0.75  # share of the variance from which on a step explains the remaining error
+_MATTERS = 0.25  # share of the original error from which on a step is no drift
+_MARGIN = 0.1  # share by which the calibrated spans of speed and torque exceed the recorded ones
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,30 +56,30 @@ class FittedTerm:
     name: str
     cycles: Fraction | None  #: cycles of an order per turn of the rotor
     radius: float | None  #: radius of a stop operator, rad
-    amplitude: Estimate  #: rad; that of a stop operator or of the wind-up has a sign
+    amplitude: Estimate  #: rad; signed for a stop operator and the wind-up
     cause: str  #: likely cause, in words
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Fit:
-    """The result; arrays are (n,), of the used samples of all recordings, in rad."""
+    """The result of a calibration; arrays are of the used samples of all recordings, (n,), rad."""
 
-    calibration: Calibration  #: with a mean deviation of zero, and the errors of samples left out
-    helps: bool  #: whether the error falls by more than a standard error, and its interval holds
+    calibration: Calibration  #: with a mean deviation of zero, and the errors of left-out samples
+    helps: bool  #: whether the error falls by more than a standard error, and the interval holds
     moved: Observed | None  #: how the output moved against the rotor for good, if it did
     terms: tuple[FittedTerm, ...]
     recordings: Sequence[Recording]
     delays: Sequence[Estimate | None]  #: of the output's angles, s; None if not separable
-    refused: Mapping[str, Observed]  #: terms that the recordings cannot determine, with the cause
+    refused: Mapping[str, Observed]  #: causes of terms that cannot be determined, by their names
     output: Array  #: ideal output angle
-    before: Array  #: error without the correction; zero and delay are taken out
-    after: Array  #: error with the correction that was fitted without the sample's part
+    before: Array  #: error without the correction; zero and delay are removed
+    after: Array  #: error with a correction that was fitted without the sample's part
 
 
 def fit(
     recordings: Sequence[Recording], ratio: Fraction, mechanism: Mechanism | None = None
 ) -> Fit:
-    """Calibrate a gear of an exact ratio i by one recording or more.
+    """Calibrate a gear of an exact ratio i by one or more recordings.
 
     A mechanism adds the orders of its satellites and teeth.
 
@@ -131,7 +131,7 @@ def _result(
         radius = getattr(term.entry, 'radius', None)
         terms.append(FittedTerm(term.name, term.cycles, radius, amplitude, term.cause))
         trends += amplitude.value * term.is_trend
-    # Beyond the calibrated angles, a trend can be as wrong as it becomes large.
+    # Beyond the calibrated angles, a trend can be wrong by all of its size.
     outside = half_width(before) + half_width(deviation + constant) + trends
     fits = model.coefficients[1:]
     covariance = (len(fits) - 1) * np.cov(fits.T, ddof=0).reshape(2 * fits.shape[1:])
@@ -186,7 +186,7 @@ def _result(
 
 
 def _moved(samples: Sequence[Samples], after: Array, least: float) -> Observed | None:
-    """Find a step, of more than the least, rad, that makes up most of a recording's error."""
+    """Find a step of more than `least`, rad, that explains most of a recording's error."""
     ends = np.cumsum([len(s.used) for s in samples])[:-1]
     for s, left in zip(samples, np.split(after, ends), strict=True):
         count, sums = np.arange(1, len(left)), np.cumsum(left - left.mean())[:-1]
@@ -201,14 +201,14 @@ def _moved(samples: Sequence[Samples], after: Array, least: float) -> Observed |
 
 
 def interval_holds(calibration: Calibration) -> bool:
-    """Whether the interval describes the errors left out, which do not lie far beyond it."""
+    """Whether the interval describes the errors of left-out samples, few of which exceed it."""
     found = calibration.validation
     most = max(calibration.half_width, _WORTH * found.rms_before)
     return found.coverage >= _LEAST_COVERAGE and found.rms_after <= most
 
 
 def _span(columns: Sequence[Array | None], margin: float) -> tuple[float, float] | None:
-    """Return the range of all columns, wider by a share of itself; None if a column is missing."""
+    """Return the range of all columns, widened by a share; None if a column is missing."""
     known = [column for column in columns if column is not None]
     if len(known) < len(columns):
         return None

@@ -1,8 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Samples of a recording as the linear model needs them, and the terms of the model.
 
-A column of a term is in the unit of the calibration file, so that a coefficient is what the file
-contains.
+The columns of a term are in the units of the calibration file, which contains the coefficients.
 """
 
 from collections.abc import Mapping, Sequence
@@ -23,34 +22,34 @@ from gear_kinematics.measurement.two_encoders import play_bounds
 from gear_kinematics.measurement.wording import ARC_MINUTES
 from gear_kinematics.report.document import number
 
-_MOST = 400_000  # measured angles that are used, of all recordings; more would only take time
+_MOST = 400_000  # measured angles of all recordings that are used; more would only take time
 _MOVING = 0.05  # share of the greatest speed above which the output moves
-_STROKES = 3  # strokes that tell a delay from hysteresis
-_SAME = 1e-9  # share of the radius by which states differ in rounding alone
+_STROKES = 3  # number of strokes that separate a delay from hysteresis
+_SAME = 1e-9  # share of the radius below which states differ by rounding alone
 _BODIES: Mapping[str, tuple[int, str]] = {
     'teeth': (2, 'tooth spacing and tooth form'),
     'rotor': (4, 'runout or out-of-roundness of the cams, of the rotor or of its encoder'),
     'output': (4, 'runout or out-of-roundness of the output shaft or of its encoder'),
     'satellite': (2, 'runout of a satellite, or an Oldham coupling out of square'),
 }
-"""Multiples that are tried, and their likely cause."""
+"""Number of multiples that are tried for each body, and their likely cause."""
 _HYSTERESIS = 'play, or friction that winds up the gear'
 _TREND = 'undetermined by so short a travel; known over the calibrated output angles only'
 _CYCLES = 2.0  # cycles of an order that a recording must contain
 _RADII = 2.0 ** (np.arange(-28, 9) / 4.0)
 """Radii of stop operators as shares of the width of the error: 1/128 to 4, 19 % apart."""
 _KNOWN = 0.8  # share of the samples at which the state of a stop operator must be known
-_LARGEST_DENOMINATOR = 2**16  # of an order; a ratio that was fitted may have a longer one
+_LARGEST_DENOMINATOR = 2**16  # of an order; a fitted ratio may have a larger one
 
 
 def thinned(recordings: Sequence[Recording]) -> list[Recording]:
-    """Leave out measured angles if there are very many; the rotor's motion stays as it is."""
+    """Thin out the measured angles if there are very many, but not the rotor's motion."""
     every = max(1, -(-sum(len(one.both.measured) for one in recordings) // _MOST))
     return [replace(one, encoders=one.both.chosen(slice(None, None, every))) for one in recordings]
 
 
 class Samples:
-    """The measured angles of one recording, (n,) each unless said otherwise."""
+    """The measured angles of one recording; arrays are (n,) unless stated otherwise."""
 
     def __init__(
         self,
@@ -59,9 +58,9 @@ class Samples:
         shift: float = 0.0,
         deviation: Array | None = None,
     ) -> None:
-        """Take samples that were measured earlier by a shift, s, than their stamps say.
+        """Take the samples as measured earlier than their stamps by a shift, s.
 
-        What is known of the error, `deviation` at the rotor's samples, rad, is taken out of it.
+        A known `deviation` at the rotor's samples, rad, is subtracted from the error.
         """
         encoders = recording.both.earlier(shift) if shift else recording.both
         self.recording, self.encoders, self.shift = recording, encoders, shift
@@ -74,13 +73,13 @@ class Samples:
         self.torque = encoders.torque(ratio)
         ideal = encoders.ideal(ratio)
         first_output = TURN * float(encoders.rotor.turns[0]) / float(ratio)
-        # Outputs of recordings count from different whole turns otherwise.
+        # Otherwise, the outputs of recordings would count from different whole turns.
         self._travel = encoders.at_measured(ideal)
         self.output = self._travel + first_output
         self.rotor_turns: Array = self.turns - self.turns[0] + self.angle / TURN
         self.used = np.arange(len(self.error))
-        """Indices of the samples at which all stop operators are known."""
-        # The play depends on the motion at the points alone where that begins or turns back.
+        """Indices of the samples at which the states of all stop operators are known."""
+        # Play depends on the motion only at the points where that begins or reverses.
         steps, starts = np.diff(ideal), encoders.starts(MAX_GAP)
         changing = np.flatnonzero(steps)
         back = changing[1:][np.diff(np.sign(steps[changing])) != 0.0]
@@ -90,17 +89,16 @@ class Samples:
         self._stops: dict[float, tuple[Array, Array]] = {}
         moving = self.speed[np.abs(self.speed) > _MOVING * np.max(np.abs(self.speed))]
         reversals = int(np.count_nonzero(np.diff(np.sign(moving))))
-        # Hysteresis depends on the direction of strokes, and not on the speed, which varies where
-        # they begin and end.
+        # Hysteresis depends on the direction of strokes, not on the speed, which varies where they
+        # begin and end.
         self.tells_delay = encoders.timed and 1 + reversals >= _STROKES
-        """Whether an error in proportion to the speed can be told from one by hysteresis."""
+        """Whether an error proportional to the speed is separable from one by hysteresis."""
 
     def stop_states(self, radius: float) -> tuple[Array, Array]:
         """Follow a stop operator of a radius, rad.
 
-        Returns:
-            The middle between its least and greatest possible state, rad, and whether both are the
-            same.
+        Returns the middle between its least and greatest possible state, rad, and whether these
+        are the same.
         """
         if radius not in self._stops:
             parts = [play_bounds(points, radius) for points in self._motions]
@@ -117,7 +115,7 @@ class Samples:
         return self._stops[radius]
 
     def own_values(self, at: Array) -> Array:
-        """Columns of the recording's own unknowns at some samples: zero and delay."""
+        """Columns of the recording's own unknowns, zero and delay, at some samples."""
         speed = self.speed[at] if self.tells_delay else np.zeros(len(at))
         return np.column_stack([np.ones(len(at)), -speed])
 
@@ -126,10 +124,10 @@ class Term(NamedTuple):
     """A term of the model."""
 
     name: str
-    cause: str  # likely cause, in words; empty where none is
-    entry: Order | Stop | Compliance  # the coefficients are 0 until they are fitted
-    unit: float = 1.0  # the greatest value of its columns, or their standard deviation
-    is_trend: bool = False  # whether it is known over the recorded output angles only
+    cause: str  # likely cause, in words; may be empty
+    entry: Order | Stop | Compliance  # entry of the file, with coefficients of 0
+    unit: float = 1.0  # greatest value of its columns, or their standard deviation
+    is_trend: bool = False  # whether it is known only over the recorded output angles
 
     @property
     def cycles(self) -> Fraction | None:
@@ -142,7 +140,7 @@ class Term(NamedTuple):
         return ('cos', 'sin') if isinstance(self.entry, Order) else ('coefficient',)
 
     def values(self, samples: Samples, at: Array) -> Array:
-        """Its columns at some samples, (at, columns); of orders exact after many turns."""
+        """Its columns at some samples, (at, columns); exact for orders even after many turns."""
         match self.entry:
             case Order(cycles=cycles):
                 p, q = cycles.as_integer_ratio()
@@ -156,17 +154,17 @@ class Term(NamedTuple):
 
 
 def columns_of(terms: Sequence[Term]) -> list[list[int]]:
-    """Columns of each term, where those of all of them follow one another."""
+    """Return the column numbers of each term, in the order of the terms."""
     columns = count()
     return [list(islice(columns, len(term.coefficients))) for term in terms]
 
 
 def bodies(ratio: Fraction, mechanism: Mechanism | None) -> dict[str, Fraction]:
-    """The bodies of a gear, and the cycles per turn of the rotor with which they repeat.
+    """Return the cycles of each body of a gear per turn of the rotor.
 
     In a turn of the rotor, the output turns 1/abs(i) times. In a mechanism, the cam turns
-    1 + 1/abs(i) times against the satellite, as do its mesh and the Oldham coupling, and teeth
-    mesh zk times.
+    1 + 1/abs(i) times against the satellite, as do its mesh and the Oldham coupling, and zk teeth
+    come into mesh.
     """
     output = (1 / abs(ratio)).limit_denominator(_LARGEST_DENOMINATOR)
     cycles = {'rotor': Fraction(1), 'output': output}
@@ -181,10 +179,10 @@ def known_orders(
     mechanism: Mechanism | None,
     refused: dict[str, Observed],
 ) -> list[Term]:
-    """The orders of which a recording contains two cycles, after trends instead of others.
+    """Return trends of the output, and the orders of which a recording contains two cycles.
 
-    Trends are of the output. Other orders repeat within the calibrated span of the output, so that
-    they would be used where they are not known.
+    Trends stand for orders of the output with fewer cycles. There are none of other bodies: they
+    repeat within the calibrated span of the output, and would be used where they are not known.
     """
     travel = max(float(np.ptp(s.rotor_turns)) for s in samples)
     found: dict[Fraction, Term] = {}
@@ -198,8 +196,8 @@ def known_orders(
                 found.setdefault(cycles, Term(name, cause, order))
                 continue
             refused[name] = Observation.FEW_CYCLES(cycles=held)
-            # Higher multiples do not differ from the first over a part of its cycle, and a whole
-            # number of cycles in a turn of the rotor is not tied to the output's angle.
+            # Over a part of its cycle, the first multiple is like higher ones; and an order with
+            # whole cycles in a turn of the rotor is not tied to the output's angle.
             few = body == 'output' and multiple <= 1.0 + travel * float(unit)
             if few and cycles.denominator > 1:
                 name = f'trend × {multiple}'
@@ -209,7 +207,7 @@ def known_orders(
 
 
 def wind_up(samples: Sequence[Samples], refused: dict[str, Observed]) -> list[Term]:
-    """The wind-up, if torque was recorded and varies."""
+    """Return the wind-up, if the torque was recorded and varies."""
     torques = [s.torque for s in samples if s.torque is not None]
     if len(torques) < len(samples):
         if torques:
@@ -225,9 +223,9 @@ def wind_up(samples: Sequence[Samples], refused: dict[str, Observed]) -> list[Te
 
 
 def stops(samples: Sequence[Samples], refused: dict[str, Observed]) -> list[Term]:
-    """Stop operators over the width of the error, which is at least that of its hysteresis.
+    """Return stop operators up to the width of the error, which is at least its hysteresis.
 
-    Those are left out whose travel was made too seldom to know the state.
+    Those that moved too seldom through their range for a known state are left out.
     """
     width = max(float(np.ptp(np.quantile(s.error, (0.005, 0.995)))) for s in samples)
     kept = []

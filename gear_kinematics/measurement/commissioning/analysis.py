@@ -1,7 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Parameters of a gear that recordings of both encoders determine, and those they leave open.
 
-The ratio between the encoders is that of the gear, with the other sign where one of them counts
+The ratio between the encoders is that of the gear, with the opposite sign if one of them counts
 backwards.
 """
 
@@ -25,10 +25,10 @@ from gear_kinematics.measurement.two_encoders import ENCODER_ERROR
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import number
 
-_FASTER = 2.0  # allowed speed over the greatest seen, which is hardly the greatest that there is
-_ONE_TURN = 1.05  # turns beyond which positions count turns: one, and room for noise
+_FASTER = 2.0  # proposed limit over the greatest recorded speed, which the motor may well exceed
+_ONE_TURN = 1.05  # turns beyond which positions are multi-turn: one, and a margin for noise
 _MOST_TEETH, _SHOWN = 200, 10
-"""Most teeth of the ring gears that are named, as any pair can be multiplied; number of pairs."""
+"""Most teeth of the ring gears in proposed pairs, as pairs have multiples; number of pairs."""
 
 
 class Channel(NamedTuple):
@@ -40,23 +40,23 @@ class Channel(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Request:
-    """Facts that are known about the gear, and what is to be found."""
+    """What is known about the gear, and what is to be determined."""
 
     rotor: Channel
     output: Channel
-    ratio: GearRatio | None = None  # ratio of the gear, with its sign, to be confirmed
-    teeth: tuple[int, int] | None = None  # of ring gear and satellite, which have this ratio
+    ratio: GearRatio | None = None  # signed ratio of the gear, to be confirmed
+    teeth: tuple[int, int] | None = None  # teeth of ring gear and satellite, with this ratio
     zero_here: float | Literal['START', 'END'] | None = None  # moment of the last recording, s
-    file: NodeParameters | None = None  # to be judged; its zeros are kept where they agree
+    file: NodeParameters | None = None  # file to be judged; zeros that agree are kept
 
 
 @dataclass(frozen=True, slots=True)
 class Value:
-    """A parameter of the node, or what else is to be determined."""
+    """A parameter of the node, or another quantity that is to be determined."""
 
     name: str
-    value: str | int | float | None  # None if it is open
-    evidence: Observed  # for an open value, what is known and what to do
+    value: str | int | float | None  # None if undetermined
+    evidence: Observed  # for an undetermined value, what is known and what to do
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -66,12 +66,12 @@ class Commissioning:
     request: Request
     joints: tuple[Joint, ...]  # one for each recording
     longest: Joint  # recording with the most travel, which determines the ratio
-    ratio: RatioEstimate | None  # between the encoders; None where it cannot be estimated
-    between: GearRatio | None  # the exact one between the encoders; None where it is open
+    ratio: RatioEstimate | None  # between the encoders; None if it cannot be estimated
+    between: GearRatio | None  # exact ratio between the encoders; None if undetermined
     answer: Observed  # the result
     values: tuple[Value, ...]
-    notes: tuple[Observed, ...]  # what is no parameter
-    questions: tuple[str, ...] = ()  # on fields of the rotor's messages that seem wrong
+    notes: tuple[Observed, ...]  # observations on other subjects than parameters
+    questions: tuple[str, ...] = ()  # fields of the rotor's messages that seem wrong
 
     def changes(self, parameters: NodeParameters) -> dict[str, tuple[Any, Any]]:
         """Return the old and the new value of each parameter that has to change, by name."""
@@ -84,8 +84,8 @@ def commission(recordings: Sequence[Recording], request: Request) -> Commissioni
     """Determine the parameters of the node for a gear.
 
     Args:
-        recordings: of the same gear, in the order of time. The positions of both encoders are as
-            they were recorded, neither turned around nor unwrapped.
+        recordings: recordings of one gear in the order of time, with the positions of both
+            encoders as recorded, neither reversed nor unwrapped.
         request: what else is known.
 
     Raises:
@@ -134,7 +134,7 @@ def commission(recordings: Sequence[Recording], request: Request) -> Commissioni
 def _decided(
     longest: Joint, given: GearRatio | None
 ) -> tuple[RatioEstimate | None, GearRatio | None, Observed]:
-    """The ratio between the encoders, the exact one, and why it is that one, or why it is open."""
+    """Return the ratio between the encoders, the exact one, and why it is that or undetermined."""
     encoders, faults = longest.encoders, longest.recording.faults
     try:
         ratio = estimate_ratio(
@@ -155,7 +155,7 @@ def _decided(
 
 
 def _kind(joints: Sequence[Joint]) -> Iterator[Value]:
-    """The kind of the rotor's encoder, and its range."""
+    """Yield the kind of the rotor's encoder, and its range."""
     ranges = {joint.rotor_range for joint in joints if joint.rotor_range}
     wraps = sum(joint.rotor_wraps for joint in joints)
     turns = max(float(np.ptp(joint.turned)) for joint in joints) / TURN
@@ -178,7 +178,7 @@ def _kind(joints: Sequence[Joint]) -> Iterator[Value]:
 
 
 def _ratio(between: GearRatio, evidence: Observed, request: Request) -> Iterator[Value]:
-    """The ratio of the gear, and the senses of both encoders."""
+    """Yield the ratio of the gear, and the directions of both encoders."""
     ratio = request.ratio or between
     if request.teeth:
         yield Value('ring_teeth', request.teeth[0], evidence)
@@ -197,7 +197,7 @@ def _ratio(between: GearRatio, evidence: Observed, request: Request) -> Iterator
 
 
 def _zeros(joints: Sequence[Joint], between: GearRatio, request: Request) -> Iterator[Value]:
-    """Find the zeros with which the output angles of both encoders agree on average."""
+    """Yield zeros with which the output angles of both encoders agree on average."""
     last, ratio, file, moment = joints[-1], float(between), request.file, request.zero_here
     zero = shown = file.output_encoder_zero if file else 0.0
     why, turn = Observation.ZERO_KEPT(), TURN if last.output_wraps else math.inf
@@ -217,7 +217,7 @@ def _zeros(joints: Sequence[Joint], between: GearRatio, request: Request) -> Ite
         if abs(math.remainder(file.output_encoder_zero - shown, turn)) <= error:
             shown = file.output_encoder_zero
         off = math.remainder(file.rotor_zero - mean, period) / ratio
-        if file.absolute or abs(off) <= error:  # with a reference, the node finds it
+        if file.absolute or abs(off) <= error:  # an absolute reference finds the zero
             mean = file.rotor_zero
     yield Value('output_encoder_zero', shown, why)
     yield Value('rotor_zero', mean, Observation.ENCODERS_AGREE(spread=spread))

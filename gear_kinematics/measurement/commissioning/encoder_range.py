@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The range of an encoder whose positions repeat, found by equal steps back by it."""
+"""The range of an encoder whose positions repeat, found by equal steps back."""
 
 import math
 
@@ -9,20 +9,20 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.measurement.recording import Array
 
-_UNCLEAR = 0.3, 0.7  # ranges between samples that may be a motion or a wrap
-_MOST_UNCLEAR = 0.05  # share of such steps in the wraps, as in gaps, above which there is no wrap
-_MOST_SPAN = 1.001  # ranges within which positions are that wrap, with room for noise and rounding
-_EQUAL = 0.02  # share by which the range that steps show may differ from it, as the speed changes
+_UNCLEAR = 0.3, 0.7  # steps, in ranges, that may be a motion or a wrap
+_MOST_UNCLEAR = 0.05  # number of unclear steps, as in gaps, per wrap; with more, there is no wrap
+_MOST_SPAN = 1.001  # ranges that wrapped positions span at most, with noise and rounding
+_EQUAL = 0.02  # share by which the range that steps show may be wrong, as the speed changes
 _AROUND = 8  # samples before and after a wrap in which the motion goes on
-_LEAST_MOTION = 1e-3  # ranges in these samples: less is a shaft that rests
-_SPREADS, _ACCURACY = 6.0, 1e-6  # standard uncertainties, or the share, within which one is round
-_REGISTER = 2**32  # counts after which a register of 32 bits repeats, if read without its sign
+_LEAST_MOTION = 1e-3  # ranges in these samples; with less, the shaft rests
+_SPREADS, _ACCURACY = 6.0, 1e-6  # standard uncertainties, or share, within which a range is round
+_REGISTER = 2**32  # counts after which a register of 32 bits repeats, read as unsigned
 _DECIMALS, _BY_CHANCE = 3, 0.05
-"""Most decimals of a round range, and the probability below which one is no coincidence."""
+"""Most decimals of a round range; probability below which it is no coincidence."""
 
 
 def count_wraps(values: Array, turn: float, error: float = 1.0) -> int:
-    """Count the wraps of positions (n,), in the order of time; `error` is a share of the turn."""
+    """Count the wraps of positions in the order of time, (n,); `error` is a share of the turn."""
     size = np.abs(np.diff(values)) / turn
     low, high = _UNCLEAR
     wraps = np.flatnonzero(size >= high)
@@ -35,16 +35,16 @@ def count_wraps(values: Array, turn: float, error: float = 1.0) -> int:
 
 
 def unwrapped(values: Array, seconds: Array, step: Step, period: float = 0.0) -> Array:
-    """Take the wraps out of positions; see `find_range`, unless they are within a known one."""
+    """Unwrap positions by a known period, or by the range that `find_range` finds."""
     if not period or np.ptp(values) > _MOST_SPAN * period:
         period, _ = find_range(values, seconds, step)
     return np.unwrap(values, period=period) if period else values
 
 
 def signed(values: Array, count: float) -> Array:
-    """Take positions for negative ones where they pass from 0 to the greatest of a register.
+    """Restore the sign of positions, (n,), that pass from 0 to the greatest value of a register.
 
-    The values, (n,), are in the order of time; `count` is one count of the encoder in their unit.
+    `count` is one count of the encoder in their unit.
     """
     period = _REGISTER * count
     passed = np.unwrap(values, period=period)
@@ -52,10 +52,9 @@ def signed(values: Array, count: float) -> Array:
 
 
 def find_range(values: Array, seconds: Array, step: Step) -> tuple[float, int]:
-    """Find after which angle positions, (n,), rad, at times, s, repeat.
+    """Find the angle after which positions, (n,), rad, at times, s, repeat.
 
-    Returns:
-        The range, rad, and the number of wraps that show it; 0 and 0 if they do not repeat.
+    Returns the range, rad, and the number of wraps that show it; 0 and 0 if they do not repeat.
     """
     if wraps := count_wraps(values, TURN):
         return TURN, wraps
@@ -81,11 +80,10 @@ def find_range(values: Array, seconds: Array, step: Step) -> tuple[float, int]:
 
 
 def _step_back(values: Array, seconds: Array, edge: int) -> tuple[float, bool]:
-    """Find by how much the positions step at an edge, beyond the motion there.
+    """Find by how much the positions step at an edge, beyond the motion there, rad.
 
-    Returns:
-        The size, rad, and whether the motion goes on the other way before and behind it. That of
-        a servo which is sampled slowly steps as well, but rests before and after.
+    Also returns whether the motion before and after is opposed to the step. A servo that is
+    sampled slowly steps as well, but rests before and after.
     """
     behind = np.arange(len(values)) > edge
     time = seconds - seconds[edge]

@@ -14,17 +14,17 @@ from gear_kinematics.measurement.recording import Array, Encoders, Recording, Re
 from gear_kinematics.report.document import counted
 from gear_kinematics.wire.cdr import SECOND
 
-_NEAR = 0.1  # s between a moment that is named and the sample that is taken for it
-_TURNS = {'degrees': 360.0, 'turns': 1.0}  # a turn in the units that may stand in place of rad
+_NEAR = 0.1  # s, greatest distance of the sample from the moment that the user names
+_TURNS = {'degrees': 360.0, 'turns': 1.0}  # a turn in units that may be taken for rad
 _SAME_COUNTS = 0.02
-"""Share by which counts that wraps show in a turn may differ from a power of two, as the speed
-changes; 4000 differ from 4096 by 0.023."""
+"""Share by which the counts per turn that wraps show may differ from a power of two, as the speed
+changes; 4000 differs from 4096 by 0.023."""
 _MIN_LEVELS, _ROUNDING = 4, 1e-5
-"""Whole numbers that show counts, as fewer may be chance; and the distance from them, of counts up
-to 10^10 that were divided into turns and a rest."""
+"""Number of different whole numbers that show counts, as fewer may be chance; and their rounding
+error, for counts up to 10^10 that were divided into turns and a remainder."""
 _MIN_BITS, _POWER = 6, 1e-4
-"""An encoder with 2^n steps in a turn is recognised: least n, and its greatest distance from a
-whole number. A step in another unit looks like that by chance with a probability of 4e-4."""
+"""Recognition of an encoder with 2^n steps per turn: least n, and greatest distance of n from a
+whole number. A step in another unit looks like one by chance with a probability of 4e-4."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -40,7 +40,7 @@ class Joint:
 
     @classmethod
     def of(cls, recording: Recording) -> 'Joint':
-        """Take the wraps out of a recording of positions as they are.
+        """Unwrap a recording of positions as they were read.
 
         Raises:
             RecordingError: if there are too few samples, no times, or another unit than rad.
@@ -74,7 +74,7 @@ class Joint:
         return float(np.ptp(self.encoders.measured))
 
     def row_at(self, moment: float | Literal['START', 'END']) -> int:
-        """Find the sample at START, END or a time, s; RecordingError if there is none then."""
+        """Find the sample at START, END or a time, s; RecordingError if none is near."""
         if isinstance(moment, str):
             return 0 if moment == 'START' else -1
         seconds = float(self.encoders.rotor.stamp[0]) / SECOND + self.encoders.seconds
@@ -86,7 +86,7 @@ class Joint:
 
 
 def other_unit(values: Array, step: Step) -> str:
-    """The unit of positions with a step, what shows it and what to do, if it is not rad."""
+    """Return the unit of positions if it is not rad, with the evidence and what to do; or ''."""
     rounded, units = np.round(values), dict(_TURNS)
     whole = np.abs(values - rounded).max() < _ROUNDING and len(np.unique(rounded)) >= _MIN_LEVELS
     if whole:

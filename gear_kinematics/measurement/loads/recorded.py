@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The loads at the samples of a recording, and what they come to."""
+"""The loads at the samples of a recording, and their statistics."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
@@ -30,14 +30,14 @@ Array = NDArray[Any]
 
 ANGLE_BINS = 72  # bins of a turn of the rotor, of 5° each
 _JOINTS = 'mesh', 'cam', 'slot'
-_BEARING_EXPONENT = 3.0  # of ball bearings, ISO 281:2007, 4; roller bearings live longer
-_STEPS = 64  # of the range of a force, below one of which a cycle is not counted
-_LONGEST_STEP = SECOND  # ns, of a sample without a next one to show how long it lasted
+_BEARING_EXPONENT = 3.0  # of ball bearings, ISO 281:2007, 4; roller bearings last longer
+_STEPS = 64  # levels of the range of a force; cycles within a level are not counted
+_LONGEST_STEP = SECOND  # ns, greatest duration of a sample
 
 
 @dataclass(frozen=True, slots=True)
 class LoadTask:
-    """A recording, and how to report its loads."""
+    """A recording, and options for the report on its loads."""
 
     bag: Path
     parameters: NodeParameters
@@ -46,15 +46,15 @@ class LoadTask:
     cam_rating: float = math.nan  # C, N: dynamic load rating of a cam's bearing, for its life
     slot_friction: float = math.nan  # μ of the slots, for their loss
     by_default: bool = False  # whether the parameters are those of the installed default file
-    sources: Sources | None = None  # columns of a table that are named by options
+    sources: Sources | None = None  # columns of a table that the user names
     debug: bool = False  # whether to print tracebacks of unexpected errors to stderr
 
 
 class Moment(NamedTuple):
-    """A time in which a branch was out of mesh."""
+    """An interval in which a branch was out of mesh."""
 
     start: float  # s, since the first sample
-    duration: float  # s; that of a single sample lasts until the next one
+    duration: float  # s, until the first sample in mesh
     branch: str
     least_margin: float  # N·m, less than 0
     stamp: int  # stamp of the first sample, ns
@@ -66,11 +66,11 @@ class Force(NamedTuple):
     name: str  # as in `RecordedLoads.joints`
     unit: str
     greatest: float
-    p99_9: float  # 99.9 % of the samples are below
+    p99_9: float  # percentile 99.9
     mean: float
     cubic_mean: float  # cube root of the mean cube over the rotor's travel; NaN at a standstill
     l10_hours: float  # life of a cam's bearing at the recording's speed and cubic mean, or NaN
-    by_rotor_angle: list[tuple[float, float, float]]  # first three at ANGLE_BINS; NaN for none
+    by_rotor_angle: list[tuple[float, float, float]]  # greatest, p99_9, mean in each angle bin
     cycles: list[tuple[float, float]]  # load spectrum of a force: ranges, N, and their counts
 
 
@@ -89,11 +89,11 @@ class RecordedLoads:
     """(n,) each, without signs: `output`, the torque, N·m, and for each branch `mesh_<name>` and
     `cam_<name>`, forces, N, and `slot_<name>`, the couple of the satellite's slot, N·m."""
     left_out: Mapping[str, int]
-    """Messages without known loads, by cause."""
+    """Numbers of messages without known loads, by cause."""
     damage: str
-    """At which reading ended, if any."""
+    """Damage at which reading ended, if any."""
     taken: str = ''
-    """Columns that were taken from a table."""
+    """Columns that were read from a table."""
 
     @cached_property
     def time(self) -> Array:
@@ -107,28 +107,28 @@ class RecordedLoads:
 
     @cached_property
     def travel(self) -> Array:
-        """How far the rotor turned to each sample, (n,), rad."""
+        """Travel of the rotor up to each sample, (n,), rad."""
         return np.asarray(np.abs(np.diff(self.rotor, prepend=self.rotor[:1])))
 
     @property
     def question(self) -> Fact | None:
-        """Why the torque is hardly one; None if it may be."""
+        """Why the efforts can hardly be torques, if so."""
         mechanism = self.parameters.mechanism
         greatest = float(np.max(np.abs(self.torque)))
         return questioned(greatest / float(mechanism.gear_ratio), mechanism)
 
     @property
     def needed_preload(self) -> float:
-        """The least, N·m, with which both branches would have been in mesh; NaN without any."""
+        """Least preload that would have kept both branches in mesh, N·m; NaN without a preload."""
         return round(abs(self.parameters.preload) - float(np.min(self.margin)), 12)
 
     def moments(self) -> Iterator[Moment]:
-        """Yield the times in which a branch was out of mesh."""
+        """Yield the intervals in which a branch was out of mesh."""
         edges = np.flatnonzero(np.diff(self.margin <= 0.0, prepend=False, append=False))
         lasts = np.diff(self.stamp, append=self.stamp[-1]).clip(0, _LONGEST_STEP)
         for begin, end in edges.reshape(-1, 2).tolist():
             worst = begin + int(np.argmin(self.margin[begin:end]))
-            # The branch that pushes in the direction of the torque gives all of it.
+            # The branch that pushes in the direction of the torque transmits all of it.
             left = int(self.parameters.preload * self.torque[worst] > 0.0)
             yield Moment(
                 float(self.time[begin]),
@@ -141,7 +141,7 @@ class RecordedLoads:
     def forces(self, cam_rating: float) -> Iterator[Force]:
         """Yield what each joint carried.
 
-        With bearings of the dynamic load rating C, N, the life of a cam is (C/P)^p 10⁶ turns (ISO
+        With a bearing of the dynamic load rating C, N, the life of a cam is (C/P)^p 10⁶ turns (ISO
         281).
         """
         ratio = float(self.parameters.mechanism.gear_ratio)
@@ -161,10 +161,10 @@ class RecordedLoads:
 
     @np.errstate(divide='ignore', invalid='ignore')  # without any work
     def slot_loss(self, friction: float) -> float:
-        """Share of the output's work that the slots take: μ (4/π)(zk/zs) Σ abs(T)/abs(Σ T).
+        """Share of the output's work lost in the slots: μ (4/π)(zk/zs) Σ abs(T)/abs(Σ T).
 
-        Each couple T acts as two forces at a distance of 2 rs; both slides have the amplitude e,
-        so that the sum of their speeds is (4/π) e (zk/zs) φ2' in the mean. The friction is μ.
+        Each couple T acts as two forces at a distance of 2 rs. Both slides have the amplitude e,
+        so that the sum of their speeds is (4/π) e (zk/zs) φ2' on average. The friction is μ.
         """
         mechanism = self.parameters.mechanism
         torques, _ = self.parameters.sharing.branches(self.torque)
@@ -178,7 +178,7 @@ def read_loads(task: LoadTask, progress: ReportProgress | None = None) -> Record
     """Read a recording, up to any damage, and compute its loads.
 
     Raises:
-        BagError, RecordingError: if it cannot be read, or has nowhere what the loads need.
+        BagError, RecordingError: if it cannot be read, or never contains what the loads need.
         MechanismError: if the parameters describe no mechanism or no preload.
     """
     parameters, damage, taken = task.parameters, '', ''
@@ -209,7 +209,7 @@ def read_loads(task: LoadTask, progress: ReportProgress | None = None) -> Record
                 tables.append(np.stack(rows)[:, known])
                 if unknown := np.count_nonzero(~known):
                     gear.input.rejected[f'{loads.needed} missing'] += int(unknown)
-        except BagError as error:  # what could be read counts
+        except BagError as error:  # what was read before is used
             damage = str(error)
     if gear.input.effort_field.absent:
         damage = damage or f'{task.bag}: the effort on {topic} is 0 throughout the motion: none'
@@ -233,17 +233,17 @@ def read_loads(task: LoadTask, progress: ReportProgress | None = None) -> Record
 
 
 def _of_table(task: LoadTask) -> tuple[TopicMessages, str]:
-    """Return the rows of a table as messages of a driver, and what was taken of it."""
+    """Return the rows of a table as messages of a driver, and the columns that were read."""
     parameters, sources = task.parameters, task.sources or Sources()
     stamp, angle, torque, taken = read_rotor(task.bag, sources, parameters.gear.gear_ratio)
-    stamp = stamp + max(0, SECOND - int(stamp[0]))  # no stamp is 0, which would be none
+    stamp = stamp + max(0, SECOND - int(stamp[0]))  # a stamp of 0 would be a missing one
     template = JointStateTemplate([parameters.rotor_joint], velocity=False, effort=True)
     messages = TopicMessages(encode(template, stamp, [angle, torque]), stamp.tolist())
     return messages, f'{task.bag.name}: {taken}'
 
 
 def _levels(values: Array) -> tuple[float, float, float]:
-    """The greatest, the percentile 99.9 and the mean."""
+    """Return the greatest value, the percentile 99.9 and the mean."""
     if not len(values):
         return np.nan, np.nan, np.nan
     return float(values.max()), float(np.percentile(values, 99.9)), float(values.mean())
@@ -252,8 +252,7 @@ def _levels(values: Array) -> tuple[float, float, float]:
 def spectrum(values: Array) -> list[tuple[float, float]]:
     """Count the cycles of a load, (n,), in 64 levels by rainflow (ASTM E1049-85, 5.4.4).
 
-    Returns:
-        Ranges in the unit of the values, the largest first, with their counts.
+    Returns the ranges of cycles, the largest first, with their counts.
     """
     import rainflow  # noqa: PLC0415, of an extra
 
