@@ -145,10 +145,10 @@ class Calibration:
 
     @classmethod
     def load(cls, path: Path, gear: Gear | None = None) -> Self:
-        """Read a file, and check that it is one for a gear, if that is given.
+        """Read a file, and check that it belongs to a gear, if one is given.
 
         Raises:
-            CalibrationError: if the file cannot be used, or is of another gear; the text names it.
+            CalibrationError: if the file is unusable or of another gear; the text names it.
         """
         document = read_yaml(path, CalibrationError)
         try:
@@ -177,7 +177,7 @@ class Calibration:
         )
 
     def _check(self, gear: Gear) -> None:
-        """Check that this is a calibration of a gear; teeth count where both sides know them."""
+        """Check that this is a calibration of a gear; teeth are compared if both are known."""
         known = gear if isinstance(gear, Mechanism) else None
         its = (known.ring_teeth, known.satellite_teeth) if known else (None, None)
         own = self.ring_teeth, self.satellite_teeth

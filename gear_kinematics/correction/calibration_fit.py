@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 Array = NDArray[Any]
 
-_SHARE = 0.05  # of samples that may be outside of a 95 % interval
+_SHARE = 0.05  # of samples that may be outside a 95 % interval
 _TOLERATED = 0.07  # since the width of an interval is known to a few percent (docs/calibration.md)
-# Standard deviations that chance exceeds with 1 % in a single judgement, and with 0.1 % where one
-# follows the other, as in the node.
+# Standard deviations that chance exceeds with a probability of 1 % in a single judgement, and of
+# 0.1 % in one of many successive judgements, as in the node.
 _UNLIKELY_ONCE, _UNLIKELY = 2.326, 3.090
 
 
@@ -21,14 +21,14 @@ class CalibrationFit(NamedTuple):
 
     samples: int
     explained: float | None  # share of the error's variance that it explains; None if constant
-    outside: float  # share of samples outside the 95 % interval once the encoder's zero is removed
-    fits: bool  # whether chance explains `outside`, or it hardly exceeds that
+    outside: float  # share of samples outside the 95 % interval, without the encoder's zero
+    fits: bool  # whether `outside` is tolerable or explained by chance
     independent: float  # number of independent samples on which `outside` is based
 
     @property
     def outside_uncertainty(self) -> float:
         """Expanded uncertainty (95 %) of the long-run share outside the interval."""
-        # Agresti and Coull's estimate, which is not 0 where no sample is outside.
+        # Agresti and Coull's estimate, which is not 0 if no sample is outside.
         share = (self.outside * self.independent + 2.0) / (self.independent + 4.0)
         return 2.0 * math.sqrt(share * (1.0 - share) / (self.independent + 4.0))
 
@@ -40,7 +40,7 @@ class CalibrationFit(NamedTuple):
             error: measured minus ideal output angle.
             residual: measured minus corrected output angle.
             half_width: half width of the interval.
-            once: whether this is the only judgement, not one of many.
+            once: whether this is a single judgement, not one of many.
         """
         error, residual = (column - column[0] for column in (error, residual))  # rounds less
         error, residual = error - error.mean(), residual - residual.mean()
@@ -59,9 +59,10 @@ class CalibrationFit(NamedTuple):
 
 
 def independent_samples(residual: Array) -> float:
-    """How many independent samples a series, (n,), with a mean of 0 is worth, at least 1.
+    """Return how many independent samples are worth as much as a series, (n,), of mean 0.
 
-    It is n/τ, with the autocorrelation time τ from the initial positive autocorrelations (Geyer).
+    That is n/τ, at least 1, with the autocorrelation time τ from the initial positive
+    autocorrelations (Geyer).
     """
     count = len(residual)
     size = 1 << (2 * count - 1).bit_length()

@@ -20,7 +20,7 @@ _SAMPLING = SECOND // 10
 """Gap between samples, ns, beyond which the motion is not followed, whatever their usual period.
 
 A gap of more than three periods is not followed either, since messages were lost."""
-_CHUNK = 4096  # samples of a batch that are lists at a time, which take much memory
+_CHUNK = 4096  # samples that are converted to lists at a time, since lists take much memory
 
 
 class Correction(NamedTuple):
@@ -41,9 +41,9 @@ class Corrector:
     direction. In a gap, the states move as far as a reversal could have driven them.
 
     The half width is that of the file, or its `outside_half_width` where speed, torque or output
-    angle are outside of what was calibrated; a speed that is not known does not count. It grows by
-    what the unknown can contribute: states before a long enough travel, orders of the output while
-    the rotor's turns are unknown, and wind-up without an effort.
+    angle are outside the calibrated spans; an unknown speed counts as inside. It grows by what
+    unknown parts of the deviation can contribute: stop operators before a long enough travel,
+    orders of the output while the rotor's turns are unknown, and wind-up without an effort.
     """
 
     def __init__(self, calibration: Calibration, max_acceleration: float = math.inf) -> None:

@@ -12,7 +12,7 @@ from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
 
 _MOST = 2**20  # greatest number of samples kept: 60 s, the longest window, at 17 kHz
-_BINS = 720  # bins of output angles in a turn, in which both directions are compared
+_BINS = 720  # bins of output angles in a turn, within which both directions are compared
 
 
 class ErrorStatistics(NamedTuple):
@@ -26,7 +26,7 @@ class ErrorStatistics(NamedTuple):
 
 
 class ErrorWindow:
-    """The transmission errors of the last seconds; a clock that is set back begins anew."""
+    """The transmission errors of the last seconds; cleared when the clock is set back."""
 
     def __init__(self, length: int) -> None:
         """Start empty; `length` is in ns."""
@@ -78,6 +78,6 @@ class ErrorWindow:
 
 
 def _means(bins: Array, *columns: Array) -> Array:
-    """The bins that occur, in order, and the means of columns in each, (1 + columns, bins)."""
+    """Return the bins that occur, and the means of columns in each, (1 + columns, bins)."""
     found, place, counts = np.unique(bins, return_inverse=True, return_counts=True)
     return np.array([found, *(np.bincount(place, column) / counts for column in columns)])

@@ -21,9 +21,9 @@ from gear_kinematics.statistics.uncertainty import Estimate, jackknife
 Array = NDArray[np.float64]
 
 _BLOCKS = 20  # blocks of angles; errors within a block may be correlated, those of blocks are not
-_LEAST = 3  # least number of blocks that a straight line and its scatter need
-_SPREAD = 0.01  # least standard deviation of the speed over its mean to make a delay measurable
-_STEADY = 0.02  # greatest share of noise in the speed's variance; it makes the delay too small
+_LEAST = 3  # least number of blocks for a straight line and its scatter
+_SPREAD = 0.01  # least standard deviation of the speed, over its mean, that shows a delay
+_STEADY = 0.02  # greatest share of noise in the variance of the speed; noise reduces the delay
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,8 +38,8 @@ class Reversals:
 def separate(difference: Array, speed: Array) -> Reversals | None:
     """Separate lost motion from a delay, at angles that both directions cover, in their order.
 
-    Uncertainties are those of the jackknife, which leaves out a block of angles at a time. Without
-    common angles there are none: None.
+    The uncertainties are those of a jackknife that leaves out one block of angles at a time. The
+    result is None without common angles.
 
     Args:
         difference: error of backward minus forward motion, (n,), rad.
@@ -58,13 +58,13 @@ def separate(difference: Array, speed: Array) -> Reversals | None:
 
 
 def tells_delay(speed: Array, means: Array) -> bool:
-    """Whether speeds, (n,), and their means in blocks, vary by more than noise.
+    """Return whether speeds, (n,), and their means in blocks, vary by more than noise.
 
-    Otherwise a delay cannot be told from lost motion.
+    Otherwise a delay is inseparable from lost motion.
     """
     if len(means) <= _LEAST:
         return False
-    # In second differences, hardly anything of a motion is left.
+    # Second differences contain hardly anything of a motion.
     noise = np.var(np.diff(speed, 2)) / 6.0 * len(means) / len(speed)
     variance = np.var(means)
     return bool(variance > (_SPREAD * np.mean(means)) ** 2 and noise <= _STEADY * variance)

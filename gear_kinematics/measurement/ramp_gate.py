@@ -1,7 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""A gate before the figures of torque ramps: stray readings, a saturated sensor, and slips.
+"""Removal of stray readings, saturation and slips from torque ramps, before they are measured.
 
-After a slip, the angle at the same torque is another one.
+After a slip, the angle at the same torque differs.
 """
 
 from collections.abc import Iterator, Sequence
@@ -15,24 +15,28 @@ from gear_kinematics.measurement.sentences import NAMED, Observation, Observed
 from gear_kinematics.measurement.two_encoders import directions
 
 _FEWEST = 50  # samples
-_WINDOW = 5  # samples in whose median a stray reading, or two, do not show
-_RAMP_STEPS = 25.0  # times the step that 98 % of medians have; noisy torques have up to 15
-_LEAST_STRAY, _MOST_STRAY = 0.15, 0.1  # of their range, where those have up to 0.09; of samples
-_SLIP_STEPS, _LEAST_SLIP = 6.0, 0.1  # a slip: steps that 98 % have, and share of the range
-_ALONE = 0.6  # of the motion around it, as much before and after
-_BEYOND = 1.5  # times the greatest step that comes back, where play is crossed
-_TURNED, _BIN = 0.05, 0.05  # of the greatest torque: after which it has turned; alike
-_CAME_BACK, _MOST_SATURATED = 0.02, 0.5  # of the range of the angle: no creep; of samples
-_LOOP = 3  # reversals of the torque between which it takes each value both ways
-_MOST_KEPT = 2.0  # times a step, by which either way has another angle behind it
-_LOADED = 0.5  # of the torque, where no play is crossed; and of the range of the angle
+_WINDOW = 5  # samples, whose median one or two stray readings do not affect
+_RAMP_STEPS = 25.0  # times the 98 % quantile of steps of medians; noisy torques reach 15
+_LEAST_STRAY, _MOST_STRAY = 0.15, 0.1
+"""Share of the range by which a stray reading leaves its neighbours, where noisy torques reach
+0.09; greatest share of samples that are stray."""
+_SLIP_STEPS, _LEAST_SLIP = 6.0, 0.1  # least slip: times the 98 % quantile of steps; share of range
+_ALONE = 0.6  # least share that a slip has in the motion around it
+_BEYOND = 1.5  # times the greatest step that comes back, as where play is crossed
+_TURNED, _BIN = 0.05, 0.05  # shares of the greatest torque: change that is a reversal; bin width
+_CAME_BACK, _MOST_SATURATED = 0.02, 0.5
+"""Share of the range of the angle by which it comes back, unlike creep; greatest share of samples
+that are saturated."""
+_LOOP = 3  # reversals of the torque between which it takes each value in both directions
+_MOST_KEPT = 2.0  # times a slip: greatest change of the angle behind it, in either direction
+_LOADED = 0.5  # share of the torque beyond which no play is crossed; share of the angle's range
 
 
 def gated_ramps(ramps: Loading) -> tuple[Loading, tuple[Observed, ...]]:
-    """Leave out readings that leave both neighbours and come back, and all before or after a slip.
+    """Leave out stray and saturated readings, and all but the longest part between slips.
 
-    What remains is searched again until nothing more is found, as a fault can hide another. The
-    longest part without a slip is returned, with what was left out.
+    The rest is searched again until nothing more is found, as one fault can hide another. The
+    ramps that remain are returned with what was left out.
     """
     time, timed = ramps.moments, ramps.seconds is not None
     strays = saturated = np.zeros(0)
@@ -64,7 +68,7 @@ def gated_ramps(ramps: Loading) -> tuple[Loading, tuple[Observed, ...]]:
 
 
 def _stray(ramps: Loading) -> NDArray[np.bool_]:
-    """Find readings of torque or angle, (n,), that leave their neighbours far."""
+    """Find readings of torque or angle that are far from their neighbours, (n,)."""
     stray = np.zeros(len(ramps.torque), bool)
     for values in (ramps.torque, ramps.angle):
         calm = usual(values)
@@ -74,7 +78,7 @@ def _stray(ramps: Loading) -> NDArray[np.bool_]:
 
 
 def _saturated(ramps: Loading) -> NDArray[np.bool_]:
-    """Find rows of the greatest torque of a sign, (n,), over which the angle comes and goes."""
+    """Find rows at the greatest torque of either sign in which the angle comes and goes, (n,)."""
     found = np.zeros(len(ramps.torque), bool)
     least = _CAME_BACK * float(np.ptp(ramps.angle))
     for sign, greatest in ((1.0, np.max(ramps.torque)), (-1.0, np.min(ramps.torque))):
@@ -87,9 +91,9 @@ def _saturated(ramps: Loading) -> NDArray[np.bool_]:
 
 
 def _slips(ramps: Loading) -> list[tuple[float, int]]:
-    """Find steps of the angle that stay, at equal torques: their sizes, rad, and rows.
+    """Find steps of the angle after which it differs at equal torques: sizes, rad, and rows.
 
-    Where play is crossed the angle steps, too, but comes back.
+    Where play is crossed, the angle steps as well, but comes back.
     """
     angle, most = usual(ramps.angle), float(np.max(np.abs(ramps.torque)))
     steps = np.abs(np.diff(angle))
@@ -98,7 +102,7 @@ def _slips(ramps: Loading) -> list[tuple[float, int]]:
     before, after = rows[edges[:-1]], rows[edges[1:]] + 1
     sizes, room = angle[after] - angle[before], np.maximum(after - before, _WINDOW)
     around = angle[np.minimum(after + room, len(steps))] - angle[np.maximum(before - room, 0)]
-    # The end of a faster and faster motion is no step.
+    # The end of an accelerating motion is no step.
     large = np.abs(sizes) > np.maximum(_LEAST_SLIP * np.ptp(angle), _ALONE * np.abs(around))
     if not large.any():
         return []
@@ -108,7 +112,7 @@ def _slips(ramps: Loading) -> list[tuple[float, int]]:
     place = np.round(ramps.torque / (_BIN * most)) + 1j * way
     found, back = [], 0.0
     for last, row, size in zip(before[large], after[large], sizes[large], strict=True):
-        # At least a loop before and a loop behind.
+        # At least one loop before, and one after.
         begin = [0, *turns[turns <= last]][-_LOOP:][0]
         end = [*turns[turns > row], len(angle)][:_LOOP][-1]
         shifts = shifted(place, angle, slice(begin, last + 1), slice(row, end))
@@ -125,9 +129,12 @@ def _slips(ramps: Loading) -> list[tuple[float, int]]:
 
 
 def shifted(place: Array, angle: Array, before: slice, after: slice) -> Array:
-    """Median change of an angle at equal places, rad, for each way that both slices share."""
+    """Median change of an angle at equal places, rad, for each direction that both parts have.
+
+    The places, (n,), have the direction, 1 or -1, as their imaginary part.
+    """
     shared = np.intersect1d(place[before], place[after])
-    # Just around the step, they have the same places by themselves.
+    # Close to the step, both parts have the same places anyway.
     near = place[before.stop - _WINDOW : after.start + _WINDOW]
     shared = np.setdiff1d(shared[shared.imag != 0.0], near)
     was, now = (_medians(place[part], angle[part], shared) for part in (before, after))
@@ -137,7 +144,7 @@ def shifted(place: Array, angle: Array, before: slice, after: slice) -> Array:
 
 
 def _medians(place: Array, angle: Array, places: Array) -> Array:
-    """Median of the angles, rad, at each of some places, which all occur."""
+    """Median of the angles, rad, at each of the given places, all of which occur."""
     order = np.lexsort((angle, place))
     place, angle = place[order], angle[order]
     middle = np.searchsorted(place, places) + np.searchsorted(place, places, 'right')
@@ -146,14 +153,14 @@ def _medians(place: Array, angle: Array, places: Array) -> Array:
 
 
 def left_out(moments: Array, *, timed: bool) -> Observed:
-    """Name the moments of readings that are left out."""
+    """Say when the readings were that are left out."""
     named = moments[:NAMED].tolist()
     more = len(moments) - len(named)
     return Observation.STRAY(timed=timed, moments=named, more=more, count=len(moments))
 
 
 def jumped(jumps: Sequence[tuple[float, float]], *, timed: bool) -> Iterator[Observed]:
-    """Name the moments and sizes, rad, of jumps."""
+    """Say when jumps were, and of what size, rad."""
     for moment, size in jumps[:NAMED]:
         yield Observation.JUMPED(timed=timed, moment=moment, angle=size)
     if further := len(jumps[NAMED:]):
@@ -161,16 +168,16 @@ def jumped(jumps: Sequence[tuple[float, float]], *, timed: bool) -> Iterator[Obs
 
 
 def longest(time: Array, *, timed: bool) -> Observed:
-    """Name the part of a recording that is used, by its times."""
+    """Say which part of a recording is used."""
     return Observation.LONGEST_PART(timed=timed, first=float(time[0]), last=float(time[-1]))
 
 
 def usual(values: Array) -> Array:
-    """Values (n,) without stray ones."""
+    """Running median of five values, (n,)."""
     padded = np.pad(values, _WINDOW // 2, 'edge')
     a, b, c, d, e = (padded[k : k + len(values)] for k in range(_WINDOW))
-    # The median of five is neither the least nor the greatest of four: it lies between the other
-    # two of them, or is the fifth. So many comparisons take a third of the time of a partition.
+    # The median of five lies between the middle two of any four, or is the fifth. These
+    # comparisons take a third of the time of a partition.
     low = np.maximum(np.minimum(a, b), np.minimum(c, d))
     high = np.minimum(np.maximum(a, b), np.maximum(c, d))
     return np.asarray(np.maximum(np.minimum(low, high), np.minimum(e, np.maximum(low, high))))

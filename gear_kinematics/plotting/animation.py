@@ -35,9 +35,9 @@ def animate(
 
     Args:
         mechanism: the mechanism.
-        module: of the teeth, m.
+        module: module of the teeth, m.
         frames: rotor positions to draw.
-        force: F_t, N, to draw the forces on the satellite, too.
+        force: tooth force F_t, N, which adds the forces on the satellite; 0 adds none.
         fps: frames per second; a GIF rounds their duration to hundredths of a second.
         progress: called with the number of each frame.
 
@@ -125,9 +125,9 @@ def _gif(figure: Any, frames: Iterator[None], fps: int) -> bytes:
 
 
 def _palette() -> Any:
-    """The colours of the drawing, and the means of adjacent ones, for smooth edges.
+    """Make a palette of the colours of the drawing, and of their mixtures at smooth edges.
 
-    A palette for each frame would flicker; more colours would take more space.
+    Different palettes for the frames would flicker, and more colours would take more space.
     """
     from PIL import Image, ImageColor  # noqa: PLC0415, comes with matplotlib
 

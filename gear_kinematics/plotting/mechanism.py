@@ -45,7 +45,7 @@ class BodyDrawing:
     def __init__(
         self, axes: Any, mechanism: Mechanism, module: float, branch: int, force: float = 0.0
     ) -> None:
-        """Draw them at φ2 = 0, with the forces of ring and cam on the satellite: F_t is given."""
+        """Draw the bodies at φ2 = 0; a force F_t, N, adds those of ring gear and cam."""
         from matplotlib.patches import PathPatch  # noqa: PLC0415, an extra
 
         self._mechanism, self._branch = mechanism, branch
@@ -63,7 +63,7 @@ class BodyDrawing:
         self.show(RotorPosition(0, 0.0))
 
     def show(self, rotor: RotorPosition) -> None:
-        """Move them to their poses at a rotor position."""
+        """Move the bodies to their poses at a rotor position."""
         placed = poses(self._mechanism, rotor.angle, self._branch, rotor_turns=rotor.turns)
         for body, patch in self.patches.items():
             patch.set_path(_path(placed[body].place(part) for part in self._outlines[body]))
@@ -77,7 +77,7 @@ class CentreDrawing:
     """
 
     def __init__(self, axes: Any, mechanism: Mechanism, branch: int) -> None:
-        """Draw them at φ2 = 0."""
+        """Draw the centres at φ2 = 0."""
         self._mechanism, self._branch = mechanism, branch
         axes.plot(_CIRCLE.real, _CIRCLE.imag, color=FAINT, linewidth=0.8)
         styles = {
@@ -100,7 +100,7 @@ class CentreDrawing:
         self.show(RotorPosition(0, 0.0))
 
     def show(self, rotor: RotorPosition) -> None:
-        """Move them to their poses at a rotor position."""
+        """Move the centres to their places at a rotor position."""
         placed = poses(self._mechanism, rotor.angle, self._branch, rotor_turns=rotor.turns)
         e = self._mechanism.eccentricity
         o1 = np.zeros(2)

@@ -47,10 +47,7 @@ def rose(mechanism: Mechanism) -> Array:
 
 
 def slides(mechanism: Mechanism, speed: float) -> Figure:
-    """Plot slides and sliding speeds of the couplings over a turn of the rotor.
-
-    The rotor's speed is in rad/s.
-    """
+    """Plot the couplings' slides and sliding speeds over a rotor turn at a speed, rad/s."""
     angle = np.linspace(0.0, TURN, _SAMPLES)
     state = solve(mechanism, angle, speed)
     names = [

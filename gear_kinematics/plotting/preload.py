@@ -9,7 +9,7 @@ from gear_kinematics.kinematics.preload import Preload
 from gear_kinematics.report.document import Figure, Line, Panel, Pen
 from gear_kinematics.shape.angles import arc_seconds
 
-_MARGIN = 1.2  # greatest load of the plot / greatest load at which a branch leaves mesh
+_MARGIN = 1.2  # greatest load of the plot over that at which a branch leaves mesh
 
 
 def torque_split(preload: Preload, names: tuple[str, str]) -> Figure:

@@ -44,8 +44,8 @@ class Trajectory(NamedTuple):
         return cls(time, *split_turns(speed * time), np.full(len(time), speed))
 
     def state(self, mechanism: Mechanism) -> MotionState:
-        """The motion of all bodies, (n, ...)."""
-        with np.errstate(over='ignore'):  # nothing here shows accelerations
+        """Compute the motion of all bodies, (n, ...)."""
+        with np.errstate(over='ignore'):  # of accelerations, which no plot shows
             return solve(mechanism, self.angle, self.velocity, rotor_turns=self.turns)
 
     def between(self, start: float, end: float) -> Self:
@@ -93,7 +93,7 @@ def read_trajectory(
     samples = gear.batch(messages, topic).samples
     anew = np.flatnonzero(np.diff(samples.stamp) < 0)
     _, used = np.unique(samples.stamp[: anew[0] + 1 if len(anew) else None], return_index=True)
-    if len(used) < 2:  # noqa: PLR2004, what a motion takes
+    if len(used) < 2:  # noqa: PLR2004, no motion
         why = f' ({gear.input.why_rejected})' if gear.input.rejected else ''
         raise BagError(f'{path}: {topic} has fewer than two rotor states of different times{why}')
     stamps, turns, angle, velocity = (column[used] for column in samples[:4])

@@ -125,7 +125,7 @@ def poses(
         mechanism: the mechanism.
         rotor_angle: rotor angle φ2, rad, of any shape `(...)`.
         branch: index of the branch.
-        rotor_turns: whole turns added to it, as for `solve`.
+        rotor_turns: whole turns to be added, as for `solve`.
 
     Returns:
         The poses of the `BODIES`, in this order, followed by that of `arrows`.
@@ -150,7 +150,7 @@ def turned(outline: Array, angle: float) -> Array:
 
 
 def _tabbed_circle(radius: float, tab: Sequence[tuple[float, float]], count: int) -> Array:
-    """Make a circle with equal, evenly spaced tabs; `tab` is the one on the x axis."""
+    """Make a circle with equal, evenly spaced tabs, of which `tab` is on the x axis."""
     half_width = abs(tab[0][1])
     start = math.asin(half_width / radius)
     foot = radius * math.cos(start)

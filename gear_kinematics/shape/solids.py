@@ -57,8 +57,8 @@ class Solid(NamedTuple):
 def solids(mechanism: Mechanism, module: float) -> dict[str, Solid]:
     """Make the solids by the names of their files, without coupling and arm if they do not fit.
 
-    Ring gear and cam are those of a branch with cam phase 0: the ring gear of another one is
-    turned by its `ring_phase`, the cam by its cam phase. The module is in m.
+    Ring gear and cam are those of a branch with a cam phase of 0. For other branches, turn the
+    ring gear by its `ring_phase`, and the cam by its cam phase. The module is in m.
     """
     shapes = bodies(replace(mechanism, branches=(Branch('neutral'),)), module)
     return {

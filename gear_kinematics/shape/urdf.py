@@ -1,9 +1,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The mechanism as a URDF, for robot_state_publisher, RViz and other tools.
 
-The tree: stator → rotor → satellite → Oldham coupling for each branch, and stator → output shaft.
-Each joint has the name of the link it moves. A URDF is a tree, so
-the joint positions in mechanism_joint_states close the loops through the arms of the output shaft.
+The tree is stator → rotor → satellite → Oldham coupling by branch, and stator → output shaft.
+Each joint has the name of the link that it moves. As a tree cannot contain loops, the positions in
+mechanism_joint_states close those through the arms of the output shaft.
 """
 
 import math
@@ -35,8 +35,8 @@ _STEEL = 7850.0  # kg/m³
 def joint_names(gear: Gear, *, output_joint: str, frame_prefix: str) -> list[str]:
     """List the joints of the URDF: rotor, satellites, Oldham couplings, output shaft.
 
-    If only the ratio of the gear is known, the output shaft's joint is the only one. Its name
-    `output_joint` is complete; those of the others get the prefix.
+    If only the ratio of the gear is known, the output shaft's joint is the only one. The name
+    `output_joint` is complete; the others get the prefix.
 
     Raises:
         ValueError: if `output_joint` is empty or the name of another joint, or a name is not
@@ -73,7 +73,7 @@ def urdf(
     Raises:
         ValueError: if `output_joint` is empty or the name of another joint.
     """
-    joint_names(mechanism, output_joint=output_joint, frame_prefix=frame_prefix)  # to check them
+    joint_names(mechanism, output_joint=output_joint, frame_prefix=frame_prefix)  # checks them
     e = mechanism.eccentricity
     robot = ET.Element('robot', name=f'{frame_prefix}gear_kinematics')
     links = {

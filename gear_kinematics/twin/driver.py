@@ -1,14 +1,14 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The driver of a simulated motor, and the encoders at rotor and output.
 
-Position, speed and torque are a cascade. With the angle x and the speed v of the rotor, those
-commanded x_c and v_c,
+Position, speed and torque are controlled in a cascade. With the angle x and the speed v of the
+rotor, and the commanded ones x_c and v_c,
 
     v_r = v_c + (ω/4)(x_c - x)                           within 90 % of the greatest speed
     M = J [ω (v_r - v) + (ω²/8) ∫ (v_r - v) dt]          within the greatest torque
 
 J is the inertia of rotor and output at the rotor, so that ω is the bandwidth of the speed; the
-poles of the position are at -0.11 ω and (-0.44 ± 0.28 j) ω. The integral stands while the torque
+poles of the position are at -0.11 ω and (-0.44 ± 0.28 j) ω. The integral is held while the torque
 is at its limit.
 """
 
@@ -26,7 +26,7 @@ _BANDWIDTH = 30.0  # Hz, ω/2π; less if the inertia of the output needs it
 _FRESH = 0.02
 """Time, s, for which a commanded position moves on with the velocity of the same command.
 
-A stream of commands thus causes no steps, and the position of a single command is held."""
+So a stream of commands causes no steps, and the position of a single command is held."""
 _SEED = 0
 _SHARE = 0.9  # share of the greatest speed that is commanded, to leave room for overshoot
 
@@ -34,8 +34,8 @@ _SHARE = 0.9  # share of the greatest speed that is commanded, to leave room for
 class Command(NamedTuple):
     """Command of a JointState in the encoder's coordinates; None for a value not commanded.
 
-    A position is held; with a velocity as well it moves on for a moment, until the next command
-    comes. Without a position the velocity is held, and only without either the effort acts.
+    A position is held; if there is a velocity as well, it moves on for a moment, until the next
+    command. Without a position, the velocity is held. Only without both does the effort act.
     """
 
     position: float | None  # commanded position, rad
@@ -47,7 +47,7 @@ class Driver:
     """Moves a model by commands, and reads its encoders."""
 
     def __init__(self, model: TwinModel, own: TwinParameters) -> None:
-        """Switch the driver on, by its own parameters and those of the gear of the model.
+        """Switch the driver on, with its own parameters and those of the model's gear.
 
         The rotor is free until the first command.
         """
@@ -57,7 +57,7 @@ class Driver:
         self._random = random.Random(_SEED)  # noqa: S311, no secret
         rotor, output = inertias(model.gear)
         self._inertia = rotor + output / model.gear.ratio**2
-        # At first the torque accelerates the rotor alone, by at most half of the speed error.
+        # The torque accelerates the rotor first, in a period by at most half of the speed error.
         self._omega = min(TURN * _BANDWIDTH, 0.5 / _PERIOD * rotor / self._inertia)
         self._origin = self._parameters.rotor_zero  # position at rotor angle 0, rad
         self._load = 0.0
@@ -73,7 +73,7 @@ class Driver:
         self._command, self._age = command, 0.0
 
     def power_cycle(self) -> None:
-        """Switch off and on: the rotor is free, and a count of turns starts again from here."""
+        """Switch off and on: the rotor is free, and counting of turns starts again from here."""
         self._release()
         if not self._parameters.rotor_period:
             self._origin = -self._parameters.rotor_direction * self.model.rotor_angle

@@ -7,8 +7,8 @@ Satellites and couplings circle with the rotor and turn with the output. Arm A h
 shaft is in series with the spring of its branch.
 
 Velocities step before angles (the symplectic Euler method): oscillations on the springs neither
-grow nor die while their angular frequency stays below 2/h. Damping is implicit, and has no bound.
-Friction stops the output within a step if it can, and slows it down by all of its torque if not.
+grow nor decay while their angular frequency is below 2/h. Damping is implicit, and unlimited.
+Friction stops the output within a step if it can, and otherwise slows it with all of its torque.
 """
 
 import math

@@ -5,16 +5,16 @@ The branches and the shaft between their arms are springs. Branch k winds up by
 
     x_k = φ2/i + error(φ2) - ψ_k
 
-with ψ_k the angle of its arm, and gives the arm the torque T_k: none within its dead band, the
-play of its flanks, whose place is the preload, and that of its spring beyond it. The output shaft
-is the arm of the last branch. Friction acts between the output shaft and the stator.
+with ψ_k the angle of its arm, and gives the arm the torque T_k: none within its dead band, which
+is the play of its flanks, placed by the preload; and that of its spring beyond it. The output
+shaft is the arm of the last branch. Friction acts between the output shaft and the stator.
 
 Real springs bend, and friction grows with the load. A gear without preload may have a curve that
-was measured at its output: each branch gives its share of the torque, and the shaft is rigid, as
-its twist is in the curve.
+was measured at its output. Then each branch gives an equal share of the torque, and the shaft is
+rigid, as its twist is in the curve.
 
 Two branches are braced by an interference, by which branch A, the shaft and branch B are twisted
-together. Without load, the output stands at φ2/i: x_B = 0, and x_A = -T0/ks by the shaft, so that
+together. Without load, the output is at φ2/i: x_B = 0, and by the shaft x_A = -T0/ks, so that
 
     high_A = -T0 (1/kA + 1/ks)        low_B = T0/kB        low_B - high_A = interference
 
@@ -49,7 +49,7 @@ class LoadingCurve:
     friction: tuple[float, ...]  #: friction torques, N·m
 
     def at(self, wind_up: float) -> tuple[float, float]:
-        """Torque and friction, N·m, at a wind-up, rad; friction is constant beyond the ends."""
+        """Return torque and friction at a wind-up; friction is constant beyond the ends."""
         right = min(max(bisect(self.wind_up, wind_up), 1), len(self.wind_up) - 1)
         left = right - 1
         share = (wind_up - self.wind_up[left]) / (self.wind_up[right] - self.wind_up[left])
@@ -105,7 +105,7 @@ class TwinGear:
     """Cycles per turn of the rotor, cos and sin of each order, in plain floats."""
 
     def __post_init__(self) -> None:
-        """Check the gear, and place its dead bands."""
+        """Check the gear, and compute its dead bands."""
         faults = []
         if math.inf in self.stiffness:
             faults.append('branch_stiffness must be greater than 0: no simulated branch is rigid')
@@ -132,8 +132,8 @@ class TwinGear:
         Args:
             config: parameter file of ROS, such as config/simulated_actuator.yaml.
             node: name of the node whose parameters are read.
-            calibration: calibration with the errors; None for the one named in the file, if any.
-            actuator: name of the actuator, in the file of an arm of several.
+            calibration: calibration with the errors; None for the one that the file names, if any.
+            actuator: name of the actuator, in the file of an arm with several.
 
         Raises:
             ValueError: if a file cannot be used, or the gear cannot be simulated.
@@ -203,10 +203,10 @@ class TwinGear:
         return tuple(torques), friction
 
     def springs(self, branch: int) -> list[tuple[float, float, float]]:
-        """Springs of a branch which touch one after another.
+        """Return the springs of a branch, which touch one after another.
 
         Returns:
-            For each, the wind-ups between which it is slack, rad, and its stiffness, N·m/rad.
+            The wind-ups between which each one is slack, rad, and its stiffness, N·m/rad.
         """
         (low, high), curve = self.dead_bands[branch], self.curve
         if not curve:

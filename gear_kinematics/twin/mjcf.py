@@ -2,8 +2,8 @@
 """A simulated gear as a model of MuJoCo: one XML, in SI units.
 
 Bodies, joints and frames are those of the URDF. A URDF is a tree; here, each coupling is welded to
-a body that slides in the slot of the arm, which closes the loops. Each spring is a tendon, because
-those have a dead band in MuJoCo: a fixed tendon, whose length is a sum of joint angles.
+a body that slides in the slot of the arm, which closes the loops. Each spring is a fixed tendon,
+whose length is a sum of joint angles, because tendons can have a dead band in MuJoCo.
 """
 
 import math
@@ -27,7 +27,7 @@ _MILLISECOND = 1e-3  # s
 _LONGEST_STEP = 1e-4  # s
 _PHASE = 0.7  # rad by which the fastest oscillation may advance in a step; beyond 2, it grows
 _UNREACHED_WIND_UP = 1e6  # rad, greater than all wind-ups
-_ARM_DAMPING = 0.05  # of critical: the arm comes to rest in ms; slower motions hardly change
+_ARM_DAMPING = 0.05  # share of critical damping: the arm rests within ms, slow motions remain
 
 
 def mjcf(
@@ -43,7 +43,7 @@ def mjcf(
         gear: a gear with a known mechanism, whose satellites and couplings have masses.
         remarks: lines of the comment in the file.
         shown: whether to draw the bodies: with their teeth, unless the parameter `meshes` is none.
-        single_precision: whether to soften the closed loops, so that MuJoCo Warp bears them.
+        single_precision: whether to soften the closed loops, as MuJoCo Warp requires.
 
     Raises:
         MechanismError: if only the ratio of the gear is known, or such a mass is missing.
@@ -148,9 +148,10 @@ def _time_step(gear: TwinGear) -> float:
 def _add_branch(gear: TwinGear, number: int, parts: dict[str, str], torquescale: int) -> None:
     """Add the bodies of a branch with their joints, springs and sensors.
 
-    Coupling and slot are one body: each has half of its mass. They turn with the satellite: either
-    side of the weld has half of the whole inertia, with which the weld yields least. The site in
-    the slot of the arm is upside down, so that its sensor gives the torque on the arm.
+    Two welded bodies, oldham and slot, make up the coupling, each with half of its mass. They turn
+    with the satellite: each side of the weld has half of the whole inertia, with which the weld
+    yields least. The site in the slot of the arm is upside down, so that its sensor gives the
+    torque on the arm.
     """
     mechanism, loads = gear.parameters.mechanism, gear.parameters.loads
     branch, e = mechanism.branches[number], mechanism.eccentricity
