@@ -13,13 +13,13 @@ from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.measured import LOST_MOTION, Measured, shown
 from gear_kinematics.measurement.sentences import Cause, Observation, Observed
 
-_SMALLER = 0.7  # share of their amplitude to which smaller ramps are worth recording
-_TOLD = 0.25  # share of the whole motion by which a ± leaves nothing to be told
-_UNEQUAL = 0.18  # of the sum of a torque's peaks: a difference that none of 37 real recordings has
+_SMALLER = 0.7  # share of the amplitude below which smaller ramps are worth recording
+_MOST_UNCERTAIN = 0.25  # share of the whole twist; beyond it, a ± leaves nothing to say
+_UNEQUAL = 0.18  # share of the sum of both peaks; they differ by less in 37 real recordings
 
 
 def answer(report: LostMotion) -> Observed:
-    """Choose what a person who must decide has to know first."""
+    """Choose the observation that the reader needs first."""
     if first := report.wrong_ratio or report.recording.computed:
         return first
     if report.figures:
@@ -39,8 +39,8 @@ def _of_ramps(figures: GearFigures) -> Observed:
     width = figures.hysteresis
     if width.value < 0.0 and (width.uncertainty is None or width.clear):
         return Observation.NEGATIVE_HYSTERESIS(hysteresis=width)
-    least = max(abs(width.value), _TOLD * float(np.ptp(figures.middle_line.angle)))
-    if math.inf > width.expanded > least:
+    most = max(abs(width.value), _MOST_UNCERTAIN * float(np.ptp(figures.middle_line.angle)))
+    if math.inf > width.expanded > most:
         return Observation.LOOPS_DIFFER(hysteresis=width)
     backlash, cause = figures.backlash, figures.backlash.cause
     if backlash.high is None:
@@ -77,7 +77,7 @@ class Limits:
     stiffness: float | None = None  #: N·m/rad, in the highest range of torque
 
     def judge(self, report: LostMotion) -> Iterator[LimitCheck]:
-        """Judge a recording by each limit, at the end of the interval that speaks against it."""
+        """Judge a recording by each limit, at the less favourable end of the interval."""
         limits = {name.replace('_', ' '): limit for name, limit in asdict(self).items()}
         figures, computed = report.figures, report.recording.computed
         hidden = figures is not None and figures.held_by_friction
@@ -94,10 +94,10 @@ class Limits:
 
 
 def _judged(figure: Measured, limit: float) -> LimitCheck:
-    if not figure.ends or max(figure.ends) < 0.0:  # which no gear has
+    if not figure.ends or max(figure.ends) < 0.0:  # of no gear
         unknown = Observation.NOT_KNOWN(figure=figure.name)
         return LimitCheck(figure.name, holds=False, why=unknown)
-    sign = -1.0 if figure.name == 'stiffness' else 1.0  # the least of it, not the most
+    sign = -1.0 if figure.name == 'stiffness' else 1.0  # its limit is a lower one
     low, high = sorted(sign * end for end in figure.ends)
     holds = high <= sign * limit
     what = Observation.WITHIN_LIMIT if holds else Observation.PERHAPS_BEYOND
@@ -110,13 +110,13 @@ def _judged(figure: Measured, limit: float) -> LimitCheck:
 
 
 def remarks(report: LostMotion) -> Iterator[Observed]:
-    """Find the basis and the limits of the figures."""
+    """Yield what the figures are based on, and what limits their use."""
     if found := report.figures:
         yield (Observation.MEASURED_AT_OUTPUT if report.measured else Observation.INFERRED)()
         if found.held_by_friction and found.lost_motion and found.friction:
             torque, friction = LOST_MOTION_SHARE * found.rated_torque, found.friction.value
             yield Observation.READ_BELOW_FRICTION(torque=torque, friction=friction)
-        # Peaks that differ question the zero of the torque.
+        # If the peaks differ, the zero of the torque is in doubt.
         high = float(np.mean([loop.fall.start for loop in found.ramps[-1].loops]))
         low = float(np.mean([loop.rise.start for loop in found.ramps[-1].loops]))
         if abs(high + low) > _UNEQUAL * (high - low):

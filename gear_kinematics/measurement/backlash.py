@@ -21,27 +21,27 @@ from gear_kinematics.measurement.sentences import Cause
 from gear_kinematics.statistics.uncertainty import Estimate, resolution, student_t
 
 _POINTS = 20
-"""Number of points of the mean line on either side: springs and frictions of 5, 10, 20 and 40
-points give back the loops of 30 real recordings within 3.1, 2.2, 1.8 and 1.7 mrad (median), whose
-repeats differ by 2.5."""
+"""Number of points of the mean line on either side. With 5, 10, 20 and 40 points of spring and
+friction, the loops of 30 real recordings follow within 3.1, 2.2, 1.8 and 1.7 mrad (median);
+their repeats differ by 2.5 mrad."""
 _LOWER_HALF, _UPPER_HALF = (0.1, 0.35), (0.35, 0.9)
-"""The two halves of `SIDE`, between which a bent spring differs."""
+"""The two halves of `SIDE`; a spring that differs between them is bent."""
 _EXTRAPOLATED = 2.0
-"""By how many times the difference of the halves a bent spring goes on towards no load: more than
-by the power 1/2 of the load, whose dead band goes on by 1.9 times (1.2 times by Hertz's 2/3)."""
+"""How far a bent spring is extrapolated to no load, in differences of its halves. A twist by the
+power 1/2 of the load needs 1.9, and by Hertz's power 2/3 1.2."""
 _HIDDEN = 0.5
-"""Share of the uncertainty of that difference which the ± of a straight one contains: on simulated
-gears (benchmark/lost_motion.py), 0.5 holds in 97 % or more of each scenario, 0 in 88 %."""
+"""Share of the uncertainty of that difference that the ± of a straight spring includes: with 0.5,
+97 % or more of each scenario of benchmark/lost_motion.py are within ±; with 0, 88 %."""
 _MIDDLE, _DEAD = 2.0 / 3.0, 0.15
-"""A dead band yields over this share of its width at less than this share of the stiffness beside
-it. Simulated: a fifth takes a soft middle of 60 in 300 N·m/rad for play, a tenth misses one of ten
-plays of 10′ where friction takes up half of the torque."""
+"""A dead band has, over the first share of its width, less than the second share of the stiffness
+beside it. In simulations, 0.2 takes a soft middle of 60 in 300 N·m/rad for play, and 0.1
+misses one of ten plays of 10′ where friction takes up half of the torque."""
 _MOST_COMPLIANT = 1.5
-"""Ratio of the compliances of small and large ramps from which on the small ones are in a soft
-middle: springs that bend by less keep a backlash of 0 and of 10′ in their intervals."""
+"""Ratio of the compliances of small and large ramps from which on small ones are in a soft middle.
+With springs that bend by less, the intervals contain backlashes of 0 and of 10′."""
 _MOVED_BY_GAP = 2.0
-"""By how many times the friction that a gap adds, over the stiffness, moves its ends: simulated
-gears with inertia need 1.7 at the most."""
+"""How far the friction that a gap adds moves its ends, in that friction over the stiffness. In
+simulations of gears with inertia, at most 1.7."""
 _NORMAL = 10**9  # degrees of freedom of a normal distribution
 
 
@@ -51,6 +51,11 @@ class Backlash(NamedTuple):
     low: float
     high: float | None  #: None where nothing bounds it
     cause: Cause  #: why it has no value
+
+    @property
+    def ends(self) -> tuple[float, ...]:
+        """Both ends of the interval; none where nothing bounds it."""
+        return () if self.high is None else (self.low, self.high)
 
     @property
     def value(self) -> Estimate | None:
@@ -96,9 +101,9 @@ def backlash_of(
     Straight lines are fitted to both sides of the middle lines. Where those through the halves of
     a side agree, the spring is straight, and the angle between the lines is the backlash. Where
     they differ, it lies between what they give and what they extrapolate to. It has a lower bound
-    only if the load hardly changes over it, and is never wider than the hysteresis. Ramps to which
-    the gear yields much more than to larger ones have not left a soft middle, which may all be
-    backlash: that is bounded by the angle between small loads alone.
+    only if the load hardly changes over it, and it never exceeds the hysteresis. If the gear
+    yields much more to these ramps than to larger ones, they have not left a soft middle, all of
+    which may be backlash: then only the angle between small loads bounds it.
 
     Args:
         ramps: the ramps.
@@ -151,14 +156,14 @@ def backlash_of(
 
 
 def reconciled(found: Sequence[Backlash | None]) -> Backlash:
-    """The backlash that ramps of ascending amplitudes leave room for; a gear has only one."""
+    """Combine what ramps of ascending amplitudes say of the backlash; a gear has only one."""
     known = [(own.high, own.low, own.cause) for own in found if own and own.high is not None]
     if not known:
         cause = next((own.cause for own in found if own), Cause.FRICTION)
         return Backlash(0.0, None, cause)
     highs, lows, causes = zip(*known, strict=True)
     if Cause.SOFT in causes:
-        # A soft middle, which small ramps have not left, is play to larger ones.
+        # A soft middle, which small ramps do not leave, looks like play to larger ones.
         lows = lows[: causes.index(Cause.SOFT) + 1]
     if max(lows) > min(highs):
         return Backlash(min(lows), max(highs), Cause.CONTRADICTION)

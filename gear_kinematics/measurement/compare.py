@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The section of a report that compares several recordings at one torque."""
+"""The section of a report that compares several recordings at a common torque."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -20,19 +20,8 @@ from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.measured import HYSTERESIS, shown
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.wording import ARC_MINUTES
-from gear_kinematics.report.document import (
-    PENS,
-    Cell,
-    Figure,
-    Line,
-    Panel,
-    Pen,
-    Section,
-    Table,
-    Tone,
-    number,
-    printable,
-)
+from gear_kinematics.report import document as doc
+from gear_kinematics.report.document import number, printable
 
 _TORQUES = 300  # points of half a loop in a plot
 
@@ -40,10 +29,10 @@ _TORQUES = 300  # points of half a loop in a plot
 def compared(
     reports: Sequence[LostMotion], groups: Sequence[Group] | None = None
 ) -> Comparison | None:
-    """Compare groups of recordings, or single ones, with the first.
+    """Compare groups of recordings, or single recordings, with the first one.
 
-    The recordings are those that `at_common_torque` returns. Without a figure in common, there is
-    nothing to compare: None.
+    Expects the recordings that `at_common_torque` returns. The result is None if they have no
+    figure in common.
     """
     found, unlike = quantities(reports)
     named = groups or single([report.name for report in reports])
@@ -60,7 +49,7 @@ def compared(
         remarks.append(Observation.REPEAT_RECORDINGS())
     if unlike:
         remarks.append(Observation.SMALL_RAMPS_DIFFER(names=unlike))
-    section = Section(
+    section = doc.Section(
         'comparison',
         (_table(changes, several=several),),
         remarks=tuple(printable(str(remark)) for remark in remarks),
@@ -76,7 +65,7 @@ def compared(
 
 
 def _changed(changes: Sequence[Change], groups: Sequence[Group]) -> Observed:
-    """Choose what has changed: of two groups all that is clear, of several the first figure."""
+    """Say what has changed: all clear changes of two groups, or one figure of several groups."""
     first, second, *others = (group.name for group in groups)
     if others:
         same = [change for change in changes if change.quantity == changes[0].quantity]
@@ -96,7 +85,7 @@ def _changed(changes: Sequence[Change], groups: Sequence[Group]) -> Observed:
 
 
 def _values(*changes: Change) -> dict[str, str]:
-    """Show a figure before and after its change, in one group or several."""
+    """Format a figure before and after its changes, with one change for each later group."""
     first = changes[0]
     before = shown(first.quantity.unit, first.before).text
     after = shown(first.quantity.unit, *(change.after for change in changes)).with_unit()
@@ -104,7 +93,7 @@ def _values(*changes: Change) -> dict[str, str]:
 
 
 def _play(reports: Sequence[LostMotion], group: Group) -> Iterator[Observed]:
-    """Yield what is left of the backlash in a group, by intervals."""
+    """Yield how much backlash is left in a group, by its interval in each recording."""
     found = [own.backlash for k in group.members if (own := reports[k].figures)]
     if not found:
         return
@@ -118,8 +107,8 @@ def _play(reports: Sequence[LostMotion], group: Group) -> Iterator[Observed]:
         yield Observation.PLAY_UNDETERMINED()
 
 
-def _table(changes: Sequence[Change], *, several: bool) -> Table:
-    return Table.of_items(
+def _table(changes: Sequence[Change], *, several: bool) -> doc.Table:
+    return doc.Table.of_items(
         {
             'change': lambda c: printable(
                 f'{c.quantity.name}{f", {c.second}" if several else ""}'
@@ -128,8 +117,8 @@ def _table(changes: Sequence[Change], *, several: bool) -> Table:
             'after': lambda c: shown(c.quantity.unit, c.after),
             'ratio': lambda c: number(c.after / c.before),
             'interval': lambda c: ' to '.join(map(number, c.interval)),
-            'judgement': lambda c: Cell(
-                c.judgement, Tone.NOTABLE if c.significant else Tone.PLAIN
+            'judgement': lambda c: doc.Cell(
+                c.judgement, doc.Tone.NOTABLE if c.significant else doc.Tone.PLAIN
             ),
         },
         changes,
@@ -152,8 +141,8 @@ def _data(change: Change) -> Mapping[str, Any]:
     }
 
 
-def _figure(reports: Sequence[LostMotion], groups: Sequence[Group]) -> Figure | None:
-    """Draw the mean loops of the largest ramps of recordings over one another."""
+def _figure(reports: Sequence[LostMotion], groups: Sequence[Group]) -> doc.Figure | None:
+    """Draw the mean loops of the largest ramps of all recordings into one plot."""
     lines = []
     for k, group in enumerate(groups):
         for figures in (own for m in group.members if (own := reports[m].figures)):
@@ -163,7 +152,7 @@ def _figure(reports: Sequence[LostMotion], groups: Sequence[Group]) -> Figure | 
             rise = np.mean([loop.rise.angle_at(torque[::-1]) for loop in ramps.loops], axis=0)
             angle = np.concatenate([fall, rise]) - np.mean([fall, rise])
             around = np.concatenate([torque, torque[::-1]])
-            pen = PENS[k] if k < len(PENS) else Pen.FAINT
-            lines.append(Line(printable(group.name), pen, around, angle * ARC_MINUTES))
+            pen = doc.PENS[k] if k < len(doc.PENS) else doc.Pen.FAINT
+            lines.append(doc.Line(printable(group.name), pen, around, angle * ARC_MINUTES))
     labels = 'torque at the output [N·m]', 'wind-up at the output [arcmin]'
-    return Figure((Panel('mean loops', *labels, tuple(lines)),)) if lines else None
+    return doc.Figure((doc.Panel('mean loops', *labels, tuple(lines)),)) if lines else None

@@ -1,60 +1,54 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The report on lost motion: tables, and the JSON, which docs/lost_motion.md describes."""
+"""The report on lost motion: tables, plots, and the JSON, which docs/lost_motion.md describes."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from gear_kinematics.measurement.answer import LimitCheck, Limits, answer, remarks
-from gear_kinematics.measurement.curves import panels
-from gear_kinematics.measurement.figures import GearFigures
+import numpy as np
+
+from gear_kinematics.measurement.answer import Limits, answer, remarks
+from gear_kinematics.measurement.figures import LOST_MOTION_SHARE, GearFigures
 from gear_kinematics.measurement.json_values import plain
 from gear_kinematics.measurement.loops import Ramps
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.measured import LOST_MOTION, Measured, shown
-from gear_kinematics.report.document import (
-    Case,
-    Cell,
-    Document,
-    Figure,
-    Layout,
-    Section,
-    Sentence,
-    Table,
-    Verdict,
-    counted,
-    number,
-    printable,
-)
+from gear_kinematics.measurement.transmission import TransmissionFigures
+from gear_kinematics.measurement.wording import ARC_MINUTES
+from gear_kinematics.report import document as doc
+from gear_kinematics.report.document import MOST_POINTS, counted, number, printable
 from gear_kinematics.statistics.uncertainty import COVERAGE, Estimate
 
 SCHEMA = 'gear_kinematics/lost_motion'
 VERSION = 3
 _COLUMNS = 2  # panels side by side
+_DIRECTIONS: tuple[tuple[int, str, doc.Pen], ...] = (
+    (0, 'turning back', doc.Pen.FAINT),
+    (1, 'forward', doc.Pen.FIRST),
+    (-1, 'backward', doc.Pen.SECOND),
+)
+_HALVES = {True: ('torque rising', doc.Pen.FIRST), False: ('torque falling', doc.Pen.SECOND)}
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Comparison:
     """Comparison of recordings at a common torque."""
 
-    section: Section
+    section: doc.Section
     sentence: str  # the answer, in one line
     data: Mapping[str, Any]  # for the JSON
 
 
 def document(
     reports: Sequence[LostMotion], comparison: Comparison | None, limits: Limits
-) -> Document:
+) -> doc.Document:
     """Return the document on recordings, with a section for each, and then their comparison."""
-    sections, recordings = [], []
-    for report in reports:
-        notes = [*report.recording.sentences, *(found.sentence for found in remarks(report))]
-        sentences = answer(report).sentence, [*limits.judge(report)], tuple(map(printable, notes))
-        sections.append(_section(report, *sentences))
-        recordings.append(_recording(report, *sentences))
+    sections, recordings = zip(*(_reported(report, limits) for report in reports), strict=True)
     verdicts = [section.verdict for section in sections if section.verdict]
-    return Document(
+    mains = [{'recording': printable(report.name), **_main(report)} for report in reports]
+    rows = (tuple(map(doc.Cell, main.values())) for main in mains)
+    return doc.Document(
         'gearkin lost-motion',
         (*sections, *([comparison.section] if comparison else [])),
         {
@@ -64,39 +58,51 @@ def document(
             'recordings': recordings,
             **(comparison.data if comparison else {}),
         },
-        max(verdicts, key=list(Verdict).index, default=None),
-        _summary(reports),
+        max(verdicts, key=list(doc.Verdict).index, default=None),
+        doc.Table(tuple(mains[0]), tuple(rows)),
         comparison.sentence if comparison else '',
     )
 
 
-def _section(
-    report: LostMotion, said: str, judged: Sequence[LimitCheck], remarked: tuple[str, ...]
-) -> Section:
-    passed = all(judgement.holds for judgement in judged)
-    return Section(
+def _reported(report: LostMotion, limits: Limits) -> tuple[doc.Section, Mapping[str, Any]]:
+    """Return the section on a recording, and its part of the JSON."""
+    recording, both = report.recording, report.recording.encoders
+    said, checks = answer(report).sentence, [*limits.judge(report)]
+    notes = [*recording.sentences, *(found.sentence for found in remarks(report))]
+    remarked = tuple(map(printable, notes))
+    failed_first = sorted(checks, key=lambda check: check.holds)
+    passed = all(check.holds for check in checks)
+    cases = (doc.Case(check.limit, (str(check.why),) * (not check.holds)) for check in checks)
+    section = doc.Section(
         printable(report.name),
         tuple(_tables(report)),
-        (Verdict.PASS if passed else Verdict.FAIL) if judged else None,
-        (
-            *(
-                Sentence('finding', one.why.sentence)
-                for one in sorted(judged, key=lambda one: one.holds)
-            ),
-            Sentence('finding', said),
+        (doc.Verdict.PASS if passed else doc.Verdict.FAIL) if checks else None,
+        tuple(
+            doc.Sentence('finding', text)
+            for text in (*(check.why.sentence for check in failed_first), said)
         ),
         remarked,
-        Figure(tuple(panels(report)), columns=_COLUMNS),
-        key=Table.of_values(Layout.INLINE, *_main(report).items()),
-        cases=tuple(Case(one.limit, () if one.holds else (str(one.why),)) for one in judged)
-        or (Case('measured'),),
+        doc.Figure(tuple(_panels(report)), columns=_COLUMNS),
+        key=doc.Table.of_values(doc.Layout.INLINE, *_main(report).items()),
+        cases=tuple(cases) or (doc.Case('measured'),),
     )
-
-
-def _summary(reports: Sequence[LostMotion]) -> Table:
-    mains = [(printable(report.name), _main(report)) for report in reports]
-    rows = ((Cell(name), *map(Cell, main.values())) for name, main in mains)
-    return Table(('recording', *mains[0][1]), tuple(rows))
+    data = {
+        'recording': report.name,
+        'answer': said,
+        'limits': {
+            check.limit: {'holds': check.holds, 'text': str(check.why)} for check in checks
+        },
+        'columns': recording.columns,
+        'samples': recording.rows,
+        'error': recording.damage,
+        'gear_ratio': str(report.gear_ratio),
+        **(_of_gear(report.figures) if report.figures else {}),
+        'measured': report.measured,
+        'transmission': plain(report.transmission),
+        'delay_unit': ('s' if both.timed else 'rows') if both else None,
+        'remarks': remarked,
+    }
+    return section, data
 
 
 def _main(report: LostMotion) -> dict[str, str]:
@@ -106,10 +112,10 @@ def _main(report: LostMotion) -> dict[str, str]:
 # Tables
 
 
-def _tables(report: LostMotion) -> Iterator[Table]:
+def _tables(report: LostMotion) -> Iterator[doc.Table]:
     found, motion, both = report.figures, report.transmission, report.recording.encoders
-    yield Table.of_values(
-        Layout.INLINE,
+    yield doc.Table.of_values(
+        doc.Layout.INLINE,
         ('samples', str(report.recording.rows)),
         ('columns', printable('; '.join(report.recording.columns))),
         ('gear ratio', str(report.gear_ratio)),
@@ -135,34 +141,54 @@ def _ramps(ramps: Ramps) -> str:
     return f'{counted(len(ramps.loops), "loop")} to {number(ramps.amplitude)} N·m'
 
 
-def _table(figures: Iterable[Measured]) -> Table:
-    """A row for each figure that is known; one that its ± exceeds stands out."""
+def _table(figures: Iterable[Measured]) -> doc.Table:
+    """Return a row for each known figure; one whose ± exceeds it stands out."""
     known = [figure for figure in figures if figure.value]
-    rows = ((Cell(f'{own.name}{own.at}', unit=own.cell.unit), own.cell) for own in known)
-    return Table(('figure', 'value'), tuple(rows))
+    rows = ((doc.Cell(f'{own.name}{own.at}', unit=own.cell.unit), own.cell) for own in known)
+    return doc.Table(('figure', 'value'), tuple(rows))
 
 
-# JSON
+def _panels(report: LostMotion) -> Iterator[doc.Panel]:
+    """Yield the plots of a report."""
+    if found := report.figures:
+        torque = LOST_MOTION_SHARE * found.rated_torque
+        yield from (_ramp_panel(ramps, torque) for ramps in found.ramps)
+    if motion := report.transmission:
+        yield _error_panel(motion)
 
 
-def _recording(
-    report: LostMotion, said: str, judged: Sequence[LimitCheck], remarked: tuple[str, ...]
-) -> Mapping[str, Any]:
-    recording, both = report.recording, report.recording.encoders
-    return {
-        'recording': report.name,
-        'answer': said,
-        'limits': {one.limit: {'holds': one.holds, 'text': str(one.why)} for one in judged},
-        'columns': recording.columns,
-        'samples': recording.rows,
-        'error': recording.damage,
-        'gear_ratio': str(report.gear_ratio),
-        **(_of_gear(report.figures) if report.figures else {}),
-        'measured': report.measured,
-        'transmission': plain(report.transmission),
-        'delay_unit': ('s' if both.timed else 'rows') if both else None,
-        'remarks': remarked,
-    }
+def _ramp_panel(ramps: Ramps, at: float) -> doc.Panel:
+    centre = float(np.mean([loop.middle(0.0) for loop in ramps.loops]))
+    lines = []
+    for half in (half for loop in ramps.loops for half in reversed(loop)):
+        # A ramp may continue to a larger amplitude, which has its own panel.
+        inside = np.flatnonzero(np.abs(half.torque) <= 1.02 * ramps.amplitude)
+        rows = inside[:: math.ceil(len(inside) / MOST_POINTS)]
+        name, pen = _HALVES[half.rising]
+        angle = (half.angle[rows] - centre) * ARC_MINUTES
+        lines.append(doc.Line(name, pen, half.torque[rows], angle))
+    for line in ramps.lines:
+        angle = (line.angle - centre) * ARC_MINUTES
+        lines.append(doc.Line('middle line: without friction', doc.Pen.MODEL, line.load, angle))
+    return doc.Panel(
+        f'ramps to {number(ramps.amplitude)} N·m',
+        f'torque at the output [N·m]; dashed: 0 and ±{100.0 * LOST_MOTION_SHARE:g} % of rated',
+        'wind-up at the output [arcmin]',
+        tuple(lines),
+        marks=((-at, ''), (0.0, ''), (at, '')),
+    )
+
+
+def _error_panel(motion: TransmissionFigures) -> doc.Panel:
+    lines = []
+    for way, name, pen in _DIRECTIONS:
+        rows = motion.direction == way
+        if rows.any():
+            error = (motion.error[rows] - motion.offset) * ARC_MINUTES
+            angle = np.degrees(motion.angle[rows])
+            lines.append(doc.Line.reduced(name, pen, angle, error, points=way == 0))
+    title, label = 'transmission error less its mean', 'measured less ideal [arcmin]'
+    return doc.Panel(title, 'output angle [°]', label, tuple(lines))
 
 
 def _of_gear(found: GearFigures) -> dict[str, Any]:

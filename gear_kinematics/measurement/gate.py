@@ -1,9 +1,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""A gate before every fit: readings of two encoders that cannot both be true are left out.
+"""Removal of readings of two encoders that cannot both be true, before anything is fitted.
 
-The error, output minus rotor by their ratio, changes little between samples. Readings between
-which it leaves and comes back are left out; where it stays elsewhere, as after a slip, the
-recording is divided and the longest part is used.
+The error, the output less the rotor over their ratio, changes little between samples. Where it
+leaves and comes back, the readings between are left out. Where it stays away, as after a slip, the
+recording is divided, and the longest part is used.
 """
 
 import math
@@ -22,48 +22,51 @@ from gear_kinematics.measurement.two_encoders import directions
 from gear_kinematics.report.document import number
 
 _FEWEST = 50  # samples
-_LEAST_TRAVEL = math.radians(3.0)  # of the output: without it, the ratio does not show
-_STEPS = 12.0  # times the step that 98 % of such medians have: no gear's error
+_LEAST_TRAVEL = math.radians(3.0)  # of the output, from which on the ratio shows
+_STEPS = 12.0  # times the 98 % quantile of steps of the error: beyond the error of any gear
 _LEAST_STEP = math.radians(0.25)
-_STAYS = 4  # samples in a row: no stray reading
-_REVERSAL = 4  # samples around it in which the output may lag
-_MOST_LOST = math.radians(5.0)  # by a gear that is usable
-_LIKELY, _TRIED, _MOST_OF = 4.0, 8, 0.6  # such steps; of which so many; share of it that stays
-_LEAST_SLIP, _PLACE = math.radians(0.15), math.radians(2.0)  # of output angles that are compared
-_FROZEN = math.radians(3.0)  # of the output, that one shaft does while the other stands
-_LEAST_SHARE = 0.25  # of samples that are used: else it is the ratio that is not understood
-_CLEAR = 4.0  # such steps: clear slips, however short the parts between them
-_MOST_FAULTS = 0.02  # of such medians: more are a unit or a range that is not understood
-_RANGE = 0.9  # of the rotor's travel, by which it steps where it wraps
+_STAYS = 4  # samples in a row that are no stray reading
+_REVERSAL = 4  # samples around a reversal in which the output may lag
+_MOST_LOST = math.radians(5.0)  # lost motion of a usable gear, at most
+_LIKELY, _TRIED, _MOST_OF = 4.0, 8, 0.6
+"""Times that quantile from which on a step may be a slip; number of such steps that are tried;
+share of the step that stays."""
+_LEAST_SLIP = math.radians(0.15)
+_PLACE = math.radians(2.0)  # width of the bins of output angles at which errors are compared
+_FROZEN = math.radians(3.0)  # motion of the output by one encoder while the other stands still
+_LEAST_SHARE = 0.25  # of samples that are used; if it were less, the ratio is not understood
+_CLEAR = 4.0  # times the limit of a step: slips are clear, however short the parts between them
+_MOST_FAULTS = 0.02  # of the steps: more show a unit or a range that is not understood
+_RANGE = 0.9  # share of its travel by which the rotor steps where its encoder wraps
 NO_ENCODER = 2e-6
 """rad, peak to peak, 0.4 arc seconds: no gear with an encoder at its output deviates by less."""
 
 
 class _Compared(NamedTuple):
-    """The error in the rows in which both shafts moved or stood; arrays are (m,), rad."""
+    """The error in the m rows in which both shafts moved or both stood; (m,), rad."""
 
-    rows: Array  # numbers of these rows among the n of the recording
+    rows: Array  # indices of these rows among the n rows of the recording
     frozen: NDArray[np.bool_]  # (n,): rows in which one shaft stood still while the other moved
     rotor: Array
-    ideal: Array  # output angle by the rotor
+    ideal: Array  # output angle that the rotor implies
     error: Array  # measured minus ideal output angle, without wraps
     travel: float  # rad, of the rotor in all rows
-    path: Array  # output angle by each sample of the rotor
-    period: float  # what wraps of an encoder add to the error
+    path: Array  # output angle that each sample of the rotor implies
+    period: float  # change of the error where an encoder wraps
 
 
 class _Steps(NamedTuple):
-    """Steps of the error that no gear makes, (m - 1,)."""
+    """Steps of the error that no gear can make, (m - 1,)."""
 
     impossible: NDArray[np.bool_]
-    slipped: NDArray[np.bool_]  # those of them that stay, however small they are
-    limit: float  # rad, of a step
+    slipped: NDArray[np.bool_]  # those of them that are permanent, however small
+    limit: float  # greatest step of a gear, rad
 
 
 def gated(recording: Recording) -> Recording:
-    """Leave out what cannot be true of both encoders, and say when it was.
+    """Leave out readings that contradict each other, and say when they were.
 
-    Without such readings, or if the output hardly moves, the recording itself is returned.
+    If there are none, or the output hardly moves, the recording itself is returned.
     """
     both = recording.encoders
     if both is None or len(both.measured) < _FEWEST or not (compared := _compared(both)):
@@ -78,7 +81,7 @@ def gated(recording: Recording) -> Recording:
     kept, jumps = _followed(error, rows, steps, compared.period)
     at = np.array(jumps, int)
     if np.abs(rotor[at] - rotor[at - 1]).max(initial=0.0) > _RANGE * compared.travel:
-        return recording  # an encoder of another range than a turn
+        return recording  # the range of the encoder is not a turn
     sizes = error[at] - error[at - 1]
     clear = len(at) and np.abs(sizes).min() > _CLEAR * steps.limit
     least = _FEWEST if clear else _LEAST_SHARE * samples
@@ -102,13 +105,13 @@ def gated(recording: Recording) -> Recording:
 
 
 def _compared(both: Encoders) -> _Compared | None:
-    """Compare both encoders by their own ratio; None where it does not show."""
+    """Compare both encoders by the ratio that they show; None if they show none."""
     turned = both.rotor.turned
-    wraps = np.ptp(turned) <= TURN  # as of one turn, or not further than that
+    wraps = np.ptp(turned) <= TURN  # the encoder may count only within a turn
     turned = np.unwrap(turned) if wraps else turned
     rotor, output = both.at_measured(turned), np.unwrap(both.measured)
     slope = output_by_rotor(rotor, output)
-    if np.array_equal(both.measured, np.round(both.measured)):  # counts, whose unit is not known
+    if np.array_equal(both.measured, np.round(both.measured)):  # counts in an unknown unit
         return None
     if slope is None or abs(slope) * np.ptp(rotor) < _LEAST_TRAVEL:
         return None
@@ -128,7 +131,7 @@ def _compared(both: Encoders) -> _Compared | None:
 
 
 def _steps(error: Array, ideal: Array) -> _Steps | None:
-    """Find the steps of the error that no gear makes; None if they are too many to be faults."""
+    """Find the steps of the error that no gear can make; None if there are too many."""
     level, moved = usual(error), np.diff(ideal)
     calm = np.diff(level)
     fastest = float(np.quantile(np.abs(np.diff(usual(ideal))), 0.98))
@@ -138,7 +141,7 @@ def _steps(error: Array, ideal: Array) -> _Steps | None:
     if np.mean((np.abs(calm) > limit) & ~lost) > _MOST_FAULTS:
         return None
     steps = np.diff(error)
-    # Lost motion stays until the next reversal: what comes back at once is a stray reading.
+    # Lost motion lasts until the next reversal; what comes back at once is a stray reading.
     most = min(1.1 * float(np.max(np.abs(calm), where=lost, initial=0.0)), _MOST_LOST)
     lost = _lost_motion(steps, moved, fastest) & (np.abs(steps) <= most)
     slipped = _slipped(level, ideal, usually)
@@ -146,7 +149,7 @@ def _steps(error: Array, ideal: Array) -> _Steps | None:
 
 
 def _stood_still(time: Array, still: Array, *, timed: bool) -> Observed:
-    """Name the spans of the rows in which an encoder stood still."""
+    """Say when an encoder stood still."""
     times = np.split(time[still], 1 + np.flatnonzero(np.diff(still) > 1))
     unit = ' s' if timed else ''
     spans = [f'{number(each[0], 6)} to {number(each[-1], 6)}{unit}' for each in times]
@@ -155,7 +158,7 @@ def _stood_still(time: Array, still: Array, *, timed: bool) -> Observed:
 
 
 def output_by_rotor(rotor: Array, measured: Array) -> float | None:
-    """Output angle by rotor angle, whatever a few readings say; None if it does not show."""
+    """Robust ratio of output angle to rotor angle; None if the rotor does not move."""
     lag = max(len(rotor) // 40, 1)
     moved, followed = rotor[lag:] - rotor[:-lag], measured[lag:] - measured[:-lag]
     enough = np.abs(moved) >= max(0.5 * float(np.quantile(np.abs(moved), 0.8)), 1e-9)
@@ -163,7 +166,7 @@ def output_by_rotor(rotor: Array, measured: Array) -> float | None:
 
 
 def _frozen(still: Array, other: Array) -> NDArray[np.bool_]:
-    """Find rows of equal readings of one shaft, rad, while the other moves far."""
+    """Find the rows in which one shaft stands still while the other one moves far, (n,)."""
     ends = np.flatnonzero(np.diff(still, prepend=np.nan, append=np.nan))
     found = np.zeros(len(still), bool)
     (long,) = np.nonzero(np.diff(ends) >= _STAYS)
@@ -174,7 +177,7 @@ def _frozen(still: Array, other: Array) -> NDArray[np.bool_]:
 
 
 def _lost_motion(steps: Array, ideal: Array, fastest: float) -> NDArray[np.bool_]:
-    """Find steps of the error, rad, by which the output lags at a reversal of the rotor."""
+    """Find the steps of the error by which the output lags at a reversal of the rotor."""
     ways = np.concatenate([np.zeros(_REVERSAL), np.sign(ideal), np.zeros(_REVERSAL)])
     sums = np.convolve(ways, np.ones(_REVERSAL), 'valid')
     before, after = sums[: len(ideal)], sums[_REVERSAL : _REVERSAL + len(ideal)]
@@ -186,10 +189,10 @@ def _lost_motion(steps: Array, ideal: Array, fastest: float) -> NDArray[np.bool_
 
 
 def _slipped(error: Array, ideal: Array, usually: float) -> NDArray[np.bool_]:
-    """Find steps of the error, (n - 1,), after which it is another one at all angles and ways.
+    """Find steps of the error after which it differs at all angles, in both directions, (n - 1,).
 
-    The error, without stray readings, and the ideal output angle, (n,) each, are in rad, as is
-    `usually`, the step that 98 % have.
+    The error, without stray readings, and the ideal output angle are (n,), rad; `usually` is the
+    98 % quantile of the steps, rad.
     """
     steps = np.diff(error)
     found = np.zeros(len(steps), bool)
@@ -205,17 +208,10 @@ def _slipped(error: Array, ideal: Array, usually: float) -> NDArray[np.bool_]:
 
 
 def _followed(error: Array, rows: Array, steps: _Steps, period: float) -> tuple[Array, list[int]]:
-    """Follow the error, rad, both ways from its longest part without an impossible step.
+    """Follow the error from its longest part without an impossible step, in both directions.
 
-    Args:
-        error: (n,), of rows of the recording.
-        rows: (n,), their numbers.
-        steps: between them; after a gap, the error may have changed by its range, too.
-        period: rad, of the error: what wraps of an encoder add to it.
-
-    Returns:
-        The indices that are reached with stray readings left out, and those before which it jumps
-        for good.
+    After a gap, the error may also have changed by its range in that part. Returns the indices
+    that are reached, without stray readings, and those before which the error jumps for good.
     """
     edges = [0, *(1 + np.flatnonzero(steps.impossible)).tolist(), len(error)]
     parts = list(pairwise(edges))
@@ -228,7 +224,7 @@ def _followed(error: Array, rows: Array, steps: _Steps, period: float) -> tuple[
         for begin, end in others:
             near, far = (begin, end - 1) if way > 0 else (end - 1, begin)
             gap = abs(rows[near] - rows[last]) > _STAYS
-            # Neighbours of a stray reading of the rotor are interpolated to it a little.
+            # The interpolation mixes some of a stray rotor reading into its neighbours.
             level = np.median(error[begin:end][::way][:_STAYS])
             before = np.median(reached[::-way][:_STAYS])
             place = begin if way > 0 else end
@@ -245,7 +241,7 @@ def _followed(error: Array, rows: Array, steps: _Steps, period: float) -> tuple[
 
 
 def _without(both: Encoders, rotor: Array, kept: Array, stray: Array) -> Encoders:
-    """Keep rows, and the rotor's samples of their span but those that are stray themselves."""
+    """Keep some rows, and the rotor's samples around them that are not stray themselves."""
     measured = both.measured
     bad = np.zeros(len(rotor), bool)
     for row in stray.tolist():

@@ -37,11 +37,7 @@ class Measured(NamedTuple):
     @property
     def ends(self) -> tuple[float, ...]:
         """Ends of the interval that contains it, SI; infinite without a ±, none if not known."""
-        if isinstance(self.value, Backlash):
-            return () if self.value.high is None else (self.value.low, self.value.high)
-        if not self.value:
-            return ()
-        return self.value.value - self.value.expanded, self.value.value + self.value.expanded
+        return self.value.ends if self.value else ()
 
 
 def shown(unit: str, *values: float) -> Cell:

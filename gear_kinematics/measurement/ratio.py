@@ -8,27 +8,24 @@ from fractions import Fraction
 from itertools import count, islice
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gear_kinematics.kinematics.gear_ratio import GearRatio, simplest_fraction
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.measurement.recording import Encoders, RecordingError
+from gear_kinematics.measurement.recording import Array, Encoders, RecordingError
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.two_encoders import STEP, EncoderFit, directions
 from gear_kinematics.statistics.uncertainty import Estimate
 
-Array = NDArray[np.float64]
-
 _SETTLED, _MOST_PLAY = 0.05, math.radians(2.0)
-"""After a reversal, left out, as play is crossed: share of the whole travel, and at most, rad."""
+"""Travel left out after a reversal, as play is crossed: share of the whole, and at most, rad."""
 _LEAST = 230  # samples in motion
-_ONE_TURN = 390  # deg of the output: more than a turn, as hardly anything repeats in just one
-_MOST_TURNED = 3600  # deg of the output that can be asked for
+_ONE_TURN = 390  # deg of the output: more than a turn, within which hardly anything repeats
+_MOST_TURNED = 3600  # deg of the output, at most, that the user is asked to turn
 _BY_CHANCE = 0.05  # probability below which a simple fraction in the interval is no coincidence
 _MAX_DISTANCE = 2
-"""Expanded uncertainties within which a fraction may be the true ratio: of 20 recordings, one has
-it beyond a single one."""
-_BEYOND = 0.05  # share of those: a coincidence has to be that much less likely in their place
+"""Expanded uncertainties within which a fraction may be the true ratio, since one recording in 20
+has it beyond a single one."""
+_BEYOND = 0.05  # share of such recordings: a coincidence must be as much less likely there
 _CANDIDATES = 10
 
 
@@ -37,12 +34,12 @@ class RatioEstimate:
     """A gear ratio as it was measured."""
 
     measured: Estimate
-    candidates: tuple[Fraction, ...]  #: what may be the ratio, by denominator; or what is taken
-    taken: GearRatio | None = None  #: simplest fraction that may be the ratio, if not by chance
-    advice: Observed | None = None  #: what to record to tell the ratio; None if it is taken
+    candidates: tuple[Fraction, ...]  #: possible ratios by denominator, or the one that is taken
+    taken: GearRatio | None = None  #: simplest possible ratio, unless it may be a coincidence
+    advice: Observed | None = None  #: what to record to determine the ratio; None if it is taken
 
     def fits(self, ratio: Fraction) -> bool:
-        """Return whether this may be the true ratio."""
+        """Return whether a ratio may be the true one."""
         return abs(self.measured.value - ratio) <= _MAX_DISTANCE * self.measured.expanded
 
 
@@ -50,7 +47,7 @@ def check_ratio(encoders: Encoders, assumed: GearRatio) -> Observed | None:
     """Compare a recording with a ratio; return what is wrong, if anything.
 
     Raises:
-        RecordingError: if the errors cover a whole turn; within the turn they then mean nothing.
+        RecordingError: if the error reaches all angles of a turn, so that it has no meaning.
     """
     error, wrong = encoders.error(assumed), wrong_ratio(encoders, assumed)
     if float(np.ptp(np.remainder(error - error[0] + 0.5 * TURN, TURN))) >= 0.5 * TURN:
@@ -60,10 +57,10 @@ def check_ratio(encoders: Encoders, assumed: GearRatio) -> Observed | None:
 
 
 def wrong_ratio(encoders: Encoders, assumed: Fraction) -> Observed | None:
-    """Find which ratio a recording has, if it is clearly not the assumed one.
+    """Find the ratio of a recording, if it is clearly not the assumed one.
 
-    It is found if, between samples, the output turns at most half a turn more or less than by the
-    assumed one.
+    This needs an output that, between samples, turns at most half a turn more or less than the
+    assumed ratio implies.
     """
     found = _estimated(encoders, assumed)
     if found and found.fits(assumed):
@@ -85,7 +82,7 @@ def wrong_ratio(encoders: Encoders, assumed: Fraction) -> Observed | None:
 
 
 def _estimated(encoders: Encoders, assumed: Fraction) -> RatioEstimate | None:
-    """Estimate the ratio from one by which the output turns about as far, if that is possible."""
+    """Estimate the ratio, starting from one that is about right; None if that is impossible."""
     ideal = encoders.at_measured(encoders.ideal(assumed))
     time = encoders.seconds if encoders.timed else None
     output = ideal + encoders.error(assumed)
@@ -100,8 +97,8 @@ def estimate_ratio(
 ) -> RatioEstimate:
     """Estimate the ratio by the fit of both encoders.
 
-    The angles, (n,) each, rad, count turns, and are in the order of time, s. Between samples that
-    are `period` apart, s, the rotor is interpolated; 0 if it is not.
+    The multi-turn angles, (n,) each, rad, are in the order of time, s. The rotor is interpolated
+    between samples that are `period` apart, s; 0 if it is not.
 
     Raises:
         RecordingError: if there are too few samples, or the output hardly turns with the rotor, or
@@ -130,7 +127,7 @@ def estimate_ratio(
 
 
 def _judged(measured: Estimate, turned: float) -> RatioEstimate:
-    """Take the simplest fraction that may be the ratio, or say by how many degrees to turn."""
+    """Take the simplest fraction that may be the ratio, or advise by how many degrees to turn."""
     value, spread = measured.value, measured.expanded
     around = _MAX_DISTANCE * spread
     low, high = Fraction(value - around), Fraction(value + around)
@@ -153,7 +150,7 @@ def _judged(measured: Estimate, turned: float) -> RatioEstimate:
 
 
 def _fractions(low: Fraction, high: Fraction, least: int, value: float) -> Iterator[Fraction]:
-    """Fractions in an interval by denominator, the nearest to a value first."""
+    """Yield the fractions in an interval by denominator, those nearest to a value first."""
     for q in count(least):
         whole = range(math.ceil(low * q), math.floor(high * q) + 1)
         for p in sorted(whole, key=lambda p: abs(p - value * q)):

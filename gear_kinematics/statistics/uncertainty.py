@@ -72,6 +72,11 @@ class Estimate:
         return math.inf if self.uncertainty is None else self.uncertainty
 
     @property
+    def ends(self) -> tuple[float, float]:
+        """Ends of the interval of the expanded uncertainty; infinite where that is not known."""
+        return self.value - self.expanded, self.value + self.expanded
+
+    @property
     def clear(self) -> bool:
         """Whether the expanded uncertainty is known and does not exceed the value."""
         return self.expanded <= abs(self.value)

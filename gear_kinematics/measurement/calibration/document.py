@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The reports on a calibration and on its check; docs/calibration.md describes their JSON."""
+"""Reports on a calibration and on its check; docs/calibration.md describes their JSON."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -12,28 +12,15 @@ from gear_kinematics.measurement.json_values import plain
 from gear_kinematics.measurement.recording import Array
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.wording import ARC_MINUTES, plus_minus
-from gear_kinematics.report.document import (
-    Cell,
-    Document,
-    Figure,
-    Layout,
-    Line,
-    Panel,
-    Pen,
-    Section,
-    Sentence,
-    Table,
-    Verdict,
-    number,
-    printable,
-)
+from gear_kinematics.report import document as doc
+from gear_kinematics.report.document import number, printable
 from gear_kinematics.statistics.uncertainty import COVERAGE
 
 
-def document(fit: Fit, target: str) -> Document:
-    """Return the document on a calibration, whose file is the target."""
+def document(fit: Fit, target: str) -> doc.Document:
+    """Return the document on a calibration whose file is `target`."""
     made, errors = fit.calibration, fit.calibration.validation
-    verdict = Verdict.PASS if fit.helps else Verdict.FAIL
+    verdict = doc.Verdict.PASS if fit.helps else doc.Verdict.FAIL
     if fit.helps:
         what = Observation.ERROR_FALLS
     elif errors.rms_after < errors.rms_before and not interval_holds(made):
@@ -46,7 +33,7 @@ def document(fit: Fit, target: str) -> Document:
         inside=100.0 * errors.coverage,
         half_width=made.half_width,
     )
-    terms = Table.of_items(
+    terms = doc.Table.of_items(
         {
             'term': lambda term: term.name,
             'amplitude [arcmin]': lambda term: plus_minus(term.amplitude, ARC_MINUTES),
@@ -57,11 +44,11 @@ def document(fit: Fit, target: str) -> Document:
         ('', 'likely cause'),
     )
     sentences = [*map(str, _remarks(fit))]
-    section = Section(
+    section = doc.Section(
         printable(target),
         (terms,),
         verdict,
-        (Sentence('finding', str(finding)),),
+        (doc.Sentence('finding', str(finding)),),
         tuple(map(printable, sentences)),
         _figure(made.half_width, fit.output, fit.before, fit.after),
     )
@@ -82,11 +69,11 @@ def document(fit: Fit, target: str) -> Document:
         ],
         'remarks': sentences,
     }
-    return Document('gearkin calibrate', (section,), data, verdict)
+    return doc.Document('gearkin calibrate', (section,), data, verdict)
 
 
 def _remarks(fit: Fit) -> Iterator[str | Observed]:
-    """Yield the basis and the limits of the calibration."""
+    """Yield what the calibration is based on, and what limits it."""
     for recording, delay in zip(fit.recordings, fit.delays, strict=True):
         yield from (f'{recording.name}: {text}' for text in recording.sentences)
         if delay and delay.clear:
@@ -95,27 +82,30 @@ def _remarks(fit: Fit) -> Iterator[str | Observed]:
         yield Observation.NOT_FITTED(term=name, cause=cause)
 
 
-def _figure(half_width: float, angle: Array, before: Array, after: Array) -> Figure:
-    """Draw errors before and after, rad, over the output angle, rad, with the interval."""
+def _figure(half_width: float, angle: Array, before: Array, after: Array) -> doc.Figure:
+    """Draw the errors before and after, rad, over the output angle, rad, and the interval."""
     width = half_width * ARC_MINUTES
     lines = [
-        Line.reduced(name, pen, np.degrees(angle), error * ARC_MINUTES)
-        for name, pen, error in (('before', Pen.FAINT, before), ('after', Pen.FIRST, after))
+        doc.Line.reduced(name, pen, np.degrees(angle), error * ARC_MINUTES)
+        for name, pen, error in (
+            ('before', doc.Pen.FAINT, before),
+            ('after', doc.Pen.FIRST, after),
+        )
     ]
-    panel = Panel(
+    panel = doc.Panel(
         'error over the output angle, of samples that were not fitted',
         'output angle [°]',
         'measured less expected [arcmin]',
         tuple(lines),
         levels=((-width, ''), (width, '')),
     )
-    return Figure((panel,))
+    return doc.Figure((panel,))
 
 
-def check_document(path: Path, half_width: float, judgements: Sequence[Judgement]) -> Document:
-    """Return the document on a calibration file, with a section for each recording.
+def check_document(path: Path, half_width: float, judgements: Sequence[Judgement]) -> doc.Document:
+    """Return the document on a check, with a section for each recording.
 
-    The half width of its interval is in rad.
+    The half width of the calibration's interval is in rad.
     """
     data = {
         'schema': 'gear_kinematics/calibration_check',
@@ -123,15 +113,15 @@ def check_document(path: Path, half_width: float, judgements: Sequence[Judgement
         'calibration': str(path),
         'recordings': plain(judgements),
     }
-    return Document(
+    return doc.Document(
         f'gearkin calibrate --check {printable(path.name)}',
         tuple(_section(half_width, one) for one in judgements),
         data,
-        Verdict.PASS if all(one.holds for one in judgements) else Verdict.FAIL,
+        doc.Verdict.PASS if all(one.holds for one in judgements) else doc.Verdict.FAIL,
     )
 
 
-def _section(half_width: float, judged: Judgement) -> Section:
+def _section(half_width: float, judged: Judgement) -> doc.Section:
     inside = 100.0 * judged.within_interval
     if judged.fits:
         finding = (Observation.HOLDS if judged.holds else Observation.DOES_NOT_HELP)(
@@ -148,12 +138,12 @@ def _section(half_width: float, judged: Judgement) -> Section:
         ('delay of the output', delay, 'ms'),
         ('wider for what was not calibrated', number(100.0 * judged.uncalibrated), '% of samples'),
     )
-    cells = [(name, Cell(value, unit=unit)) for name, value, unit in values]
-    return Section(
+    cells = [(name, doc.Cell(value, unit=unit)) for name, value, unit in values]
+    return doc.Section(
         printable(judged.name),
-        (Table.of_values(Layout.LINES, *cells),),
-        Verdict.PASS if judged.holds else Verdict.FAIL,
-        (Sentence('finding', str(finding)),),
+        (doc.Table.of_values(doc.Layout.LINES, *cells),),
+        doc.Verdict.PASS if judged.holds else doc.Verdict.FAIL,
+        (doc.Sentence('finding', str(finding)),),
         tuple(map(printable, judged.remarks)),
         _figure(half_width, judged.output, judged.before, judged.after),
     )

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The parameter file of a commissioned gear, and the report on it or on the check of a file."""
+"""The parameter file of a commissioned gear, and the report on it or on the check of one."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -15,25 +15,15 @@ from gear_kinematics.measurement.wording import plus_minus, shown
 from gear_kinematics.parameters.arm_file import add_actuators
 from gear_kinematics.parameters.new_config import arm_head, quoted, start_command, write_new
 from gear_kinematics.parameters.node_parameters import default_config
-from gear_kinematics.report.document import (
-    Document,
-    Figure,
-    Line,
-    Panel,
-    Pen,
-    Section,
-    Sentence,
-    Table,
-    Verdict,
-    printable,
-)
+from gear_kinematics.report import document as doc
+from gear_kinematics.report.document import printable
 
 _WIDTH = 100  # characters of a comment in a line
 _INDENT = '    '
 
 
 def actuator_file(result: Commissioning, name: str = default_config().name) -> str:
-    """Return the text of a parameter file of a name; ValueError if the ratio is open."""
+    """Return the text of the parameter file `name`; ValueError if the ratio is undetermined."""
     command = _start(result, name)
     return '\n'.join(
         [
@@ -48,13 +38,13 @@ def actuator_file(result: Commissioning, name: str = default_config().name) -> s
 
 
 def write_file(result: Commissioning, path: Path, actuator: str = '') -> str:
-    """Write a gear to a new parameter file, or as an actuator to that of an arm, new or not.
+    """Write a gear to a new parameter file, or as an actuator to a new or existing one of an arm.
 
     Returns:
         The command that starts the node with the file.
 
     Raises:
-        ValueError: if the ratio is open, or the file cannot be written.
+        ValueError: if the ratio is undetermined, or the file cannot be written.
     """
     command = _start(result, path.name)
     if actuator:
@@ -66,7 +56,7 @@ def write_file(result: Commissioning, path: Path, actuator: str = '') -> str:
 
 
 def _start(result: Commissioning, name: str) -> str:
-    """Return the command that starts the node with a file; ValueError if the ratio is open."""
+    """Return the command that starts the node; ValueError if the ratio is undetermined."""
     if not result.between:
         raise ValueError(str(result.answer))
     return start_command(result.request.rotor.topic, name, result.request.output.topic)
@@ -77,7 +67,7 @@ def _found(result: Commissioning) -> str:
 
 
 def _values(result: Commissioning) -> Iterator[str]:
-    """Yield the lines of parameters, each below its evidence, and what else was found."""
+    """Yield the lines of the parameters, each below its evidence, and further notes."""
     for found in result.values:
         if found.value is None:
             yield from _comment(f'Open: {found.name}: {found.evidence}.')
@@ -98,8 +88,8 @@ def _yaml(value: str | float) -> str:
     return quoted(text) if isinstance(value, str) else text
 
 
-def document(result: Commissioning, target: str) -> Document:
-    """Return the document on a commissioning, whose file is the target, or which judges it."""
+def document(result: Commissioning, target: str) -> doc.Document:
+    """Return the document on a commissioning that wrote, or judged, the file `target`."""
     file, ratio, answer = result.request.file, result.ratio, result.answer
     wrong = result.changes(file) if file else {}
     if wrong:
@@ -113,16 +103,18 @@ def document(result: Commissioning, target: str) -> Document:
         'value': lambda v: printable(shown(v.value)),
         'evidence': lambda v: printable(str(v.evidence)),
     }
-    table = Table.of_items(columns, result.values, ('', *columns))
+    table = doc.Table.of_items(columns, result.values, ('', *columns))
     remarks, names = [*map(str, result.notes)], [joint.recording.name for joint in result.joints]
     for joint in result.joints:
         remarks += [f'{joint.recording.name}: {what}' for what in joint.recording.sentences]
-    verdict = None if result.between and not wrong else Verdict.FAIL
-    section = Section(
+    verdict = None if result.between and not wrong else doc.Verdict.FAIL
+    section = doc.Section(
         printable(', '.join(names)),
         (table,),
         verdict,
-        tuple(Sentence('finding', printable(str(each))) for each in (answer, *result.questions)),
+        tuple(
+            doc.Sentence('finding', printable(str(each))) for each in (answer, *result.questions)
+        ),
         tuple(map(printable, remarks)),
         _figure(result),
     )
@@ -138,11 +130,11 @@ def document(result: Commissioning, target: str) -> Document:
         'contradicted': [*wrong],
         'remarks': [*remarks, *result.questions],
     }
-    return Document('gearkin commission', (section,), data, verdict)
+    return doc.Document('gearkin commission', (section,), data, verdict)
 
 
-def _figure(result: Commissioning) -> Figure | None:
-    """The rotor over the output with the fitted line, and what is left over it."""
+def _figure(result: Commissioning) -> doc.Figure | None:
+    """Draw the rotor over the output with the fitted line, and the error about it."""
     joint, ratio, label = result.longest, result.ratio, 'output angle [°]'
     if not ratio:
         return None
@@ -150,14 +142,14 @@ def _figure(result: Commissioning) -> Figure | None:
     slope = float(result.between or ratio.measured.value) / 360.0  # turns per degree
     zero = np.mean(rotor - slope * output)
     ends = np.array([output.min(), output.max()])
-    recorded = Line.reduced('recorded', Pen.THIRD, output, rotor)
+    recorded = doc.Line.reduced('recorded', doc.Pen.THIRD, output, rotor)
     name = f'ratio {result.between or plus_minus(ratio.measured)}'
-    fitted = Line(name, Pen.MODEL, ends, slope * ends + zero)
-    error = Line.reduced('error', Pen.FIRST, output, output - (rotor - zero) / slope)
+    fitted = doc.Line(name, doc.Pen.MODEL, ends, slope * ends + zero)
+    error = doc.Line.reduced('error', doc.Pen.FIRST, output, output - (rotor - zero) / slope)
     left = 'measured less computed output [°]'
-    return Figure(
+    return doc.Figure(
         (
-            Panel('rotor over output', label, 'rotor [turns]', (recorded, fitted)),
-            Panel('error about the line', label, left, (error,)),
+            doc.Panel('rotor over output', label, 'rotor [turns]', (recorded, fitted)),
+            doc.Panel('error about the line', label, left, (error,)),
         )
     )

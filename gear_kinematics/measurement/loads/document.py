@@ -21,45 +21,35 @@ from gear_kinematics.measurement.loads.recorded import (
 )
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.parameters.arm import labelled
-from gear_kinematics.report.document import (
-    PENS,
-    Document,
-    Figure,
-    Line,
-    Panel,
-    Pen,
-    Section,
-    Sentence,
-    Table,
-    Verdict,
-    number,
-    printable,
-)
+from gear_kinematics.report import document as doc
+from gear_kinematics.report.document import number, printable
 from gear_kinematics.report.mechanism import MovingMechanism
 
 _LEVELS = 'greatest force', '99.9 % of the forces are below', 'mean force'
-_MOST_MOMENTS = 10  # in words and as links; all are in the JSON
+_MOST_MOMENTS = 10  # number shown in sentences and as links; the JSON has all
 _FRAMES = 1000  # of the moving mechanism
-_AROUND = 50  # more frames before and after the begin of each moment
+_AROUND = 50  # further frames before and after the beginning of each moment
 
 
 class LoadReport(NamedTuple):
     """The report on one recording, or why there is none."""
 
-    section: Section | None
+    section: doc.Section | None
     data: dict[str, Any]
-    error: str  # in one line that names the recording: of damage, up to which it was read, too
-    taken: str = ''  # columns that were taken from a table
+    error: str  # one line that names the recording; also damage at which reading ended
+    taken: str = ''  # columns that were read from a table
 
 
-def document(reports: Sequence[LoadReport]) -> Document:
+def document(reports: Sequence[LoadReport]) -> doc.Document:
     """Join the reports on recordings."""
     sections = tuple(report.section for report in reports if report.section)
     verdicts = {section.verdict for section in sections}
-    verdict = next((each for each in (Verdict.FAIL, Verdict.PASS) if each in verdicts), None)
+    verdict = next(
+        (each for each in (doc.Verdict.FAIL, doc.Verdict.PASS) if each in verdicts), None
+    )
     data = {'schema': 'gear_kinematics/loads', 'version': 1}
     data |= {'recordings': [report.data for report in reports if report.section]}
-    return Document('gearkin loads', sections, data, verdict)
+    return doc.Document('gearkin loads', sections, data, verdict)
 
 
 def report(task: LoadTask, progress: ReportProgress | None = None) -> LoadReport:
@@ -91,17 +81,17 @@ def _report(task: LoadTask, loads: RecordedLoads) -> LoadReport:
     if question := loads.question:
         answer = Observation.IMPLAUSIBLE(answer=answer, question=question)
     if preload and (moments or not question):
-        verdict = Verdict.FAIL if moments else Verdict.PASS
+        verdict = doc.Verdict.FAIL if moments else doc.Verdict.PASS
     name, actuator = printable(task.bag.name), task.parameters.actuator
-    section = Section(
+    section = doc.Section(
         f'{name}: {actuator}' if actuator else name,
         (_table(forces),),
         verdict,
         tuple(_findings(answer.sentence, moments)),
         tuple(map(str, _remarks(task, loads, loss))),
-        Figure((_over_time(loads),), stacked=True),
+        doc.Figure((_over_time(loads),), stacked=True),
         _moving(loads, [moment.stamp for moment in moments[:_MOST_MOMENTS]]),
-        below=Figure(tuple(_over_angle(forces)), columns=2),
+        below=doc.Figure(tuple(_over_angle(forces)), columns=2),
     )
     data = {
         'name': task.bag.name,
@@ -121,7 +111,7 @@ def _report(task: LoadTask, loads: RecordedLoads) -> LoadReport:
 
 
 def _answer(loads: RecordedLoads, moments: Sequence[Moment], source: str) -> Observed:
-    """Say whose gear it is, whether both branches stayed in mesh, and with what preload."""
+    """Say whose gear it is, whether both branches stayed in mesh, and which preload suffices."""
     seconds, preload = loads.time[-1], abs(loads.parameters.preload)
     known = {
         'ratio': loads.parameters.mechanism.gear_ratio,
@@ -138,8 +128,8 @@ def _answer(loads: RecordedLoads, moments: Sequence[Moment], source: str) -> Obs
     return Observation.OUT_OF_MESH(**known, count=count, total=total, start=start)
 
 
-def _findings(answer: str, moments: Sequence[Moment]) -> Iterator[Sentence]:
-    yield Sentence('error' if moments else 'finding', answer)
+def _findings(answer: str, moments: Sequence[Moment]) -> Iterator[doc.Sentence]:
+    yield doc.Sentence('error' if moments else 'finding', answer)
     for moment in moments[:_MOST_MOMENTS]:
         found = Observation.BRANCH_OUT_OF_MESH(
             branch=moment.branch,
@@ -147,7 +137,7 @@ def _findings(answer: str, moments: Sequence[Moment]) -> Iterator[Sentence]:
             start=moment.start,
             torque=-moment.least_margin,
         )
-        yield Sentence('error', str(found), moment.start)
+        yield doc.Sentence('error', str(found), moment.start)
 
 
 def _remarks(task: LoadTask, loads: RecordedLoads, loss: float) -> Iterator[Observed]:
@@ -160,8 +150,8 @@ def _remarks(task: LoadTask, loads: RecordedLoads, loss: float) -> Iterator[Obse
         yield Observation.SLOT_LOSS(friction=task.slot_friction, percent=100.0 * loss)
 
 
-def _table(forces: Sequence[Force]) -> Table:
-    return Table.of_items(
+def _table(forces: Sequence[Force]) -> doc.Table:
+    return doc.Table.of_items(
         {
             'force': lambda force: f'{force.name} [{force.unit}]',
             'greatest': lambda force: number(force.greatest),
@@ -178,35 +168,35 @@ def _known(value: float) -> str:
     return number(value) if math.isfinite(value) else ''
 
 
-def _over_time(loads: RecordedLoads) -> Panel:
+def _over_time(loads: RecordedLoads) -> doc.Panel:
     if loads.parameters.preload:
         title, values = 'margin to the loss of mesh', loads.margin
     else:
         title, values = 'torque of the output', loads.torque
-    line = Line.reduced(title, Pen.FIRST, loads.time, values)
+    line = doc.Line.reduced(title, doc.Pen.FIRST, loads.time, values)
     levels = ((0.0, 'out of mesh below'),) if loads.parameters.preload else ()
-    return Panel(title, 'time [s]', f'{title} [N·m]', (line,), levels=levels)
+    return doc.Panel(title, 'time [s]', f'{title} [N·m]', (line,), levels=levels)
 
 
-def _over_angle(forces: Sequence[Force]) -> Iterator[Panel]:
+def _over_angle(forces: Sequence[Force]) -> Iterator[doc.Panel]:
     """Draw the forces of teeth and cams over the angle of the rotor, and their spectrum."""
     angle = (np.arange(ANGLE_BINS) + 0.5) * 360.0 / ANGLE_BINS
-    drawn = [*zip((force for force in forces if force.unit == 'N'), cycle(PENS))]
+    drawn = [*zip((force for force in forces if force.unit == 'N'), cycle(doc.PENS))]
     for k, title in enumerate(_LEVELS):
         lines = tuple(
-            Line(force.name, pen, angle, np.array(force.by_rotor_angle)[:, k])
+            doc.Line(force.name, pen, angle, np.array(force.by_rotor_angle)[:, k])
             for force, pen in drawn
         )
-        yield Panel(title, 'angle of the rotor [°]', 'force [N]', lines)
+        yield doc.Panel(title, 'angle of the rotor [°]', 'force [N]', lines)
     spectra = ((force, pen, *np.transpose(force.cycles)) for force, pen in drawn if force.cycles)
-    lines = tuple(Line(force.name, pen, x, np.cumsum(y)) for force, pen, x, y in spectra)
+    lines = tuple(doc.Line(force.name, pen, x, np.cumsum(y)) for force, pen, x, y in spectra)
     if lines:
         title = 'cycles of at least this range'
-        yield Panel('load spectrum', 'range [N]', title, lines, scale='log')
+        yield doc.Panel('load spectrum', 'range [N]', title, lines, scale='log')
 
 
 def _moving(loads: RecordedLoads, begins: Sequence[int]) -> MovingMechanism:
-    """The mechanism over the whole recording, and closer around the stamps of begins."""
+    """Show the mechanism over the whole recording, in more detail around the given stamps."""
     last, begun = len(loads.stamp) - 1, np.flatnonzero(np.isin(loads.stamp, begins))
     around = begun[:, np.newaxis] + np.arange(-_AROUND, _AROUND)
     rows = np.append(np.linspace(0, last, _FRAMES), around)
@@ -222,5 +212,5 @@ def _moving(loads: RecordedLoads, begins: Sequence[int]) -> MovingMechanism:
         turned,
         turned / float(mechanism.gear_ratio),
         int(np.searchsorted(kept, begun[0])) if len(begun) else 0,
-        torques / (np.abs(torques).max() or 1.0),  # as are the forces
+        torques / (np.abs(torques).max() or 1.0),  # shares, as the forces are
     )
