@@ -15,7 +15,7 @@ from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.measurement.calibration import fit, judge
 from gear_kinematics.measurement.calibration.document import check_document, document
-from gear_kinematics.measurement.reading import read_encoders
+from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import Recording, RecordingError
 from gear_kinematics.parameters import NodeParameters
 
@@ -86,6 +86,6 @@ def _read(options: argparse.Namespace, config: NodeParameters) -> Iterator[Recor
     for path in options.recordings:
         try:
             with bags.naming(path), message_progress(path.name, quiet=options.quiet) as progress:
-                yield read_encoders(path, config, sources(options), progress)
+                yield read(path, config, sources(options), progress, both=True)
         except (ValueError, OSError) as error:
             complain(error)

@@ -21,7 +21,7 @@ from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.measurement.commissioning import analysis
 from gear_kinematics.measurement.commissioning.document import document, write_file
 from gear_kinematics.measurement.formats import is_table, open_bag
-from gear_kinematics.measurement.reading import read_encoders
+from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.rotor_fields import questions
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.arm_file import check_new
@@ -94,7 +94,7 @@ def _read(options: argparse.Namespace, request: analysis.Request) -> analysis.Co
         joints = replace(parameters, rotor_joint=rotor.joint, output_encoder_joint=output.joint)
         topics = replace(known, rotor_topic=rotor.topic, encoder_topic=output.topic)
         with message_progress(path.name, quiet=options.quiet) as progress:
-            recordings.append(read_encoders(path, joints, topics, progress))
+            recordings.append(read(path, joints, topics, progress, both=True))
     result = analysis.commission(recordings, request)
     asked = dict[str, None]()
     for recording in recordings:

@@ -61,8 +61,8 @@ class ErrorWindow:
         self._drop(int(np.searchsorted(np.array(self._stamps), self._stamps[-1] - self._length)))
         error, turns, ideal, direction, speed, deviation, half_width = np.array(self._columns)
         bins = (turns - turns[0]) * _BINS + np.floor(ideal / TURN * _BINS)
-        ways = direction > 0, direction < 0
-        forward, backward = (_means(bins[rows], error[rows], speed[rows]) for rows in ways)
+        directions = direction > 0, direction < 0
+        forward, backward = (_means(bins[rows], error[rows], speed[rows]) for rows in directions)
         _, there, back = np.intersect1d(forward[0], backward[0], return_indices=True)
         _, difference, speed_difference = backward[:, back] - forward[:, there]
         known = np.isfinite(half_width)

@@ -80,7 +80,7 @@ class Limits:
         """Judge a recording by each limit, at the less favourable end of the interval."""
         limits = {name.replace('_', ' '): limit for name, limit in asdict(self).items()}
         figures, computed = report.figures, report.recording.computed
-        hidden = figures is not None and figures.held_by_friction
+        hidden = figures is not None and figures.below_friction
         for figure in report.main_figures:
             if (limit := limits.get(figure.name)) is None:
                 continue
@@ -113,7 +113,7 @@ def remarks(report: LostMotion) -> Iterator[Observed]:
     """Yield what the figures are based on, and what limits their use."""
     if found := report.figures:
         yield (Observation.MEASURED_AT_OUTPUT if report.measured else Observation.INFERRED)()
-        if found.held_by_friction and found.lost_motion and found.friction:
+        if found.below_friction and found.lost_motion and found.friction:
             torque, friction = LOST_MOTION_SHARE * found.rated_torque, found.friction.value
             yield Observation.READ_BELOW_FRICTION(torque=torque, friction=friction)
         # If the peaks differ, the zero of the torque is in doubt.

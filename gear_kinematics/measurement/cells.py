@@ -79,7 +79,7 @@ class Element(NamedTuple):
     """An element of the arrays in the cells of a column, which are written as in JSON."""
 
     place: int
-    beside: int  # place of the column that names the elements, if any; otherwise `place`
+    namer: int  # place of the column that names the elements, if any; otherwise `place`
     key: int | str  # its index, or its name as in sensor_msgs/JointState
 
     def of(self, frame: Any) -> Any:
@@ -89,7 +89,7 @@ class Element(NamedTuple):
         rows: Iterable[Iterable[tuple[Any, str]]]
         arrays = map(_array, frame[self.place])
         if isinstance(self.key, str):
-            names = map(cache(_array), frame[self.beside])
+            names = map(cache(_array), frame[self.namer])
             rows = (zip(*pair, strict=False) for pair in zip(names, arrays, strict=True))
         else:
             rows = map(enumerate, arrays)
@@ -113,9 +113,9 @@ def elements_of(lines: Sequence[str], names: Sequence[str], separator: str) -> d
             continue
         named_by = column.rpartition('position')[0] + 'name'
         if column.endswith('position') and named_by in names:
-            beside = names.index(named_by)
-            for key in dict.fromkeys(key for row in rows for key in _array(row[beside])):
-                found[f'{key} {column}'] = Element(place, beside, key)
+            namer = names.index(named_by)
+            for key in dict.fromkeys(key for row in rows for key in _array(row[namer])):
+                found[f'{key} {column}'] = Element(place, namer, key)
         else:
             many = max(map(len, arrays))
             keys = [f'{column}[{k}]' for k in range(many)] if many > 1 else [column]

@@ -20,7 +20,7 @@ _EXCEL = 25_569
 """Days between the epoch of workbooks and 1970."""
 _UNREADABLE = 0.01  # greatest share of times that cannot be read
 _LATE_ROWS = 25  # most successive rows out of order; more show a clock that was set back
-_FEWEST_AGAIN, _EVEN = 2, 1.5
+_FEWEST_AGAIN, _LONGEST_STEP = 2, 1.5
 """Least number of rows that repeat times after a clock was set back; their greatest step, in usual
 steps."""
 _DAY = 86_400 * SECOND
@@ -136,7 +136,7 @@ def _restore(stamp: Array) -> Iterator[tuple[int, int]]:
         before, again = stamp[k - 1], stamp[k:]
         passed = np.flatnonzero(again > before)
         rise = np.diff(again[: passed[0] + 1 if len(passed) else len(again)])
-        if len(rise) >= _FEWEST_AGAIN and rise.min() >= 0 and rise.max() <= _EVEN * usual:
+        if len(rise) >= _FEWEST_AGAIN and rise.min() >= 0 and rise.max() <= _LONGEST_STEP * usual:
             size = int(before + usual - stamp[k])
             stamp[k:] += size
             yield before, size

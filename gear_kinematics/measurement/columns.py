@@ -215,21 +215,21 @@ def _column(role: str, name: str, given: Sources, common: str, below: Mapping[st
 def _role(name: str) -> tuple[str, tuple[int, ...]]:
     """Return the role of a column by its name, if any, and its rank, lowest for the likeliest."""
     words, unit = _split(name)
-    told = [word for word in words if word not in _FILLING and not word.isdigit()]
+    keys = [word for word in words if word not in _FILLING and not word.isdigit()]
     if not words and unit in _UNITS['time']:
         return 'time', (9,)
-    if told and {*told} <= {*_TIME} and (told != ['x'] or 'value' in words):
+    if keys and {*keys} <= {*_TIME} and (keys != ['x'] or 'value' in words):
         # A message's stamp is the time of sampling, that of a log the time of reception.
-        first = 0 if told == ['stamp'] and 'header' in words and not unit else len(words)
-        return 'time', (first, _TIME.index(told[0]))
-    sides = [one for one, those in (('rotor', _ROTOR), ('output', _OUTPUT)) if {*told} & {*those}]
-    kinds = [one for one, those in (('torque', _TORQUE), ('angle', _ANGLE)) if {*told} & {*those}]
-    unclear = len(kinds) > 1 or (len(sides) > 1 and 'torque' not in kinds and 'joint' not in told)
-    if not told or not {*told} <= {*_KNOWN_WORDS} or '/' in unit or unit in _SPEEDS or unclear:
+        first = 0 if keys == ['stamp'] and 'header' in words and not unit else len(words)
+        return 'time', (first, _TIME.index(keys[0]))
+    sides = [one for one, those in (('rotor', _ROTOR), ('output', _OUTPUT)) if {*keys} & {*those}]
+    kinds = [one for one, those in (('torque', _TORQUE), ('angle', _ANGLE)) if {*keys} & {*those}]
+    unclear = len(kinds) > 1 or (len(sides) > 1 and 'torque' not in kinds and 'joint' not in keys)
+    if not keys or not {*keys} <= {*_KNOWN_WORDS} or '/' in unit or unit in _SPEEDS or unclear:
         return '', ()
-    if 'current' in told and 'torque' not in kinds:
+    if 'current' in keys and 'torque' not in kinds:
         return '', ()
-    rank = (len(words), *map(_KNOWN_WORDS.index, told))
+    rank = (len(words), *map(_KNOWN_WORDS.index, keys))
     return 'torque' if 'torque' in kinds else (*sides, 'angle')[0], rank
 
 
@@ -290,8 +290,8 @@ def time_among(names: Sequence[str]) -> tuple[str, str]:
     return name, _split(name)[1]
 
 
-def nanoseconds_beside(name: str, names: Sequence[str]) -> str | None:
+def nanoseconds_of(name: str, names: Sequence[str]) -> str | None:
     """Return the column of nanoseconds that belongs to a column of whole seconds, as in ROS."""
     words, unit = _split(name)
-    beside = {_split(one)[0]: one for one in names if _split(one)[1] in _NANOSECONDS}
-    return beside.get(words) if TIME_UNITS.get(unit) == TIME_UNITS['s'] else None
+    others = {_split(one)[0]: one for one in names if _split(one)[1] in _NANOSECONDS}
+    return others.get(words) if TIME_UNITS.get(unit) == TIME_UNITS['s'] else None

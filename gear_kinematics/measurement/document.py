@@ -181,12 +181,12 @@ def _ramp_panel(ramps: Ramps, at: float) -> doc.Panel:
 
 def _error_panel(motion: TransmissionFigures) -> doc.Panel:
     lines = []
-    for way, name, pen in _DIRECTIONS:
-        rows = motion.direction == way
+    for sign, name, pen in _DIRECTIONS:
+        rows = motion.direction == sign
         if rows.any():
             error = (motion.error[rows] - motion.offset) * ARC_MINUTES
             angle = np.degrees(motion.angle[rows])
-            lines.append(doc.Line.reduced(name, pen, angle, error, points=way == 0))
+            lines.append(doc.Line.reduced(name, pen, angle, error, points=sign == 0))
     title, label = 'transmission error less its mean', 'measured less ideal [arcmin]'
     return doc.Panel(title, 'output angle [°]', label, tuple(lines))
 

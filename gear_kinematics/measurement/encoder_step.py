@@ -31,7 +31,7 @@ _CHANCE = 1e-3  # greatest probability that readings without a step fit one
 _EXACT, _BETTER = 1e-3, 0.3
 """Distance, in steps, below which no finer step is tried; share of the distance so far that a
 finer step must reach. By chance, half a step fits twice as badly."""
-_EVEN = 0.9
+_STEADY = 0.9
 """Share of changes equal to the previous one from which on levels are those of an even motion, not
 of an encoder."""
 
@@ -136,7 +136,7 @@ def _fitted(levels: Array, readings: Array, step: float) -> tuple[float, float]:
     large = levels[_large(levels)] / (2.0 * step)
     changes = np.diff(np.round((readings - zero) / step))
     moving = changes[1:] != 0.0
-    even = moving.any() and np.mean(changes[1:][moving] == changes[:-1][moving]) >= _EVEN
+    even = moving.any() and np.mean(changes[1:][moving] == changes[:-1][moving]) >= _STEADY
     return none if even or np.std(large - np.round(large)) < _FITS else (step, distance)
 
 

@@ -51,7 +51,7 @@ class GearFigures:
     overall: Estimate | None  #: N·m/rad: slope of a line through each whole side of the loop
 
     @property
-    def held_by_friction(self) -> bool:
+    def below_friction(self) -> bool:
         """Whether lost motion is read at a torque below the friction, so that play is hidden."""
         reading = LOST_MOTION_SHARE * self.rated_torque
         return self.friction is not None and reading < self.friction.value
@@ -106,8 +106,8 @@ def gear_figures(ramps: Sequence[Ramps], rated_torque: float | None = None) -> G
 
 def _moves(ramps: Ramps) -> bool:
     """Whether the angle grows with the torque."""
-    ways = [loop.fall.angle[0] - loop.rise.angle[0] for loop in ramps.loops]
-    return float(np.mean(ways)) > _still(ramps)
+    rises = [loop.fall.angle[0] - loop.rise.angle[0] for loop in ramps.loops]
+    return float(np.mean(rises)) > _still(ramps)
 
 
 def _still(ramps: Ramps) -> float:
@@ -170,16 +170,16 @@ def _friction(ramps: Ramps) -> Estimate | None:
 
 def _lost_motion(ramps: Ramps, rated: float) -> Estimate | None:
     torque = LOST_MOTION_SHARE * rated
-    ways = [
+    sides = [
         [half for half in halves if half.reaches(torque) and half.reaches(-torque)]
         for halves in zip(*ramps.loops, strict=True)
     ]
-    if not all(ways):
+    if not all(sides):
         return None
-    angles = [[float(b.angle_at(torque) - b.angle_at(-torque)) for b in way] for way in ways]
-    rounding = [b.rounding(torque) - b.rounding(-torque) for way in ways for b in way]
+    angles = [[float(b.angle_at(torque) - b.angle_at(-torque)) for b in side] for side in sides]
+    rounding = [b.rounding(torque) - b.rounding(-torque) for side in sides for b in side]
     reading = Component(resolution(ramps.step))  # the mean of two differences of two readings
-    return Estimate.of_sum([(0.5, way) for way in angles], reading, _rounded(rounding))
+    return Estimate.of_sum([(0.5, side) for side in angles], reading, _rounded(rounding))
 
 
 # Stiffness
@@ -228,11 +228,11 @@ def _loads(half: HalfLoop, low: float, ramps: Ramps) -> bool:
     return abs(half.start) < low or abs(half.start) > 0.5 * ramps.amplitude
 
 
-def _compliance(half: HalfLoop, low: float, high: float, way: float = 1.0) -> float:
+def _compliance(half: HalfLoop, low: float, high: float, side: float = 1.0) -> float:
     """Slope of the angle over a range of torque magnitudes, rad/(N·m).
 
-    The range is on the side of the end of the half loop (`way` 1), or of its start (-1).
+    The range is on the side of the end of the half loop (`side` 1), or of its start (-1).
     """
-    peak = half.end if way > 0.0 else half.start
+    peak = half.end if side > 0.0 else half.start
     torque = math.copysign(1.0, peak) * np.linspace(low, high, _TORQUES)
     return float(np.polynomial.polynomial.polyfit(torque, half.angle_at(torque), 1)[1])

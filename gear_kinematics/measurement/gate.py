@@ -89,7 +89,7 @@ def gated(recording: Recording) -> Recording:
         return recording
     kept = rows[kept]
     stray = np.setdiff1d(np.arange(kept[0], kept[-1] + 1), kept)
-    time = both.seconds if both.timed else both.seconds + 1.0
+    time = both.moment
     found = []
     isolated = stray[~compared.frozen[stray]]
     if len(isolated):
@@ -178,8 +178,8 @@ def _frozen(still: Array, other: Array) -> NDArray[np.bool_]:
 
 def _lost_motion(steps: Array, ideal: Array, fastest: float) -> NDArray[np.bool_]:
     """Find the steps of the error by which the output lags at a reversal of the rotor."""
-    ways = np.concatenate([np.zeros(_REVERSAL), np.sign(ideal), np.zeros(_REVERSAL)])
-    sums = np.convolve(ways, np.ones(_REVERSAL), 'valid')
+    signs = np.concatenate([np.zeros(_REVERSAL), np.sign(ideal), np.zeros(_REVERSAL)])
+    sums = np.convolve(signs, np.ones(_REVERSAL), 'valid')
     before, after = sums[: len(ideal)], sums[_REVERSAL : _REVERSAL + len(ideal)]
     most = np.minimum(np.abs(ideal), fastest)
     lag = -steps * np.sign(ideal)
@@ -218,16 +218,16 @@ def _followed(error: Array, rows: Array, steps: _Steps, period: float) -> tuple[
     longest = max(range(len(parts)), key=lambda k: parts[k][1] - parts[k][0])
     kept, jumps = [np.arange(*parts[longest])], []
     spread = float(np.ptp(error[kept[0]]))
-    for way, others in ((1, parts[longest + 1 :]), (-1, parts[:longest][::-1])):
-        last = parts[longest][1] - 1 if way > 0 else parts[longest][0]
+    for step, others in ((1, parts[longest + 1 :]), (-1, parts[:longest][::-1])):
+        last = parts[longest][1] - 1 if step > 0 else parts[longest][0]
         reached, beyond = error[slice(*parts[longest])], False
         for begin, end in others:
-            near, far = (begin, end - 1) if way > 0 else (end - 1, begin)
+            near, far = (begin, end - 1) if step > 0 else (end - 1, begin)
             gap = abs(rows[near] - rows[last]) > _STAYS
             # The interpolation mixes some of a stray rotor reading into its neighbours.
-            level = np.median(error[begin:end][::way][:_STAYS])
-            before = np.median(reached[::-way][:_STAYS])
-            place = begin if way > 0 else end
+            level = np.median(error[begin:end][::step][:_STAYS])
+            before = np.median(reached[::-step][:_STAYS])
+            place = begin if step > 0 else end
             moved = abs(math.remainder(level - before, period)) > steps.limit + spread * gap
             if moved or steps.slipped[place - 1]:
                 if end - begin < _STAYS and not steps.slipped[place - 1]:

@@ -126,14 +126,14 @@ class MiddleLine:
     def of(cls, loop: Loop) -> 'MiddleLine':
         """Compute the middle line of a complete loop."""
         fall, rise = loop.fall, loop.rise
-        ways = [
-            (half.torque[::way], _monotonic(half.angle[::way]))
-            for half, way in ((rise, 1), (fall, -1))
+        paths = [
+            (half.torque[::order], _monotonic(half.angle[::order]))
+            for half, order in ((rise, 1), (fall, -1))
         ]
-        low = max(angle[0] for _, angle in ways)
-        high = min(angle[-1] for _, angle in ways)
+        low = max(angle[0] for _, angle in paths)
+        high = min(angle[-1] for _, angle in paths)
         at = np.linspace(low, high, ANGLES)
-        forth, back = (np.interp(at, _distinct(angle), torque) for torque, angle in ways)
+        forth, back = (np.interp(at, _distinct(angle), torque) for torque, angle in paths)
         return cls(at, _monotonic(0.5 * (forth + back)), 0.5 * (forth - back))
 
     def angle_at(self, load: Array | float) -> Array:

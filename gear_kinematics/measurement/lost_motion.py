@@ -62,18 +62,19 @@ def measure(
         wrong = check_ratio(encoders, ratio)
         found = transmission_figures(encoders, ratio, parameters.transmission_error_travel)
     report = LostMotion(recording.name, recording, ratio, transmission=found, wrong_ratio=wrong)
-    if loading := recording.loading(ratio):
-        loading, found_now = gated_ramps(loading)
-        faults = (*recording.faults, *found_now)
-        try:
-            ramps = find_ramps(loading.torque, loading.angle, loading.angle_step.size)
-            figures = gear_figures(ramps, rated_torque)
-        except RampError as error:
-            if not found:
-                raise RampError('; '.join(map(str, (error, *faults)))) from error
-            no_ramps = Observation.NO_RAMPS(why=str(error))
-            recording = replace(recording, remarks=(*recording.remarks, no_ramps))
-            return replace(report, recording=recording)
-        recording = replace(recording, faults=faults)
-        return replace(report, recording=recording, figures=figures, measured=loading.measured)
-    return report
+    if not (loading := recording.loading(ratio)):
+        return report
+    loading, new_faults = gated_ramps(loading)
+    faults = (*recording.faults, *new_faults)
+    try:
+        ramps = find_ramps(loading.torque, loading.angle, loading.angle_step.size)
+        figures = gear_figures(ramps, rated_torque)
+    except RampError as error:
+        if not found:
+            raise RampError('; '.join(map(str, (error, *faults)))) from error
+        no_ramps = Observation.NO_RAMPS(why=str(error))
+        return replace(
+            report, recording=replace(recording, remarks=(*recording.remarks, no_ramps))
+        )
+    recording = replace(recording, faults=faults)
+    return replace(report, recording=recording, figures=figures, measured=loading.measured)

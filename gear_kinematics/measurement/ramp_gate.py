@@ -38,32 +38,32 @@ def gated_ramps(ramps: Loading) -> tuple[Loading, tuple[Observed, ...]]:
     The rest is searched again until nothing more is found, as one fault can hide another. The
     ramps that remain are returned with what was left out.
     """
-    time, timed = ramps.moments, ramps.seconds is not None
+    timed = ramps.timed
     strays = saturated = np.zeros(0)
     jumps: list[tuple[float, float]] = []
-    before = len(time) + 1
-    while _FEWEST <= len(time) < before:
-        before = len(time)
+    before = len(ramps.moment) + 1
+    while _FEWEST <= len(ramps.moment) < before:
+        before = len(ramps.moment)
         stray = _stray(ramps)
         if np.mean(stray) <= _MOST_STRAY:
-            strays = np.append(strays, time[stray])
-            ramps, time = ramps.chosen(~stray), time[~stray]
+            strays = np.append(strays, ramps.moment[stray])
+            ramps = ramps.chosen(~stray)
         cut = _saturated(ramps)
         if np.mean(cut) <= _MOST_SATURATED:
-            saturated = np.append(saturated, time[cut])
-            ramps, time = ramps.chosen(~cut), time[~cut]
+            saturated = np.append(saturated, ramps.moment[cut])
+            ramps = ramps.chosen(~cut)
         if slips := _slips(ramps):
-            jumps += [(float(time[row]), size) for size, row in slips]
-            edges = [0, *(row for _, row in slips), len(time)]
-            part = slice(*max(pairwise(edges), key=lambda part: part[1] - part[0]))
-            ramps, time = ramps.chosen(part), time[part]
+            jumps += [(float(ramps.moment[row]), size) for size, row in slips]
+            edges = [0, *(row for _, row in slips), len(ramps.moment)]
+            part = max(pairwise(edges), key=lambda part: part[1] - part[0])
+            ramps = ramps.chosen(slice(*part))
     faults = [left_out(np.sort(strays), timed=timed)] if len(strays) else []
     if len(saturated):
         first, count = float(np.min(saturated)), len(saturated)
         faults.append(Observation.SATURATED(timed=timed, moment=first, count=count))
     faults += jumped(sorted(jumps), timed=timed)
     if jumps:
-        faults.append(longest(time, timed=timed))
+        faults.append(longest(ramps.moment, timed=timed))
     return ramps, tuple(faults)
 
 
@@ -106,10 +106,10 @@ def _slips(ramps: Loading) -> list[tuple[float, int]]:
     large = np.abs(sizes) > np.maximum(_LEAST_SLIP * np.ptp(angle), _ALONE * np.abs(around))
     if not large.any():
         return []
-    way = directions(usual(ramps.torque), _TURNED * most)
-    known = np.flatnonzero(way)
-    turns = known[1:][np.diff(way[known]) != 0]
-    place = np.round(ramps.torque / (_BIN * most)) + 1j * way
+    direction = directions(usual(ramps.torque), _TURNED * most)
+    known = np.flatnonzero(direction)
+    turns = known[1:][np.diff(direction[known]) != 0]
+    place = np.round(ramps.torque / (_BIN * most)) + 1j * direction
     found, back = [], 0.0
     for last, row, size in zip(before[large], after[large], sizes[large], strict=True):
         # At least one loop before, and one after.
@@ -139,8 +139,8 @@ def shifted(place: Array, angle: Array, before: slice, after: slice) -> Array:
     shared = np.setdiff1d(shared[shared.imag != 0.0], near)
     was, now = (_medians(place[part], angle[part], shared) for part in (before, after))
     changes = now - was
-    ways = (changes[shared.imag == way] for way in (-1.0, 1.0))
-    return np.array([np.median(way) for way in ways if len(way)])
+    parts = (changes[shared.imag == direction] for direction in (-1.0, 1.0))
+    return np.array([np.median(part) for part in parts if len(part)])
 
 
 def _medians(place: Array, angle: Array, places: Array) -> Array:

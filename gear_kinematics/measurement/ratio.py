@@ -111,11 +111,11 @@ def estimate_ratio(
     slope = float(centred @ (output - np.mean(output)) / (centred @ centred) / np.ptp(rotor))
     times = np.asarray(STEP * np.arange(len(rotor)) if time is None else time, float)
     travel = min(_SETTLED * abs(slope) * float(np.ptp(rotor)), _MOST_PLAY)
-    way = directions(slope * rotor, travel)
-    if (count := np.count_nonzero(way)) < _LEAST:
+    direction = directions(slope * rotor, travel)
+    if (count := np.count_nonzero(direction)) < _LEAST:
         few = f'{count} samples in motion are too few'
         raise RecordingError(f'{few}; turn the output until there are {_LEAST}')
-    fit = EncoderFit(rotor, output, times, way, slope).refined().refined()
+    fit = EncoderFit(rotor, output, times, direction, slope).refined().refined()
     measured = fit.slope_estimate(period)
     if not _MAX_DISTANCE * measured.expanded < abs(measured.value):
         raise RecordingError('the output does not follow the rotor, or turns too little')

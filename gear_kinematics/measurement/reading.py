@@ -42,46 +42,41 @@ def read(
     parameters: NodeParameters,
     sources: Sources | None = None,
     progress: ReportProgress | None = None,
+    *,
+    both: bool = False,
 ) -> Recording:
     """Read a table or a bag, and leave out readings that contradict each other.
 
     `progress` is called after each batch of a bag, with the number of messages on all its topics.
 
     Raises:
-        BagError, RecordingError: if it cannot be read, or contains nothing to measure.
+        BagError, RecordingError: if it cannot be read, contains nothing to measure, or lacks one
+            of `both` encoders.
     """
     sources = sources or Sources()
     if is_table(path):
-        ratio, period = parameters.gear.gear_ratio, parameters.rotor_period
-        return gated(read_table(path, sources, ratio, period))
-    return gated(_read_bag(path, parameters, sources, progress))
-
-
-def read_encoders(
-    path: Path,
-    parameters: NodeParameters,
-    sources: Sources | None = None,
-    progress: ReportProgress | None = None,
-) -> Recording:
-    """Read a recording as `read` does; RecordingError if it lacks one of both encoders."""
-    sources = sources or Sources()
-    if not is_table(path):
-        with open_bag(path) as bag:
-            rotor = find_rotor_topic(bag, sources.rotor_topic, parameters.rotor_joint)
-            if not find_encoder_topic(bag, rotor, sources.encoder_topic):
-                raise RecordingError(f'{path}: {missing_encoder(bag)}')
-    recording = read(path, parameters, sources, progress)
-    recording.both  # noqa: B018, raises the error
-    return recording
+        recording = read_table(path, sources, parameters.gear.gear_ratio, parameters.rotor_period)
+    else:
+        recording = _read_bag(path, parameters, sources, progress, both=both)
+    if both:
+        recording.both  # noqa: B018, raises the error
+    return gated(recording)
 
 
 def _read_bag(
-    path: Path, parameters: NodeParameters, sources: Sources, progress: ReportProgress | None
+    path: Path,
+    parameters: NodeParameters,
+    sources: Sources,
+    progress: ReportProgress | None,
+    *,
+    both: bool,
 ) -> Recording:
     damage, heard = None, TopicMessages()
     with open_bag(path) as bag:
         rotor = find_rotor_topic(bag, sources.rotor_topic, parameters.rotor_joint)
         encoder = find_encoder_topic(bag, rotor, sources.encoder_topic)
+        if both and not encoder:
+            raise RecordingError(f'{path}: {missing_encoder(bag)}')
         states = States(rotor, encoder, parameters, _MOST_STATES)
         topics = [topic for topic in (rotor, encoder) if topic]
         try:

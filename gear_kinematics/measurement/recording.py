@@ -62,19 +62,15 @@ class Loading:
 
     torque: Array  #: N·m, at the output
     angle: Array  #: rad, at the output: the twist of the gear from an arbitrary zero
+    moment: Array  #: s since the first sample, or numbers of the samples from 1 if not `timed`
+    timed: bool  #: whether time was recorded
     angle_step: Step  #: rad at the output, between readings of the angle
     measured: bool  #: whether an encoder measured the output; otherwise it is taken to be locked
-    seconds: Array | None = None  #: s, since the first sample; None if time was not recorded
 
-    @property
-    def moments(self) -> Array:
-        """Times of the samples, s, or their numbers from 1, (n,)."""
-        return np.arange(1.0, len(self.torque) + 1.0) if self.seconds is None else self.seconds
-
-    def chosen(self, rows: Array | slice) -> 'Loading':
+    def chosen(self, rows: Array | slice) -> Self:
         """Return the samples of some rows."""
-        seconds = None if self.seconds is None else self.seconds[rows]
-        return replace(self, torque=self.torque[rows], angle=self.angle[rows], seconds=seconds)
+        moment = self.moment[rows]
+        return replace(self, torque=self.torque[rows], angle=self.angle[rows], moment=moment)
 
 
 def locked_shaft(
@@ -91,8 +87,9 @@ def locked_shaft(
     The torque is that at the output, N·m. The angles, rad, are those of the rotor, or of the
     output with a ratio of 1. The stamps are in ns; None if time was not recorded.
     """
-    seconds = None if stamp is None else (stamp - stamp[0]) / SECOND
-    return Loading(torque, angle / float(ratio), step.scaled(float(1 / ratio)), measured, seconds)
+    moment = np.arange(1.0, len(torque) + 1.0) if stamp is None else (stamp - stamp[0]) / SECOND
+    angle, step = angle / float(ratio), step.scaled(float(1 / ratio))
+    return Loading(torque, angle, moment, stamp is not None, step, measured)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -117,6 +114,11 @@ class Encoders:
     def seconds(self) -> Array:
         """Times of the measured angles since the first rotor sample, s, or sample numbers."""
         return self.at_measured(self.rotor.seconds)
+
+    @property
+    def moment(self) -> Array:
+        """Times as `seconds`, or sample numbers that count from 1, as reports give them."""
+        return self.seconds if self.timed else self.seconds + 1.0
 
     @property
     def _after(self) -> Array:
@@ -254,13 +256,10 @@ class Recording:
         both = self.encoders
         if both is None:
             return self.locked
-        torque = float(ratio) * both.at_measured(both.rotor.effort)
-        known = np.isfinite(torque)
-        if not known.any():
-            return None
-        step, twist = both.error_step(ratio), -both.error(ratio)[known]
-        seconds = both.seconds[known] if both.timed else None
-        return Loading(torque[known], twist, step, measured=True, seconds=seconds)
+        torque, twist = float(ratio) * both.at_measured(both.rotor.effort), -both.error(ratio)
+        known, step = np.isfinite(torque), both.error_step(ratio)
+        found = Loading(torque, twist, both.moment, both.timed, step, measured=True)
+        return found.chosen(known) if known.any() else None
 
     @cached_property
     def sha256(self) -> str:

@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 
 from gear_kinematics.bag import Bag, DamagedBagError
-from gear_kinematics.measurement.commissioning.encoder_range import find_range
+from gear_kinematics.measurement.commissioning.encoder_range import unwrapped
 from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.state.effort_field import EffortField, questioned
@@ -46,9 +46,8 @@ def questions(
     if len(rows) < _FEWEST:
         return
     stamp, values = stamp[rows], states.values[rows]
-    period, _ = find_range(values[:, 0], (stamp - stamp[0]) / SECOND, Step(0.0, seen=False))
-    if period:
-        values[:, 0] = np.unwrap(values[:, 0], period=period)
+    seconds = (stamp - stamp[0]) / SECOND
+    values[:, 0] = unwrapped(values[:, 0], seconds, Step(0.0, seen=False))
     steps = np.abs(np.diff(values[:, 0]))
     given = values[np.isfinite(values[:, 1]), 1]
     velocities = VelocityField(float(1 / ratio) if ratio else np.nan)

@@ -20,7 +20,7 @@ from gear_kinematics.measurement.columns import (
     Sources,
     described,
     find_columns,
-    nanoseconds_beside,
+    nanoseconds_of,
 )
 from gear_kinematics.measurement.commissioning.encoder_range import count_wraps, signed, unwrapped
 from gear_kinematics.measurement.commissioning.joint import other_unit
@@ -126,7 +126,7 @@ class _Samples:
         except ColumnsError as error:
             raise ValueError(f'{error} {_advice(path, table, sources, ratio)}') from error
         clock = found.pop('time', None)
-        rest = nanoseconds_beside(clock.name, table.names) if clock else None
+        rest = nanoseconds_of(clock.name, table.names) if clock else None
         usual = clock.name if clock else ''
         clocks = {role: table.clocks.get(column.name, usual) for role, column in found.items()}
         wanted = {column.name for column in found.values()} | {*clocks.values(), rest or ''}

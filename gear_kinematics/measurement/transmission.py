@@ -39,9 +39,9 @@ class _Motion:
         ideal = encoders.ideal(ratio)
         self.angle = encoders.at_measured(ideal)
         self.error = encoders.error(ratio)
-        way = directions(ideal, travel, set(encoders.starts(None).tolist()))
-        after = way[np.minimum(encoders.before + (encoders.share > 0.0), len(way) - 1)]
-        self.direction = np.where(way[encoders.before] == after, after, 0).astype(np.int8)
+        known = directions(ideal, travel, set(encoders.starts(None).tolist()))
+        after = known[np.minimum(encoders.before + (encoders.share > 0.0), len(known) - 1)]
+        self.direction = np.where(known[encoders.before] == after, after, 0).astype(np.int8)
 
     def runs(self) -> Iterator[tuple[int, Array]]:
         """Yield the direction of each run between reversals, and its rows."""
@@ -61,9 +61,9 @@ class _Motion:
         except RecordingError:
             return []
 
-    def accuracy(self, way: int, reading: Component) -> Estimate | None:
+    def accuracy(self, sign: int, reading: Component) -> Estimate | None:
         """Estimate the peak-to-peak error of the longest run in a direction and of its repeats."""
-        runs = [rows for sign, rows in self.runs() if sign == way]
+        runs = [rows for direction, rows in self.runs() if direction == sign]
         sizes = [(np.ptp(self.angle[rows]), float(np.ptp(self.error[rows]))) for rows in runs]
         least = _MIN_SHARE * max(sizes)[0] if sizes else 0.0
         values = [error for travel, error in sizes if travel >= least]
@@ -93,7 +93,7 @@ def transmission_figures(
     if delay and delay.clear:
         # The error is proportional to the delay only while the speed hardly changes within it.
         motion = _Motion(encoders.earlier(delay.value), ratio, travel)
-    forward, backward = (motion.accuracy(way, both) for way in (1, -1))
+    forward, backward = (motion.accuracy(sign, both) for sign in (1, -1))
     error = max(one.value if one else 0.0 for one in (forward, backward))
     return TransmissionFigures(
         float(np.ptp(motion.angle)),

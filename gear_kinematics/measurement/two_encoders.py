@@ -42,7 +42,7 @@ _PLAY, _DELAY = 0.1, 0.05
 _LAG = 6e-5
 """Standard deviation, s², of the lag per acceleration: inertia over stiffness of the output, or
 1/ω² of an output that oscillates at 20 Hz on the springs of its gear, as robot arms do."""
-_SLOPE, _WAY, _LATE = 0, 2, 3  # columns of the fit; 1 is the offset
+_SLOPE, _DIRECTION, _LATE = 0, 2, 3  # columns of the fit; 1 is the offset
 _LEAST_NOISE = 1e-7  # rad, the step of an encoder of 26 bits; below it, rounding falsifies ratios
 _ROUNDS = 5  # estimates of the noise, each from the residuals before; after 3, ± is 50 % off
 
@@ -51,20 +51,26 @@ class EncoderFit:
     """Fits to all samples, and then without each block of successive samples: (1 + blocks,)."""
 
     def __init__(
-        self, rotor: Array, output: Array, time: Array, way: Array, slope: float, late: float = 0.0
+        self,
+        rotor: Array,
+        output: Array,
+        time: Array,
+        sign: Array,
+        slope: float,
+        late: float = 0.0,
     ) -> None:
         """Fit multi-turn angles of rotor and output, (n,) each, rad, in the order of time, s.
 
-        `way` is the direction of the motion, 1 or -1; samples with 0 are left out. The slope,
+        `sign` is the direction of the motion, 1 or -1; samples with 0 are left out. The slope,
         output angle over rotor angle, and the delay `late` of the output, s, are first estimates.
 
         Raises:
             RecordingError: if there are too few samples.
         """
-        self._angles = rotor, output, time, way
+        self._angles = rotor, output, time, sign
         then = time - late  # when the rotor was at the measured output angle
-        ways = way[np.rint(np.interp(then, time, np.arange(len(time)))).astype(int)]
-        kept = np.flatnonzero(ways * (then >= time[0]) * (then <= time[-1]))
+        signs = sign[np.rint(np.interp(then, time, np.arange(len(time)))).astype(int)]
+        kept = np.flatnonzero(signs * (then >= time[0]) * (then <= time[-1]))
         kept = kept[:: -(-len(kept) // _MOST) or 1]
         if len(kept) < 2 * _BLOCKS:
             raise RecordingError(f'{len(kept)} samples in motion are too few')
@@ -76,14 +82,14 @@ class EncoderFit:
         first, early, at, after, last = (np.interp(when, time, rotor) for when in around)
         speed = slope * (after - early) / (2.0 * STEP)
         # Near a reversal, the speed is not that at the sample.
-        beside = (np.interp(then[kept] + k * STEP, time, way) for k in (-1, 1))
-        steady = (ways[kept] * speed)[np.all([each == ways[kept] for each in beside], axis=0)]
+        near = (np.interp(then[kept] + k * STEP, time, sign) for k in (-1, 1))
+        steady = (signs[kept] * speed)[np.all([each == signs[kept] for each in near], axis=0)]
         parts = np.array_split(steady, max(1, min(_MEANS, len(steady))))
         self.tells_delay = tells_delay(steady, np.array([np.mean(part) for part in parts]))
         """Whether the speed varies enough to separate a delay from play."""
         self.travel = float(np.ptp(at))
         # The measured angle must not explain itself, so that errors are periodic in the rotor's.
-        columns = _columns(at, slope, ways[kept], speed)
+        columns = _columns(at, slope, signs[kept], speed)
         # The same holds for reading errors: the acceleration does not contain the reading itself.
         acceleration = slope * (first - early - after + last) / (3.0 * STEP**2)
         left = rest = output[kept] - slope * at - np.mean(output[kept] - slope * at)
@@ -131,8 +137,8 @@ class EncoderFit:
     def lost_motion(self, *others: Component, delay: bool) -> Estimate:
         """Estimate the angle lost on a reversal, rad, separate from a delay or including it."""
         chosen = [k for k in self._model if delay or k != _LATE]
-        fits = -2.0 * _PLAY * self._equations.first_order(chosen)[:, _WAY]
-        spread = 2.0 * _PLAY * float(self._equations.spreads(chosen)[_WAY])
+        fits = -2.0 * _PLAY * self._equations.first_order(chosen)[:, _DIRECTION]
+        spread = 2.0 * _PLAY * float(self._equations.spreads(chosen)[_DIRECTION])
         # Both the spread and the scatter of blocks contain the noise: the greater of them counts.
         scatter = jackknife(fits).standard or 0.0
         rest = Component(math.sqrt(max(spread**2 - scatter**2, 0.0)))
@@ -145,13 +151,13 @@ def directions(output: Array, travel: float, starts: Collection[int] = ()) -> Ar
     A new direction counts from a `travel`, rad, after the reversal. The motion before the samples
     with the indices `starts` is unknown.
     """
-    way = np.zeros(len(output), np.int8)
+    direction = np.zeros(len(output), np.int8)
     for begin, end in pairwise(sorted({0, *starts, len(output)})):
         path, play = output[max(begin - 1, 0) : end], 0.5 * travel
         least, most = play_bounds(path, play)
         found = 1 * (most == path - play) - (least == path + play)
-        way[begin:end] = found[begin - end :]
-    return way
+        direction[begin:end] = found[begin - end :]
+    return direction
 
 
 def play_bounds(x: Array, radius: float) -> Array:
@@ -174,10 +180,10 @@ def play_bounds(x: Array, radius: float) -> Array:
     return np.concatenate(parts, axis=1)
 
 
-def _columns(rotor: Array, slope: float, way: Array, speed: Array) -> Array:
+def _columns(rotor: Array, slope: float, sign: Array, speed: Array) -> Array:
     """Terms scaled to their expected size, (n, terms): slope, offset, play, delay, then errors."""
     x = (rotor - np.mean(rotor)) / np.ptp(rotor)
-    columns = [x, np.ones(len(x)), _PLAY * way, _DELAY * speed]
+    columns = [x, np.ones(len(x)), _PLAY * sign, _DELAY * speed]
     amplitudes = ENCODER_ERROR, (abs(slope) + _ROTOR_SHARE) * ENCODER_ERROR
     for angle, amplitude, most in zip((slope * rotor, rotor), amplitudes, _ORDERS, strict=True):
         power = once = np.exp(1j * angle)  # cos + j sin of k times the angle

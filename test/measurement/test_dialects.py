@@ -15,7 +15,7 @@ from gear_kinematics.bag import BagError
 from gear_kinematics.commands.encoders import add_recordings, sources
 from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.lost_motion import measure
-from gear_kinematics.measurement.reading import read, read_encoders
+from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import RecordingError
 
 ARCMIN = math.radians(1.0 / 60.0)
@@ -72,7 +72,7 @@ def test_files_in_other_dialects(table, gear, name, given, rows):
 
 
 def test_times_in_iso_8601(table, gear):
-    both = read_encoders(table('time_in_iso8601'), gear).both
+    both = read(table('time_in_iso8601'), gear).both
     # The file has a sample each 40 ms.
     np.testing.assert_allclose(both.seconds, 0.04 * np.arange(len(both.seconds)), atol=1e-6)
 
@@ -336,7 +336,7 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
     t, r, o = reference('encoders')
     counts = np.round((r - np.median(r)) * REV * 4096)
     right, both = (
-        read_encoders(
+        read(
             saved(tmp_path, written([t, one, o], 'time,rotor_counts,output_rad')),
             gear, Sources(rotor_counts=4096),
         ).both

@@ -14,7 +14,7 @@ from simulated_encoders import TURN, with_play
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.ratio import estimate_ratio, wrong_ratio
-from gear_kinematics.measurement.reading import read_encoders
+from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import RecordingError
 from gear_kinematics.measurement.sentences import Observation
 
@@ -202,7 +202,7 @@ def test_real_joints_are_left_open_with_the_true_ratio_in_the_interval(
     path = shared_path(f'data/dual_encoders/{name}.csv')
     counts = 2**24 if ratio.denominator == 1 else None
     sources = Sources(rotor_counts=counts, output_counts=counts)
-    both = read_encoders(path, replace(config, gear_ratio=str(ratio)), sources).both
+    both = read(path, replace(config, gear_ratio=str(ratio)), sources).both
     found = estimate_ratio(both.at_measured(both.rotor.turned), both.measured, both.seconds)
     assert abs(found.measured.value - ratio) <= found.measured.uncertainty <= most * abs(ratio)
     assert (found.taken, ratio in found.candidates) == (None, True)

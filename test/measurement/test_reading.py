@@ -16,7 +16,7 @@ from gear_kinematics.measurement import dialects, reading
 from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.measurement.lost_motion import measure
-from gear_kinematics.measurement.reading import read, read_encoders
+from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import RecordingError
 from gear_kinematics.measurement.sentences import Observation
 from gear_kinematics.measurement.stamps import RestoredClock
@@ -75,13 +75,13 @@ def test_real_recordings_need_no_renaming(shared_path, config):
     joint = shared_path('data/dual_encoders/neura_jogging_final_joint1.csv')
     config = replace(config, gear_ratio='121')
     counts = Sources(rotor_counts=2**24, output_counts=2**24)
-    both = read_encoders(joint, config, counts).both
+    both = read(joint, config, counts).both
     assert both.timed
     assert np.ptp(both.measured) == pytest.approx(math.radians(7.76), rel=1e-2)
     with pytest.raises(RecordingError, match=r'motor_inc has counts: .* with --rotor-counts'):
         read(joint, config)
     printed = shared_path('data/dual_encoders/sspg_backlash_sine_vel_2.500tps_2.00s.csv')
-    recording = read_encoders(printed, config)
+    recording = read(printed, config)
     both = recording.both
     assert recording.columns[:3] == (
         'time [s] from time_s',
@@ -122,7 +122,7 @@ def test_torque_with_both_encoders_twists_the_gear_alone(tmp_path, config, angle
 def test_times_of_rows_are_read_if_there_are_any(tmp_path, config, name, values):
     time = 0.0025 * np.arange(500)
     path = write_csv(tmp_path / 'r.csv', rotor=time, output=time, **{name: values(time)})
-    recording = read_encoders(path, config)
+    recording = read(path, config)
     both = recording.both
     np.testing.assert_allclose(both.seconds, time, rtol=0, atol=1e-6)
     assert both.timed
@@ -143,7 +143,7 @@ def test_times_that_cannot_be_read_are_an_error(tmp_path, config, time, cause):
     angle = 1e-4 * rows
     path = write_csv(tmp_path / 'r.csv', rotor=angle, output=angle, T=time(rows))
     with pytest.raises(RecordingError, match=f'the times in T: {cause}'):
-        read_encoders(path, config)
+        read(path, config)
 
 
 def test_times_that_go_back_end_the_recording_there(tmp_path, config):
@@ -153,7 +153,7 @@ def test_times_that_go_back_end_the_recording_there(tmp_path, config):
     time[5500:] -= 2.0
     time[6000:] += 3.0  # so that it is not known by how much the clock was set back
     columns = {'time': time, 'rotor': -19.0 * ideal, 'output': ideal}
-    recording = read_encoders(write_csv(tmp_path / 'r.csv', **columns), config)
+    recording = read(write_csv(tmp_path / 'r.csv', **columns), config)
     both = recording.both
     assert len(both.measured) == 5500
     assert np.max(np.abs(both.at_measured(both.ideal(Fraction(-19))))) <= 0.1 + 1e-12
@@ -268,7 +268,7 @@ def test_an_encoder_without_stamps_has_the_times_of_reception(tmp_path, config):
     stamps = START + np.arange(2000) * MS
     encoder = Samples(0 * stamps, ideal + 0.01, received=stamps)
     path = write_recording(tmp_path / 'unstamped', Samples(stamps, -19.0 * ideal), encoder)
-    both = read_encoders(path, config).both
+    both = read(path, config).both
     assert len(both.measured) == 2000
     np.testing.assert_allclose(both.error(Fraction(-19)), 0.01, rtol=0, atol=1e-9)
 
@@ -282,7 +282,7 @@ def test_a_clock_that_is_set_back_is_restored_and_named(tmp_path, config, step):
     late[[1000, 1001]] = late[[1001, 1000]]  # disorder is no step
     rotor = Samples(late, -19.0 * ideal, received=stamps)
     write_recording(tmp_path / 'back', rotor, Samples(late, ideal, received=stamps))
-    recording = read_encoders(tmp_path / 'back', config)
+    recording = read(tmp_path / 'back', config)
     both = recording.both
     fault, _ = recording.faults  # and that the output is computed from the rotor
     assert fault == Observation.SET_BACK_AT(size=step, stamp=stamps[2999])
@@ -305,7 +305,7 @@ def test_a_stall_is_no_step_of_the_clock(tmp_path, config, stall):
     received = np.maximum.accumulate(received)
     rotor = Samples(stamps, -19.0 * ideal, received=received)
     write_recording(tmp_path / 'bag', rotor, Samples(stamps, ideal, received=received))
-    recording = read_encoders(tmp_path / 'bag', config)
+    recording = read(tmp_path / 'bag', config)
     both = recording.both
     assert not any(fault.what is Observation.SET_BACK_AT for fault in recording.faults)
     assert np.ptp(both.error(Fraction(-19))) < 1e-6
@@ -332,7 +332,7 @@ def test_one_clock_of_two_that_is_set_back_is_restored(tmp_path, config):
     write_recording(
         tmp_path / 'back', Samples(stamps, -19.0 * ideal), Samples(late, ideal, received=stamps)
     )
-    both = read_encoders(tmp_path / 'back', config).both
+    both = read(tmp_path / 'back', config).both
     assert len(both.measured) == 4000
     assert np.ptp(both.error(Fraction(-19))) < 1e-9
 

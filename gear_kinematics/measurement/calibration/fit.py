@@ -8,7 +8,7 @@ The interval is that of the errors in left-out parts, and the uncertainties of t
 those of the jackknife over the blocks, so that noise need not be white.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from fractions import Fraction
@@ -121,16 +121,11 @@ def _result(
     deviation = values @ model.coefficients[0]
     constant = -float(deviation.mean())
     before, after, width, coverage = model.checked(values)
-    entries, terms, trends = [], [], 0.0
-    for term, columns in zip(model.terms, model.columns, strict=True):
-        fits = model.coefficients[:, columns]
-        sizes = np.hypot(*fits.T) if len(columns) > 1 else fits[:, 0]
-        amplitude = jackknife(term.unit * sizes, together=TOGETHER)
-        fitted: dict[str, Any] = dict(zip(term.coefficients, fits[0].tolist(), strict=True))
-        entries.append(replace(term.entry, **fitted))
-        radius = getattr(term.entry, 'radius', None)
-        terms.append(FittedTerm(term.name, term.cycles, radius, amplitude, term.cause))
-        trends += amplitude.value * term.is_trend
+    fitted = [*_fitted(model)]
+    entries, terms = [entry for entry, _ in fitted], tuple(term for _, term in fitted)
+    trends = sum(
+        own.amplitude.value for own, term in zip(terms, model.terms, strict=True) if term.is_trend
+    )
     # Beyond the calibrated angles, a trend can be wrong by all of its size.
     outside = half_width(before) + half_width(deviation + constant) + trends
     fits = model.coefficients[1:]
@@ -175,7 +170,7 @@ def _result(
         calibration,
         falls and not moved and model.helps(),
         moved,
-        tuple(terms),
+        terms,
         [s.recording for s in samples],
         delays,
         refused,
@@ -183,6 +178,18 @@ def _result(
         before,
         after,
     )
+
+
+def _fitted(model: GearModel) -> Iterator[tuple[Order | Stop | Compliance, FittedTerm]]:
+    """Yield each term as an entry of the file, and as the report shows it."""
+    for term, columns in zip(model.terms, model.columns, strict=True):
+        fits = model.coefficients[:, columns]
+        sizes = np.hypot(*fits.T) if len(columns) > 1 else fits[:, 0]
+        amplitude = jackknife(term.unit * sizes, together=TOGETHER)
+        values: dict[str, Any] = dict(zip(term.coefficients, fits[0].tolist(), strict=True))
+        radius = getattr(term.entry, 'radius', None)
+        shown = FittedTerm(term.name, term.cycles, radius, amplitude, term.cause)
+        yield replace(term.entry, **values), shown
 
 
 def _moved(samples: Sequence[Samples], after: Array, least: float) -> Observed | None:

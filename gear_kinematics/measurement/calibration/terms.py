@@ -190,12 +190,12 @@ def known_orders(
         most, cause = _BODIES[body]
         for multiple in range(1, most + 1):
             name, cycles = f'{body} × {multiple}', multiple * unit
-            held = travel * float(cycles)
-            if held >= _CYCLES:
+            contained = travel * float(cycles)
+            if contained >= _CYCLES:
                 order = Order(name, cycles, 0.0, 0.0)
                 found.setdefault(cycles, Term(name, cause, order))
                 continue
-            refused[name] = Observation.FEW_CYCLES(cycles=held)
+            refused[name] = Observation.FEW_CYCLES(cycles=contained)
             # Over a part of its cycle, the first multiple is like higher ones; and an order with
             # whole cycles in a turn of the rotor is not tied to the output's angle.
             few = body == 'output' and multiple <= 1.0 + travel * float(unit)

@@ -66,8 +66,8 @@ def report(task: LoadTask, progress: ReportProgress | None = None) -> LoadReport
 
 def _lost(task: LoadTask, cause: str) -> LoadReport:
     about = labelled(task.parameters.actuator, cause)
-    told = cause if str(task.bag) in cause else f'{task.bag}: {about}'
-    return LoadReport(None, {}, told)
+    text = cause if str(task.bag) in cause else f'{task.bag}: {about}'
+    return LoadReport(None, {}, text)
 
 
 WORK = Work(report, _lost)  # for `fleet.processes`
