@@ -91,22 +91,14 @@ def quantities(reports: Sequence[LostMotion]) -> tuple[list[Quantity], list[str]
     """
     smallest = {own.name: own.figures.ramps[0].amplitude for own in reports if own.figures}
     unlike = [name for name, own in smallest.items() if own < max(smallest.values()) / ALIKE]
-    rows = [
-        {
-            f'{figure.name}{figure.at}': figure.value
-            for figure in report.main_figures
-            if isinstance(figure.value, Estimate)
-            and not (figure.name in _OF_SMALL_RAMPS and report.name in unlike)
-        }
-        for report in reports
-    ]
-    units = {f'{own.name}{own.at}': own.unit for report in reports for own in report.main_figures}
-    found = [
-        Quantity(name, unit, tuple(row.get(name) for row in rows))
-        for name, unit in units.items()
-        if sum(name in row for row in rows) > 1
-    ]
-    return found, unlike
+    table: dict[tuple[str, str], list[Estimate | None]] = {}
+    for k, report in enumerate(reports):
+        for name, unit, value, at in report.main_figures:
+            values = table.setdefault((f'{name}{at}', unit), [None] * len(reports))
+            left_out = name in _OF_SMALL_RAMPS and report.name in unlike
+            values[k] = value if isinstance(value, Estimate) and not left_out else None
+    found = (Quantity(*names, tuple(values)) for names, values in table.items())
+    return [own for own in found if len([*filter(None, own.values)]) > 1], unlike
 
 
 # Changes
@@ -185,10 +177,9 @@ def judged(changes: Sequence[Change]) -> list[Change]:
     """Judge changes by Bonferroni's method: those of the hysteresis, and apart, the rest."""
     tested = [change for change in changes if change.probability is not None]
     count = Counter(change.quantity.name == HYSTERESIS for change in tested)
-    return [
-        replace(change, significant=change.probability <= SIGNIFICANCE / count[first])
-        if change.probability is not None
-        else change
-        for change in changes
-        for first in [change.quantity.name == HYSTERESIS]
-    ]
+
+    def significant(change: Change) -> bool:
+        family = count[change.quantity.name == HYSTERESIS]
+        return change.probability is not None and change.probability <= SIGNIFICANCE / family
+
+    return [replace(change, significant=significant(change)) for change in changes]

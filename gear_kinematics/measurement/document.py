@@ -72,7 +72,8 @@ def _reported(report: LostMotion, limits: Limits) -> tuple[doc.Section, Mapping[
     remarked = tuple(map(printable, notes))
     failed_first = sorted(checks, key=lambda check: check.holds)
     passed = all(check.holds for check in checks)
-    cases = (doc.Case(check.limit, (str(check.why),) * (not check.holds)) for check in checks)
+    faults = (() if check.holds else (str(check.why),) for check in checks)
+    cases = (doc.Case(check.limit, own) for check, own in zip(checks, faults, strict=True))
     section = doc.Section(
         printable(report.name),
         tuple(_tables(report)),
@@ -149,7 +150,6 @@ def _table(figures: Iterable[Measured]) -> doc.Table:
 
 
 def _panels(report: LostMotion) -> Iterator[doc.Panel]:
-    """Yield the plots of a report."""
     if found := report.figures:
         torque = LOST_MOTION_SHARE * found.rated_torque
         yield from (_ramp_panel(ramps, torque) for ramps in found.ramps)

@@ -41,7 +41,7 @@ class GearFigures:
     """Figures of a gear: angles in rad, torques in N·m."""
 
     rated_torque: float
-    ramps: tuple[Ramps, ...]  #: ascending; hysteresis and friction are of the first, the rest last
+    ramps: tuple[Ramps, ...]  #: ascending; hysteresis and friction are of the first, others last
     hysteresis: Estimate  #: the width of the curve at zero torque
     friction: Estimate | None  #: half the width in torque, N·m; None without a complete loop
     middle_line: MiddleLine  #: the mean of the largest ramps

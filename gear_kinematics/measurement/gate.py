@@ -149,7 +149,6 @@ def _steps(error: Array, ideal: Array) -> _Steps | None:
 
 
 def _stood_still(time: Array, still: Array, *, timed: bool) -> Observed:
-    """Say when an encoder stood still."""
     times = np.split(time[still], 1 + np.flatnonzero(np.diff(still) > 1))
     unit = ' s' if timed else ''
     spans = [f'{number(each[0], 6)} to {number(each[-1], 6)}{unit}' for each in times]

@@ -37,7 +37,7 @@ class Estimate:
 
     @classmethod
     def of_mean(cls, values: Values, *others: Component) -> Self:
-        """Estimate a quantity from at least one repeat, and components that all repeats share."""
+        """Estimate a quantity from at least one repeat, and components common to all repeats."""
         return cls.of_sum([(1.0, values)], *others)
 
     @classmethod
@@ -62,7 +62,7 @@ class Estimate:
         """Expanded uncertainty, by Student's t for `COVERAGE` (GUM G.3)."""
         if not self.standard:
             return self.standard
-        # Rounding must not cost a whole degree of freedom.
+        # Rounding errors must not cost a whole degree of freedom.
         degrees = int(min(self.degrees_of_freedom, _MAX_DEGREES) + 1e-6)
         return student_t(degrees) * self.standard if degrees else math.inf
 
@@ -111,8 +111,8 @@ def standard_error(
 ) -> tuple[float, int]:
     """Standard error of the mean of blocks in the order of time, and its degrees of freedom.
 
-    It is the greatest of those from groups of `together` neighbours, as neighbours may be
-    correlated. There are at least three groups, or two of single blocks; a lone value has none: 0.
+    As neighbours may be correlated, it is the greatest of the errors from groups of `together`
+    neighbours. These need at least three groups, or two single blocks; the error is 0 otherwise.
     """
     errors = [(0.0, 1)]
     for size in together:
@@ -129,7 +129,8 @@ def jackknife(fits: Values, *others: Component, together: Sequence[int] = (1,)) 
     (B. Efron, C. Stein, Annals of Statistics 9 (1981) 586)
 
     Args:
-        fits: to all blocks, which gives the value, and then without each block, (1 + blocks,).
+        fits: the fit to all blocks, which is the value, and then those without each block,
+            (1 + blocks,).
         others: further components of the uncertainty.
         together: numbers of neighbouring blocks that `standard_error` takes as one.
     """

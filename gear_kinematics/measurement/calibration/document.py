@@ -9,7 +9,6 @@ import numpy as np
 from gear_kinematics.measurement.calibration.check import Judgement
 from gear_kinematics.measurement.calibration.fit import Fit, interval_holds
 from gear_kinematics.measurement.json_values import plain
-from gear_kinematics.measurement.recording import Array
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.wording import ARC_MINUTES, plus_minus
 from gear_kinematics.report import document as doc
@@ -50,7 +49,7 @@ def document(fit: Fit, target: str) -> doc.Document:
         verdict,
         (doc.Sentence('finding', str(finding)),),
         tuple(map(printable, sentences)),
-        _figure(made.half_width, fit.output, fit.before, fit.after),
+        _figure(made.half_width, fit),
     )
     widths = {'half_width': made.half_width, 'outside_half_width': made.outside_half_width}
     data = {
@@ -82,15 +81,12 @@ def _remarks(fit: Fit) -> Iterator[str | Observed]:
         yield Observation.NOT_FITTED(term=name, cause=cause)
 
 
-def _figure(half_width: float, angle: Array, before: Array, after: Array) -> doc.Figure:
-    """Draw the errors before and after, rad, over the output angle, rad, and the interval."""
-    width = half_width * ARC_MINUTES
+def _figure(half_width: float, result: Fit | Judgement) -> doc.Figure:
+    """Draw the errors over the output angle, and the interval, whose half width is in rad."""
+    width, angle = half_width * ARC_MINUTES, np.degrees(result.output)
     lines = [
-        doc.Line.reduced(name, pen, np.degrees(angle), error * ARC_MINUTES)
-        for name, pen, error in (
-            ('before', doc.Pen.FAINT, before),
-            ('after', doc.Pen.FIRST, after),
-        )
+        doc.Line.reduced('before', doc.Pen.FAINT, angle, result.before * ARC_MINUTES),
+        doc.Line.reduced('after', doc.Pen.FIRST, angle, result.after * ARC_MINUTES),
     ]
     panel = doc.Panel(
         'error over the output angle, of samples that were not fitted',
@@ -145,5 +141,5 @@ def _section(half_width: float, judged: Judgement) -> doc.Section:
         doc.Verdict.PASS if judged.holds else doc.Verdict.FAIL,
         (doc.Sentence('finding', str(finding)),),
         tuple(map(printable, judged.remarks)),
-        _figure(half_width, judged.output, judged.before, judged.after),
+        _figure(half_width, judged),
     )

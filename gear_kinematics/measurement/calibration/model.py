@@ -1,8 +1,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The linear model of the errors of a gear, fitted to recordings of both encoders.
 
-Each recording has its own zero, and a delay between its encoders where that can be told. A delay
-that is clear is taken out of the stamps, as the error is in proportion to it for a moment only.
+Each recording has its own zero, and a delay between its encoders if that is separable. A clear
+delay is taken out of the stamps, as the error is proportional to it only over short times.
 
 Terms are removed unless each improves the prediction of blocks left out by more than one standard
 error of the paired differences of the blocks (T. Hastie, R. Tibshirani, J. Friedman, The Elements
@@ -29,15 +29,15 @@ from gear_kinematics.statistics.uncertainty import (
 
 TOGETHER = (1, 2, 4)  # successive blocks that are taken as one, in case neighbours are correlated
 _MAX_DEGREES = 10**9  # of freedom
-_SHIFTS = 4  # corrections of the delays, each for what the ones before left
+_SHIFTS = 4  # corrections of the delays, each of what the previous ones left
 _SETTLED = 1e-5  # s to which a delay is corrected
 
 
 class GearModel:
-    """The linear model of recordings, with the terms that are worth it."""
+    """The linear model of recordings, with those terms that improve its prediction."""
 
     def __init__(self, samples: Sequence[Samples], terms: Sequence[Term]) -> None:
-        """Fit a zero and a delay of each recording, and choose among terms of the gear."""
+        """Fit zero and delay of each recording, and choose among the terms of the gear."""
         self.samples = samples
         columns = columns_of(terms)
         common = sum(map(len, columns))
@@ -69,7 +69,7 @@ class GearModel:
 
     @property
     def delays(self) -> list[Estimate | None]:
-        """Delay of each recording, s; None where it cannot be told from hysteresis."""
+        """Delay of each recording, s; None if inseparable from hysteresis."""
         return [
             jackknife(s.shift + fits, together=TOGETHER) if s.tells_delay else None
             for s, fits in zip(self.samples, self._own.T[1::2], strict=True)
@@ -99,8 +99,8 @@ class GearModel:
 
         `values` are the columns that `values()` returns, (n, columns).
 
-        The parts are recordings or, of a single one, every other block, so that both have the
-        same angles: a trend is not known at others.
+        The parts are the recordings or, of a single one, alternate blocks, so that both cover the
+        same angles: a trend is unknown at others.
 
         Returns:
             The errors without and with the correction of all used samples, rad; the half width of
@@ -129,10 +129,10 @@ def half_width(residuals: Array) -> float:
 def without_delays(
     model_of: Callable[[Sequence[float]], GearModel], recordings: int
 ) -> tuple[GearModel, list[Estimate | None]]:
-    """Fit a model, and again with the delays taken out that are clear.
+    """Fit a model, and fit it again with clear delays removed.
 
-    `model_of` makes it with a delay, s, taken out of each of so many recordings. The model is
-    returned with the delay of each recording, s; None where it cannot be told.
+    `model_of` makes it with a given delay, s, removed from each recording. Returns the model and
+    the delay of each recording, s; None if inseparable from hysteresis.
     """
     late = [0.0] * recordings
     model = model_of(late)
@@ -147,7 +147,7 @@ def without_delays(
 
 
 def is_as_good(errors: Array, best: Array) -> bool:
-    """Whether errors of blocks are no greater than others by more than a standard error."""
+    """Return whether errors of blocks exceed others by no more than a standard error."""
     difference = errors - best
     return bool(difference.mean() <= standard_error(difference, TOGETHER)[0])
 
@@ -166,8 +166,9 @@ def widening(errors: Array) -> float:
 def select(equations: NormalEquations, terms: Sequence[Term], own: Sequence[int]) -> list[int]:
     """Choose among terms, whose columns are the first ones of the equations, in order.
 
-    A leading trend stays: any output has errors that vary slowly with its angle, and limit where
-    others hold. The equations have single blocks as folds; the columns `own` are always fitted.
+    A leading trend stays, as any output has errors that vary slowly with its angle, and limit
+    where others hold. The equations have single blocks as folds; the columns `own` are always
+    fitted.
     """
     columns = columns_of(terms)
 
