@@ -16,6 +16,7 @@ Array = NDArray[Any]
 _BLOCKS = 24  # blocks of all recordings together
 _RIDGE = 1e-9  # share of a column's sum of squares that keeps equations solvable
 _ROUNDING = 1e-13  # the least such share where something is expected of the coefficients
+_PASSES = 3  # over the columns, after which rounding decides
 _ALL, _WHOLE = slice(None), slice(1)  # fits: all of them, and that to all blocks
 
 
@@ -71,6 +72,27 @@ class NormalEquations:
         places = list(chosen)
         solution = np.linalg.solve(self.regular(places, fits), self.products[fits, places, -1:])
         return np.asarray(solution[:, :, 0] * self._scale[-1] / self._scale[places])
+
+    def not_above_zero(self, limited: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Find the coefficients, (columns,), that are not 0 if no limited one may be positive.
+
+        C. L. Lawson, R. J. Hanson, Solving Least Squares Problems, 1995, chapter 23.
+        """
+        matrix, right = self.regular(range(len(limited)), _WHOLE)[0], self.products[0, :-1, -1]
+        free, best = ~limited, np.zeros(len(limited))
+        for _ in range(_PASSES * len(limited)):
+            new = np.zeros(len(limited))
+            new[free] = np.linalg.solve(matrix[free][:, free], right[free])
+            if len(beyond := np.flatnonzero(limited & (new > 0.0))):  # go as far as all allow
+                shares = best[beyond] / (best[beyond] - new[beyond])
+                best += shares.min() * (new - best)
+                free[beyond[shares == shares.min()]] = False
+                continue
+            best, slope = new, np.where(free, 0.0, right - matrix @ new)
+            if slope.min() > -_ROUNDING:
+                break
+            free[np.argmin(slope)] = True
+        return free
 
     def first_order(self, chosen: Sequence[int]) -> Array:
         """Coefficients as of `solve`, but without each block by its influence, to first order.

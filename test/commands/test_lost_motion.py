@@ -344,7 +344,7 @@ def test_any_ratio_can_be_given(tmp_path, capsys, option):
     ('words', 'code', 'told'),
     [
         (['lost-motion', 'gear.csv'], 2, "gear_kinematics[measure]'"),
-        (['calibrate', 'gear.csv'], 2, "gear_kinematics[measure]'"),
+        (['calibrate', 'gear.csv'], 2, 'gear.csv: No such file'),
         (['commission', 'gear.csv'], 2, 'gear.csv: No such file'),
         (['validate', str(BAGS / 'servo_point_to_point')], 0, ''),
         (['lost-motion', '--help'], 2, "gear_kinematics[measure]'"),

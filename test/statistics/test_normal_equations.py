@@ -39,3 +39,18 @@ def test_influences_are_those_of_blocks_left_out(line):
     exact, nearly = equations.solve([0, 1]), equations.first_order([0, 1])
     assert nearly[0] == pytest.approx(exact[0], rel=1e-12)
     assert nearly[1:] - nearly[0] == pytest.approx(exact[1:] - exact[0], rel=0.15, abs=1e-4)
+
+
+@pytest.mark.parametrize('seed', range(40))
+def test_what_is_left_where_coefficients_may_not_be_positive(seed):
+    # Columns that are nearly alike, as those of stop operators are.
+    optimize = pytest.importorskip('scipy.optimize')
+    rng = np.random.default_rng(seed)
+    columns = np.cumsum(rng.standard_normal((500, 20)), axis=1) + 30.0
+    error = columns @ rng.standard_normal(20) + rng.standard_normal(500)
+    blocks = np.array_split(np.column_stack([columns, error]), 24)
+    equations = NormalEquations(np.array([block.T @ block for block in blocks]))
+    limited = np.arange(20) % 4 > 0
+    bounds = np.where(limited, 0.0, np.inf)
+    known = optimize.lsq_linear(columns, error, (-np.inf, bounds), method='bvls', tol=1e-14)
+    np.testing.assert_array_equal(equations.not_above_zero(limited), known.active_mask == 0)

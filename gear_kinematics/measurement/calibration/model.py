@@ -13,7 +13,6 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 import numpy as np
-from scipy.optimize import lsq_linear
 
 from gear_kinematics.correction.calibration_file import Stop
 from gear_kinematics.measurement.calibration.terms import Samples, Term, columns_of
@@ -177,11 +176,8 @@ def select(equations: NormalEquations, terms: Sequence[Term], own: Sequence[int]
 
     # The output lags by hysteresis, so that no coefficient of a stop operator is positive.
     lags = [isinstance(term.entry, Stop) for term in terms for _ in term.coefficients]
-    most = np.where([*lags, *(False for _ in own)], 0.0, np.inf)
-    root = np.linalg.cholesky(equations.regular(range(len(most)))[0])
-    right = np.linalg.solve(root, equations.products[0, :-1, -1])
-    fitted = lsq_linear(root.T, right, (-np.inf, most), method='bvls')
-    path = [[k for k, place in enumerate(columns) if fitted.active_mask[place[0]] == 0]]
+    fitted = equations.not_above_zero(np.array([*lags, *(False for _ in own)]))
+    path = [[k for k, place in enumerate(columns) if fitted[place[0]]]]
     fixed = int(bool(terms) and terms[0].is_trend)
     while len(path[0]) > fixed:
         smaller = [[k for k in path[0] if k != gone] for gone in path[0] if gone >= fixed]
