@@ -26,7 +26,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gear_kinematics.bag import Bag
+from gear_kinematics.bag import Bag, MessagesByTopic
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.share import share_directory
@@ -508,7 +508,8 @@ def recorded(recording: Recording, messages: Sequence[Sent], node: Node) -> set[
     rotor = [(f'/{ROTOR_STATE}', m.received, m.data) for m in messages if m.true == m.true]
     outputs = [('/output_state', time + 1, data) for time, _, _, data in node.outputs]
     validator = Validator(Task(Path('faulty'), recording.parameters))
-    validator.feed([sorted(rotor + outputs, key=lambda each: each[1])])
+    messages = sorted(rotor + outputs, key=lambda each: each[1])
+    validator.feed([MessagesByTopic(validator.topics, messages)])
     report = validator.report()
     health = report.rotor
     texts = {sentence(finding, report) for finding in report.findings}

@@ -7,7 +7,7 @@ package of it, nothing else needs it.
 """
 
 from gear_kinematics.bag.errors import BagError, DamagedBagError, TopicError
-from gear_kinematics.bag.reading import Bag, ReportProgress, TopicMessages, by_topic
+from gear_kinematics.bag.reading import Bag, MessagesByTopic, ReportProgress, TopicMessages
 from gear_kinematics.bag.storage import Message, Topic, in_batches
 
 __all__ = [
@@ -15,10 +15,10 @@ __all__ = [
     'BagError',
     'DamagedBagError',
     'Message',
+    'MessagesByTopic',
     'ReportProgress',
     'Topic',
     'TopicError',
     'TopicMessages',
-    'by_topic',
     'in_batches',
 ]

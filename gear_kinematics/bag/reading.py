@@ -5,10 +5,11 @@ import tempfile
 from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Mapping
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from types import MappingProxyType
-from typing import IO, Self
+from typing import IO, Any, Self
 
 from gear_kinematics.bag.codecs import ReadLimits, codec_of, decompress_file, decompressed
 from gear_kinematics.bag.errors import BagError, DamagedBagError, bag_errors, cause
@@ -27,8 +28,8 @@ from gear_kinematics.bag.storage import (
 
 ReportProgress = Callable[[int, int | None], None]
 """Called repeatedly with the number of messages done, and the total if known."""
-_BATCH, _BATCH_SIZE, _TOPICS = 16_384, 2**22, 3
-"""Messages and bytes of so many topics; with a quarter, a validation takes 1.2 times as long."""
+_BATCH, _BATCH_SIZE, _TOPICS = 32_768, 2**23, 3
+"""Messages and bytes of so many topics; with half of them, validating takes 1.1 times as long."""
 
 
 def _ros1(path: Path, limits: ReadLimits) -> Storage:
@@ -51,6 +52,27 @@ class TopicMessages:
 
     data: list[bytes] = field(default_factory=list)  # contents as CDR
     received: list[int] = field(default_factory=list)  # times of reception, ns
+
+
+class MessagesByTopic(dict[str, TopicMessages]):
+    """The messages of each topic, in the order of reception; other topics have none."""
+
+    def __init__(self, topics: Iterable[str], messages: Iterable[Message] = ()) -> None:
+        """Divide messages by their topics, all of which must be among the given ones."""
+        super().__init__({topic: TopicMessages() for topic in topics})
+        self._append = {topic: (of.data.append, of.received.append) for topic, of in self.items()}
+        self += messages
+
+    def __iadd__(self, messages: Iterable[Message]) -> Self:
+        append = self._append
+        for topic, received, data in messages:
+            add_data, add_received = append[topic]
+            add_data(data)
+            add_received(received)
+        return self
+
+    def __missing__(self, topic: str) -> TopicMessages:
+        return TopicMessages()
 
 
 class Bag:
@@ -107,12 +129,33 @@ class Bag:
         `any_encoding`, messages that are not CDR are read, too; with `publish_times`, those of an
         mcap are `Published`.
         """
-        done = 0
         options = {'any_encoding': any_encoding, 'publish_times': publish_times}
-        share = max(1, len(topics) // _TOPICS)
-        for batch in joined(self._pieces(topics, **options), share * _BATCH, share * _BATCH_SIZE):
+        return self._batches(self._pieces(topics, **options), topics, progress, list)
+
+    def by_topic(
+        self, topics: Collection[str], progress: ReportProgress | None = None
+    ) -> Iterator[MessagesByTopic]:
+        """Read the messages of each topic as `batches` does, in less time."""
+        new = partial(MessagesByTopic, topics)
+        return self._batches(self._pieces(topics), topics, progress, new)
+
+    def _batches(
+        self,
+        pieces: Iterator[list[Message]],
+        topics: Collection[str],
+        progress: ReportProgress | None,
+        new: Callable[[], Any],
+    ) -> Iterator[Any]:
+        share, done = max(1, len(topics) // _TOPICS), 0
+
+        def counted() -> Iterator[list[Message]]:
+            nonlocal done
+            for piece in pieces:
+                done += len(piece)
+                yield piece
+
+        for batch in joined(counted(), share * _BATCH, share * _BATCH_SIZE, new):
             yield batch
-            done += len(batch)
             if progress:
                 progress(done, self.message_count)
 
@@ -174,17 +217,6 @@ class Bag:
                     storage.read += len(piece)
                     yield piece
             read += storage.read
-
-
-def by_topic(messages: Iterable[Message], topics: Iterable[str]) -> dict[str, TopicMessages]:
-    """Return the messages of each topic."""
-    columns = {topic: TopicMessages() for topic in topics}
-    append = {topic: (of.data.append, of.received.append) for topic, of in columns.items()}
-    for topic, received, data in messages:
-        add_data, add_received = append[topic]
-        add_data(data)
-        add_received(received)
-    return columns
 
 
 def _plain(pieces: Iterator[list[Message]], limits: ReadLimits) -> Iterator[list[Message]]:

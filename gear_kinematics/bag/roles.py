@@ -10,7 +10,7 @@ from typing import NamedTuple, Self
 from gear_kinematics.bag.errors import BagError
 from gear_kinematics.bag.reading import Bag
 from gear_kinematics.bag.storage import missing_topic
-from gear_kinematics.wire.cdr import MalformedMessageError
+from gear_kinematics.wire.batches import JointStateBatch
 from gear_kinematics.wire.joint_reader import joints_of
 from gear_kinematics.wire.nearest import among, listed
 from gear_kinematics.wire.topics import (
@@ -129,17 +129,21 @@ def joints_on(bag: Bag, topics: Sequence[str]) -> dict[str, list[str]]:
 
     A topic without a readable message has none.
     """
-    joints: dict[str, dict[str, None]] = {topic: {} for topic in topics}
+    first: dict[str, list[bytes]] = {topic: [] for topic in topics}
     left = set(topics)
     with suppress(BagError):
         for number, (topic, _, data) in enumerate(bag.messages(topics)):
             if number < _JUDGED or topic in left:
                 left.discard(topic)
-                with suppress(MalformedMessageError):
-                    joints[topic] |= dict.fromkeys(joints_of(data))
+                first[topic].append(data)
             if number >= _JUDGED and not left:
                 break
-    return {topic: list(names) for topic, names in joints.items()}
+    joints = {}
+    for topic, messages in first.items():
+        rows = sorted(rows[0] for rows, *_ in JointStateBatch(messages).tables)  # of each layout
+        names = (name for row in rows for name in joints_of(messages[row]))
+        joints[topic] = [*dict.fromkeys(names)]
+    return joints
 
 
 def find_encoder_topic(bag: Bag, rotor: str, given: str | None = None) -> str:

@@ -1,7 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The interface of a file of a bag, and the description of its topics."""
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from operator import itemgetter
 from pathlib import Path
 from typing import Any, NamedTuple, Self
@@ -118,24 +118,28 @@ def in_batches(messages: Iterable[Message], count: int = 256) -> Iterator[list[M
     return joined(([message] for message in messages), count, 2**20)
 
 
-def joined(pieces: Iterable[list[Message]], count: int, size: int) -> Iterator[list[Message]]:
+def joined(
+    pieces: Iterable[list[Message]], count: int, size: int, new: Callable[[], Any] = list
+) -> Iterator[Any]:
     """Join pieces to batches, each until it has `count` messages or `size` bytes.
 
-    Messages before an exception are yielded before it is raised.
+    A batch begins as what `new` returns, to which pieces are added by `+=`. Messages before an
+    exception are yielded before it is raised.
     """
-    batch, taken = list[Message](), 0
+    batch, messages, taken = new(), 0, 0
     try:
         for piece in pieces:
             batch += piece
+            messages += len(piece)
             taken += sum(map(len, map(_DATA, piece)))
-            if len(batch) >= count or taken >= size:
+            if messages >= count or taken >= size:
                 yield batch
-                batch, taken = [], 0
+                batch, messages, taken = new(), 0, 0
     except Exception:
-        if batch:
+        if messages:
             yield batch
         raise
-    if batch:
+    if messages:
         yield batch
 
 

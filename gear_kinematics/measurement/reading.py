@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gear_kinematics.bag import BagError, DamagedBagError, ReportProgress, TopicMessages, by_topic
+from gear_kinematics.bag import BagError, DamagedBagError, ReportProgress, TopicMessages
 from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, missing_encoder
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
 from gear_kinematics.measurement.columns import Sources
@@ -80,8 +80,7 @@ def _read_bag(
         states = States(rotor, encoder, parameters, _MOST_STATES)
         topics = [topic for topic in (rotor, encoder) if topic]
         try:
-            for batch in bag.batches(topics, progress):
-                found = by_topic(batch, topics)
+            for found in bag.by_topic(topics, progress):
                 states.add(found[rotor], found[encoder] if encoder else None)
                 if sources.as_recorded and len(heard.data) < MOST:
                     heard.data += found[rotor].data

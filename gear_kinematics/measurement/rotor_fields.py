@@ -72,9 +72,9 @@ def recorded_questions(
     """Yield the questions on a topic of a bag, up to any damage; see `questions`."""
     data, received = list[bytes](), list[int]()
     try:
-        for batch in bag.batches([topic]):
-            received += [message[1] for message in batch]
-            data += [message[2] for message in batch]
+        for batch in bag.by_topic([topic]):
+            received += batch[topic].received
+            data += batch[topic].data
             if len(data) > MOST:
                 break
     except DamagedBagError:

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from gear_kinematics.bag import Message, TopicMessages, by_topic
+from gear_kinematics.bag import MessagesByTopic, TopicMessages
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.fields import Array, Occurrences
@@ -157,11 +157,10 @@ class ArmValidator:
             if of
         }
 
-    def feed(self, batches: Iterable[Sequence[Message]]) -> None:
+    def feed(self, batches: Iterable[MessagesByTopic]) -> None:
         """Process messages, up to an exception of the iterable, if any; see `Validator.feed`."""
-        for batch in batches:
-            messages = by_topic(batch, self.topics)
-            self._messages += len(batch)
+        for messages in batches:
+            self._messages += sum(len(of.data) for of in messages.values())
             states = {
                 topic: JointStateBatch(messages[topic].data)
                 for topic in (self._rotor, *self._joined)

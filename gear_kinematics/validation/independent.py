@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from gear_kinematics.bag import Message
+from gear_kinematics.bag import MessagesByTopic
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.kinematics import Mechanism, matrix_method
 from gear_kinematics.validation.task import Task
@@ -104,9 +104,9 @@ class Independent:
         self._offset: float | None = None  # rad, from positions to rotor angles
         self._given = self._compared = self._taken = 0
 
-    def take(self, messages: Iterable[Message]) -> None:
-        """Take the next messages, in the order of their reception."""
-        for topic, data in ((m[0], m[2]) for m in messages if m[0] in self._topics):
+    def take(self, messages: MessagesByTopic) -> None:
+        """Take the next messages of each topic, in the order of their reception."""
+        for topic, data in ((of, data) for of in self._topics for data in messages[of].data):
             self._given += topic in (self._topics.output, self._topics.poses)
             with suppress(ValueError, IndexError, struct.error):  # it cannot be decoded
                 cdr = _Cdr(data)

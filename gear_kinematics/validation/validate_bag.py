@@ -10,7 +10,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, in_batches
+from gear_kinematics.bag import Bag, BagError, Message, MessagesByTopic, ReportProgress, in_batches
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.bag.roles import (
     Topics,
@@ -131,6 +131,7 @@ def _judged(
     found = only_joint(bag, topics.rotor, joint) if task.only_joint and joint else joint
     task = replace(task, parameters=replace(task.parameters, rotor_joint=found))
     names: Sequence[str] = ()
+    batches: Iterable[MessagesByTopic]
     if play:
         total = count_due(bag, [topics.rotor]) if progress else None
         messages = play(
@@ -140,20 +141,21 @@ def _judged(
             encoder_topic=encoder,
             progress=lambda sent, _: progress and progress(sent, total),
         )
-        batches = in_batches(messages, _BATCH)
         further = in_namespace(CORRECTED_TOPICS) if task.calibration else {}
         live = replace(task, strict=True)  # nothing is lost by a recorder here
         own = Topics() if known else Topics(poses='')
         validator = Validator(live, own, further, encoder=encoder and f'/{OUTPUT_ENCODER}')
+        lists = in_batches(messages, _BATCH)
+        batches = (MessagesByTopic(validator.topics, messages) for messages in lists)
     else:
         judged = *CORRECTED_TOPICS, *(_OF_BODIES if known else ())
         further = find_in_namespace(bag, judged, topics.output)
         names = (*topics, *further.values(), *filter(None, [encoder]))
-        batches = bag.batches(names, progress)
         if not known:  # poses are not judged, which is said
             poses = find_in_namespace(bag, [BODY_POSES], topics.output)
             topics = topics._replace(poses=poses.get(BODY_POSES, ''))
         validator = Validator(task, topics, further, encoder=encoder)
+        batches = bag.by_topic(names, progress)
     proof = Independent(task, Topics() if play else topics) if task.independent else None
     damage = None
     try:
@@ -195,7 +197,7 @@ def _judged_arm(task: Task, bag: Bag, progress: ReportProgress | None) -> BagRep
         proofs.append(Independent(each, of) if task.independent else None)
     arm, damage = ArmValidator(validators), None
     recorded = sorted(arm.topics - {''})
-    batches: Iterable[Sequence[Message]] = bag.batches(recorded, progress)
+    batches: Iterable[MessagesByTopic] = bag.by_topic(recorded, progress)
     for proof in filter(None, proofs):
         batches = _seen(proof, batches)
     try:
@@ -220,7 +222,7 @@ def _explained(report: BagReport, task: Task, bag: Bag, topics: Topics) -> BagRe
     wrong = any(topic.wrong for topic in report.topics)
     for other in joints_on(bag, [topics.rotor])[topics.rotor] if wrong else ():
         of_other = replace(task, parameters=replace(task.parameters, rotor_joint=other))
-        if other != joint and agrees(of_other, topics, islice(bag.batches(topics), 1)):
+        if other != joint and agrees(of_other, topics, islice(bag.by_topic(topics), 1)):
             actuator = task.parameters.actuator
             cause = FindingCause.OTHER_ROTOR if actuator else FindingCause.OTHER_JOINT
             values = {'joint': joint, 'other': other, 'actuator': actuator}
@@ -262,7 +264,7 @@ def _recorded_losses(bag: Bag) -> Counter[str]:
     return lost
 
 
-def _seen(proof: Independent, batches: Iterable[Sequence[Message]]) -> Iterator[Sequence[Message]]:
+def _seen(proof: Independent, batches: Iterable[MessagesByTopic]) -> Iterator[MessagesByTopic]:
     """Pass messages on after an independent comparison has taken them."""
     for batch in batches:
         proof.take(batch)

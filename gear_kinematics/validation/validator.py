@@ -1,7 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Compares the outputs of a node with recomputed ones, in one pass over a recording."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from gear_kinematics.bag import BagError, Message, TopicMessages, by_topic
+from gear_kinematics.bag import BagError, MessagesByTopic
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.correction.corrector import Correction
 from gear_kinematics.kinematics import Mechanism
@@ -36,7 +36,6 @@ from gear_kinematics.wire.topics import JOINT_STATES, LOAD_TOPICS
 _FRAME = 'stator'
 _TOPICS = Topics()
 _NONE: Mapping[str, str] = MappingProxyType({})
-Batch = Mapping[str, TopicMessages]  #: messages by the names of their topics
 
 
 class Validator:
@@ -116,10 +115,10 @@ class Validator:
         self._prefix_open = not (parameters.frame_prefix or parameters.actuator)
         self._findings: list[Finding] = []
 
-    def feed(self, batches: Iterable[Sequence[Message]]) -> None:
+    def feed(self, batches: Iterable[MessagesByTopic]) -> None:
         """Process batches of messages, up to an exception of the iterable, if any."""
         for batch in batches:
-            self.take(by_topic(batch, self.topics))
+            self.take(batch)
 
     @np.errstate(all='ignore')  # recorded numbers are arbitrary; overflows fail
     def report(
@@ -131,7 +130,7 @@ class Validator:
         says that it lost, by topic.
         """
         if any(output.late for output in self.outputs):  # they wait for one more batch
-            self.feed([()])
+            self.take(MessagesByTopic(self.topics))
         self._drop(len(self._window))
         contradict = self._state.input.velocity_field.contradicts
         self.output.judge_velocities(contradict=contradict)
@@ -188,7 +187,7 @@ class Validator:
         return [output for _, outputs in self._groups for output in outputs]
 
     @np.errstate(all='ignore')
-    def take(self, batch: Batch) -> None:
+    def take(self, batch: MessagesByTopic) -> None:
         """Process messages on the topics, and perhaps on others."""
         if self._prefix_open and any(messages.data for messages in batch.values()):
             self._find_prefix(batch)
@@ -207,7 +206,7 @@ class Validator:
         answered = len(done) if done.all() else int(np.argmin(done))
         self._drop(max(answered, len(done) - WINDOW))
 
-    def _add_samples(self, batch: Batch) -> Array:
+    def _add_samples(self, batch: MessagesByTopic) -> Array:
         """Add the rotor's samples to the window, and return their unbroken segments, (n,)."""
         messages = batch[self._topics.rotor]
         field = self._state.input.effort_field
@@ -289,7 +288,7 @@ class Validator:
                         self._given_segment = segment
         return withheld
 
-    def _find_prefix(self, batch: Batch) -> None:
+    def _find_prefix(self, batch: MessagesByTopic) -> None:
         """Adopt the frame prefix of the first output, if any."""
         for output in filter(None, (self.poses, self.output)):
             with suppress(MalformedMessageError, IndexError):
@@ -327,7 +326,7 @@ class Validator:
             yield Finding(FindingCause.CORRECTION_UNJUDGED, values={'why': self._why_unjudged})
 
 
-def agrees(task: Task, topics: Topics, batches: Iterable[Sequence[Message]]) -> bool:
+def agrees(task: Task, topics: Topics, batches: Iterable[MessagesByTopic]) -> bool:
     """Whether the outputs in batches, up to any damage, are those of a task."""
     validator = Validator(task, topics)
     with suppress(BagError):

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from gear_kinematics.bag import Message, by_topic
+from gear_kinematics.bag import Message, MessagesByTopic
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.commissioning.analysis import Commissioning, Request, commission
@@ -79,7 +79,7 @@ class LiveCommissioning:
     def _analyse(self) -> Commissioning:
         while not self._taken.empty():
             messages = self._taken.get()
-            found = by_topic(messages, self._topics)
+            found = MessagesByTopic(self._topics, messages)
             self._states.add(*(found[topic] for topic in self._topics))
             self._count += len(messages)
         name = f'live on {datetime.now().astimezone():%Y-%m-%d at %H:%M}'

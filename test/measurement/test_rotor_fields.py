@@ -54,8 +54,8 @@ def test_wrong_fields_are_named(factor, efforts, asked, wrap, tmp_path, capsys, 
     if 'output' not in ''.join(asked):
         assert all(f'/rotor_state: {each}' in told for each in asked)
     monkeypatch.chdir(tmp_path)
-    read, batches = [], Bag.batches
-    monkeypatch.setattr(Bag, 'batches', lambda *a: read.append(a) or batches(*a))
+    read, by_topic = [], Bag.by_topic
+    monkeypatch.setattr(Bag, 'by_topic', lambda *a: read.append(a) or by_topic(*a))
     assert main(['commission', str(path)]) == 0
     assert len(read) == 1  # once for the encoders and for these fields
     told = capsys.readouterr().out

@@ -1,9 +1,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Validates messages, and finds its way in the report."""
 
+from collections.abc import Iterable
 from pathlib import Path
 
-from gear_kinematics.bag import Message, in_batches
+from gear_kinematics.bag import Message, MessagesByTopic, in_batches
+from gear_kinematics.validation.arm import ArmValidator
 from gear_kinematics.validation.findings import sentence
 from gear_kinematics.validation.report import BagReport, FieldReport, TopicReport
 from gear_kinematics.validation.task import Task
@@ -22,8 +24,14 @@ def validate(
     task = Task(Path('bag'), config, **options)
     named = {'further': further or {}, 'encoder': encoder}
     validator = Validator(task, *topics, **named)
-    validator.feed(in_batches(messages, 8192))
+    feed(validator, messages, 8192)
     return validator.report()
+
+
+def feed(validator: Validator | ArmValidator, messages: Iterable[Message], size: int) -> None:
+    """Feed messages to a validator in batches of a size."""
+    batches = in_batches(messages, size)
+    validator.feed(MessagesByTopic(validator.topics, batch) for batch in batches)
 
 
 def texts(report: BagReport) -> list[str]:

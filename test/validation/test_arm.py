@@ -9,8 +9,8 @@ import pytest
 from arm_recordings import OUTPUT, RATIOS, ROTOR, Joints, config, recording
 from blocked_bags import BAGS, gearkin_here, refusal
 from shipped_bags import JOINT_STATE, write_bag
+from validating import feed
 
-from gear_kinematics.bag import in_batches
 from gear_kinematics.parameters.arm import load_actuators
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation import Task, explain
@@ -27,7 +27,7 @@ def judged(path, messages, size: int = 10_000):
     actuators = load_actuators(config(path / 'arm.yaml'))
     task = of_arm([Task(path, each) for each in actuators.values()])
     arm = ArmValidator([Validator(each) for each in task.actuators])
-    arm.feed(in_batches(messages, size))
+    feed(arm, messages, size)
     return arm.report(task, arm.reports(None, {}))
 
 

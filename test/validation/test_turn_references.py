@@ -17,6 +17,7 @@ from rosbag2_recorder import Message, record
 from shipped_bags import JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, read_bag, write_bag
 from validating import texts, validate
 
+from gear_kinematics.bag import MessagesByTopic
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.ros.live import live_messages
@@ -194,7 +195,8 @@ def test_a_pose_recorded_before_its_output_is_not_judged_by_the_zero_before(conf
     assert (messages[first][0], messages[first + 1][0]) == (OUTPUT, POSES)
     swapped = [*messages[:first], messages[first + 1], messages[first], *messages[first + 2 :]]
     validator = Validator(Task(Path('bag'), config), encoder=ENCODER)
-    validator.feed([swapped[: first + 1], swapped[first + 1 :]])
+    parts = swapped[: first + 1], swapped[first + 1 :]
+    validator.feed(MessagesByTopic(validator.topics, part) for part in parts)
     report = validator.report()
     assert (report.verdict, texts(report)) == (Verdict.PASS, [AGREES])
 

@@ -15,9 +15,9 @@ from live import rotor_bytes
 from node_loop import answered
 from replaying import SECOND, edited
 from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, read_bag
-from validating import field_of, texts, topic_of, validate
+from validating import feed, field_of, texts, topic_of, validate
 
-from gear_kinematics.bag import Message, in_batches
+from gear_kinematics.bag import Message
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.causes import FindingCause
@@ -312,7 +312,7 @@ def test_outputs_for_inputs_without_stamps_are_matched_in_their_order(recorded, 
     ):
         for size in (8192, 50):
             validator = Validator(Task(Path('bag'), config))
-            validator.feed(in_batches(messages, size))
+            feed(validator, messages, size)
             report = validator.report()
             for topic in report.topics:
                 found = topic.compared, topic.missing, topic.extra
@@ -478,7 +478,7 @@ def test_homing_during_a_recording_passes_and_is_said(recorded, config, encoder,
     rotor = [message for message in recorded if message[0] == ROTOR]
     messages = answered(config, rotor, home_after=place)
     validator = Validator(Task(Path('bag'), config))
-    validator.feed(in_batches(messages, 300))
+    feed(validator, messages, 300)
     report = validator.report()
     assert report.verdict == Verdict.PASS
     position = replaying.decode(rotor[place - 1][2], JOINT_STATE).position[0]

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.bag import BagError, ReportProgress, TopicMessages, by_topic
+from gear_kinematics.bag import BagError, ReportProgress, TopicMessages
 from gear_kinematics.bag.roles import find_rotor_topic, only_joint
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.columns import Sources
@@ -195,7 +195,7 @@ def read_loads(task: LoadTask, progress: ReportProgress | None = None) -> Record
             if task.only_joint:
                 joint = only_joint(bag, topic, parameters.rotor_joint)
                 parameters = replace(parameters, rotor_joint=joint)
-            batches = (by_topic(batch, [topic])[topic] for batch in bag.batches([topic], progress))
+            batches = (batch[topic] for batch in bag.by_topic([topic], progress))
         gear, loads = GearState(parameters), LoadEstimator(parameters)
         try:
             for messages in batches:
