@@ -36,6 +36,10 @@ def numbers(column: Any, point: str = '.') -> Any:
     text = column.astype(str).str.strip().str.replace('\u2212', '-')
     text = text.str.replace(r'(?<=\d) sec$', '', regex=True)  # as MATLAB writes durations
     text = text.str.replace(r"(?<=\d)[ '\u00a0\u202f](?=\d{3}\b)", '', regex=True)
+    if text.str.fullmatch('(0x)?[0-9a-fA-F]{1,15}').all() and (
+        text.str.startswith('0x').all() or text.str.len().eq(len(text.iloc[0])).all()
+    ):  # hexadecimal, as not all are decimal
+        return text.map(lambda digits: int(digits, 16)).to_numpy()
     other = re.escape('.' if point == ',' else ',')
     marked = text[text.str.contains(other)]
     grouped = rf'[-+]?[1-9]\d{{0,2}}({other}\d{{3}})+({re.escape(point)}\d*)?'
@@ -56,6 +60,7 @@ def numbers(column: Any, point: str = '.') -> Any:
         moments = pd.Timestamp(0) + pd.to_timedelta(plain, errors='coerce') + later
     if not moments.notna().any():  # other dates, of which 1/2/2026 is in January
         date = r'\d\d?[./-](\d\d?|[A-Za-z]{3})[./-](\d{4}|(?<=[./])\d\d) +\d\d?:\d\d'
+        date = rf'\d{{4}}[./-]\d\d?[./-]\d\d?[ T]+\d\d?:\d\d|{date}'  # with AM or PM
         dates = text.where(text.str.match(date))
         dates = dates.str.replace(r'([./])(\d\d)(?= )', r'\g<1>20\2', regex=True)
         day_first = dates.str.match(r'\d+\.').any()

@@ -11,17 +11,24 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.encoder_step import UNITS
 from gear_kinematics.wire.nearest import among
 
-_ROTOR = ('rotor', 'motor', 'mot', 'odrive', 'antrieb')
-_OUTPUT = ('output', 'out', 'load', 'shaft', 'link', 'joint', 'abtrieb')
+_ROTOR = ('rotor', 'motor', 'mot', 'odrive', 'antrieb', 'moteur', 'motore')
+_OUTPUT = (
+    'output', 'out', 'load', 'shaft', 'link', 'joint', 'abtrieb', 'sortie', 'uscita', 'salida',
+)  # fmt: skip
 """Words for the two sides of the gear, the likeliest first."""
 _ANGLE = (
     'position', 'positions', 'pos', 'angle', 'encoder', 'enc', 'theta', 'deflection', 'twist',
-    'winkel',
+    'winkel', 'drehwinkel', 'angolo', 'ángulo', 'angulo',
 )  # fmt: skip
 _STAMP = ('stamp', 'timestamp', 'timestamps')
-_TORQUE = ('torque', 'torques', 'effort', 'efforts', 'trq', 'drehmoment')
+_TORQUE = (
+    'torque', 'torques', 'effort', 'efforts', 'trq', 'drehmoment', 'moment', 'couple', 'coppia',
+)  # fmt: skip
 _KNOWN_WORDS = (*_ROTOR, *_OUTPUT, *_ANGLE, *_TORQUE, 'current')
-_TIME = ('time', 't', *_STAMP, 'today', 'datetime', 'elapsed', 'zeit', 'xtime', 'x')
+_TIME = (
+    'time', 't', *_STAMP, 'today', 'datetime', 'elapsed', 'zeit', 'uhrzeit', 'temps', 'tempo',
+    'tiempo', 'xtime', 'x',
+)  # fmt: skip
 _FILLING = {
     'header', 'receive', 'log', 'measured', 'actual', 'act', 'filtered', 'raw', 'field', 'data',
     'value', 'values', 'feedback', 'state', 'states', 'axis', 'present', 'sensor', 'abs', 'side',
@@ -38,6 +45,7 @@ _OF_ANGLE = {
     **dict.fromkeys(('°', 'degree', 'degrees'), UNITS['deg']),
     'mdeg': UNITS['deg'] / 1000.0,
     'cdeg': UNITS['deg'] / 100.0,
+    'ddeg': UNITS['deg'] / 10.0,
     'mrev': TURN / 1000.0,
     **dict.fromkeys(('urad', 'µrad'), 1e-6),
     **dict.fromkeys(('arcmin', '′'), UNITS['deg'] / 60.0),
@@ -48,7 +56,15 @@ _OF_ANGLE = {
 }
 _UNITS: Mapping[str, Mapping[str, float | None]] = {
     **dict.fromkeys(_ANGULAR, _OF_ANGLE),
-    'torque': {'nm': 1.0, 'n·m': 1.0, 'mnm': 1e-3, 'nmm': 1e-3, 'ncm': 1e-2, 'knm': 1e3},
+    'torque': {
+        **dict.fromkeys(('nm', 'n·m'), 1.0),
+        **dict.fromkeys(('mnm', 'nmm'), 1e-3),
+        'ncm': 1e-2,
+        'knm': 1e3,
+        **dict.fromkeys(('kgcm', 'kgfcm'), 0.0980665),
+        **dict.fromkeys(('lbft', 'ftlb', 'lbfft'), 1.3558179483),
+        **dict.fromkeys(('lbin', 'inlb', 'lbfin'), 0.1129848290),
+    },
     'time': {
         **dict.fromkeys(('s', 'sec', 'secs', 'second', 'seconds'), 1.0),
         **dict.fromkeys(('ms', 'msec', 'millis', 'milliseconds'), 1e-3),
@@ -64,6 +80,10 @@ _NO_UNIT = {'-', 'none', 'n/a', '1', ':'}
 _SPEEDS = {'rpm', 'rps', 'dps', 'cps'}
 _SCALED = re.compile(r'(?<![^\W_])(?:\d+\.\d+ ?|\d+)([^\W\d_]+|°)$')
 """A unit with a number, as in rotor_0.1deg, which is not part of the name."""
+_TENTHS = re.compile(r'(?i)[ _]?(deg|rad|rev)[ _]?x1(0{1,3})$')
+_COMPOUND = re.compile(f'({"|".join(_ROTOR + _OUTPUT)})s?({"|".join(_ANGLE + _TORQUE)})')
+"""Two words without anything between them, as in motorpos and Abtriebswinkel."""
+_OF_CATMAN = re.compile(r'(?i)^(time|zeit) +\d+ - [^[]*')
 _BRACKETS = re.compile(r'[\[(]\s*([^\])]*?)\s*[\])]')
 _CAMEL = re.compile(r'[A-Z]+(?![a-zµ])|[A-Z]?[^\W\d_A-Z]+|\d+|°')
 _MOTEUS = {'position', 'torque', 'q_current'}
@@ -145,7 +165,8 @@ def find_columns(
     elif 'torque' in found and (angles := [found[role] for role in _ANGULAR if role in found]):
         found = {'angle': angles[0]} | {r: found[r] for r in found if r in {'torque', 'time'}}
     else:
-        known = f'known units: {", ".join(ANGLE_UNITS)}, {", ".join(_UNITS["torque"])}'
+        torques = {size: unit for unit, size in reversed([*_UNITS['torque'].items()])}
+        known = f'known units: {", ".join((*ANGLE_UNITS, *reversed(torques.values())))}'
         raise ColumnsError(f'neither an angle and a torque nor a rotor and an output ({known})')
     if own := [clocks[name] for name in found.values() if name in clocks]:
         found['time'] = own[0]
@@ -205,11 +226,22 @@ def _column(role: str, name: str, given: Sources, common: str, below: Mapping[st
         unit = f'{counts} counts a turn' if counts else 'counts'
     elif unit:
         unit = next(one for one, size in _UNITS[role].items() if size == scale)
-    on_output = bool(set(words) & set(_OUTPUT))
-    # The current of a motor may give the torque of either side.
-    on_rotor = given.on_rotor or (bool(set(words) & set(_ROTOR)) and 'current' not in words)
+    on_rotor, on_output = sides(name)
+    # The current of a motor says a torque of either side.
+    on_rotor = given.on_rotor or (on_rotor and 'current' not in words)
     borrowed = role in _ANGULAR and bool(unit) and not own
     return Column(name, scale, unit, on_rotor and not on_output, on_output, borrowed)
+
+
+def sides(name: str) -> tuple[bool, bool]:
+    """Return whether a name says the rotor, and whether it says the output."""
+    words, _ = _split(name)
+    return not {*words}.isdisjoint(_ROTOR), not {*words}.isdisjoint(_OUTPUT)
+
+
+def may_be_angle(name: str) -> bool:
+    """Return whether the unit in a name, if any, is one of angles."""
+    return _split(name)[1] in {'', *_OF_ANGLE}
 
 
 def _role(name: str) -> tuple[str, tuple[int, ...]]:
@@ -219,18 +251,20 @@ def _role(name: str) -> tuple[str, tuple[int, ...]]:
     if not words and unit in _UNITS['time']:
         return 'time', (9,)
     if keys and {*keys} <= {*_TIME} and (keys != ['x'] or 'value' in words):
-        # A message's stamp is the time of sampling, that of a log the time of reception.
+        # The stamp of a message is when it was sampled; a log has when it was received.
         first = 0 if keys == ['stamp'] and 'header' in words and not unit else len(words)
         return 'time', (first, _TIME.index(keys[0]))
-    sides = [one for one, those in (('rotor', _ROTOR), ('output', _OUTPUT)) if {*keys} & {*those}]
+    shafts = [one for one, said in zip(('rotor', 'output'), sides(name), strict=True) if said]
     kinds = [one for one, those in (('torque', _TORQUE), ('angle', _ANGLE)) if {*keys} & {*those}]
-    unclear = len(kinds) > 1 or (len(sides) > 1 and 'torque' not in kinds and 'joint' not in keys)
+    if unit in _UNITS['torque'] and not kinds:
+        kinds = ['torque']  # as of load_Nm
+    unclear = len(kinds) > 1 or (len(shafts) > 1 and 'torque' not in kinds and 'joint' not in keys)
     if not keys or not {*keys} <= {*_KNOWN_WORDS} or '/' in unit or unit in _SPEEDS or unclear:
         return '', ()
     if 'current' in keys and 'torque' not in kinds:
         return '', ()
     rank = (len(words), *map(_KNOWN_WORDS.index, keys))
-    return 'torque' if 'torque' in kinds else (*sides, 'angle')[0], rank
+    return 'torque' if 'torque' in kinds else (*shafts, 'angle')[0], rank
 
 
 def _unknown(role: str, words: Sequence[str]) -> str:
@@ -244,6 +278,7 @@ def _unknown(role: str, words: Sequence[str]) -> str:
 def _unit(text: str) -> str:
     """Normalise a unit to the spelling of `_UNITS`."""
     plain = re.sub(r'\s|units?:', '', text.lower().replace('μ', 'µ')).strip('[]')
+    plain = re.sub(r'[-.*·⋅](?=(in|ft|lbf?|cm)$)', '', plain.strip('()'))
     plain = re.sub(r'n(ewton)?[-_.*·⋅]?([cm]?)m(et(er|re)s?)?(?!\w)', r'n\2m', plain)
     outer, _, inner = plain.partition('(')  # as in "° (Degree)" and "(deg)"
     plain = (outer or inner).strip('()[].')
@@ -254,6 +289,8 @@ def _split(name: str) -> tuple[tuple[str, ...], str]:
     """Divide a name into words, in lower case, and its unit, in brackets or a known word."""
     text = name.strip().strip('%#"').replace('{name==', '{')  # of a joint, in paths of Foxglove
     text = re.sub(r'\\\w+:\d+$', '', text)  # device and raster, of INCA
+    text = _OF_CATMAN.sub(r'\1', text)
+    text = _TENTHS.sub(lambda found: f'_{"dcm"[len(found[2]) - 1]}{found[1]}', text)
     text = re.sub(r'(?i)(?<![a-z])([mk]?n)[-_.*·⋅](m?m)(?![a-z])', r'\1\2', text)
     if (scaled := _SCALED.search(text.lower())) and scaled[1] in _KNOWN:
         return _split(text[: scaled.start()])[0], scaled[0].replace(' ', '')
@@ -271,6 +308,8 @@ def _split(name: str) -> tuple[tuple[str, ...], str]:
     for token in re.split(r'[\s_/.:,-]+', text):
         small = token.lower().replace('μ', 'µ')
         words += [small] if small in _KNOWN else [w.lower() for w in _CAMEL.findall(token)]
+    pairs = ((word, _COMPOUND.fullmatch(word)) for word in words)
+    words = [part for word, pair in pairs for part in (pair.groups() if pair else [word])]
     for at in (-1, 0):
         if not unit and words and words[at] in _KNOWN and (len(words) > 1 or at == -1):
             if at == 0 and words[0] not in _UNITS['time']:

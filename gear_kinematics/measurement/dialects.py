@@ -33,8 +33,10 @@ _COMMENT = ('#', '//', '%', 'sep=', 'SEP=')
 _BOMS = {b'\xef\xbb\xbf': 'utf-8-sig', b'\xff\xfe': 'utf-16', b'\xfe\xff': 'utf-16'}
 _TYPES = re.compile(r'(?i)[iuf]\d+|(float|double|u?int)\d*|(type|interp|blockpath|portindex): *.+')
 """Cells of rows between names and numbers that give types, as INCA and Simulink write them."""
-_FRAMES = re.compile(r'\s*\(\d+\.\d+\)\s+\w+\s+[0-9A-F]+#|;\$FILEVERSION')
-"""Beginnings of CAN bus logs of candump and PCAN-View."""
+_FRAMES = re.compile(r'\s*\(\d+\.\d+\)\s+\w+\s+[0-9A-F]+#|;\$FILEVERSION|date \w{3} \w{3} \d')
+"""Beginnings of CAN bus logs of candump, PCAN-View and CANoe."""
+_NO_NAMES = re.compile(r'(?i)[-+|:=\s]*|sep=.*\s*')
+"""Lines above the numbers that are no names, as below the names in tables of psql."""
 _MISSING = {'', 'nan', '-nan', 'inf', '-inf', 'null', 'none', 'n/a', 'na', '-', '[]'}
 _CLOCKS = {'name': 'ms', 'x_value': 's'}
 """Words, other than those for time, before names of channels with their own times; and units."""
@@ -217,7 +219,7 @@ def _layout(lines: Sequence[str]) -> _Layout:
             'no rows of numbers: write it as a CSV with a row of names and numbers without units'
         )
     start = filled[first]
-    above = [line for line in lines[:start] if line.strip() and line[:4].lower() != 'sep=']
+    above = [line for line in lines[:start] if not _NO_NAMES.fullmatch(line)]
     row, *_ = samples = [rows[place] for place in filled[first:]]
     if above:
         found = _names(above, separator, max(map(len, samples)), 1 + max(numeric))
@@ -245,6 +247,8 @@ def _names(
     rows = [cells_of(line.lstrip('#%/ '), separator) for line in above]
     plain = [k for k, row in enumerate(rows) if not all(map(_TYPES.fullmatch, filter(None, row)))]
     above, rows = [above[k] for k in plain], [rows[k] for k in plain]
+    while len(rows) > 1 and len(rows[-1]) > 1 and len([*filter(None, rows[-1])]) == 1:
+        del rows[-1], above[-1]  # such as the rate of sampling, of catman
     units: list[str] = []
     at = -1
     labelled = (row for row in rows[:-1] if re.search('(?i)unit|einheit', ''.join(row[:1])))

@@ -20,7 +20,9 @@ from gear_kinematics.measurement.columns import (
     Sources,
     described,
     find_columns,
+    may_be_angle,
     nanoseconds_of,
+    sides,
 )
 from gear_kinematics.measurement.commissioning.encoder_range import count_wraps, signed, unwrapped
 from gear_kinematics.measurement.commissioning.joint import other_unit
@@ -52,7 +54,7 @@ _WHOLE = 50  # number of different whole numbers that are no coincidence
 _TRIED, _FEWEST, _ROWS = 12, 10, 10_000
 """Number of columns that are tried for an example; least and most rows that are compared."""
 _NO_ANGLE = re.compile(
-    r'(?i)torq|effort|curr|vel|speed|rpm|/ ?s|temp|time|stamp|target|goal|cmd|elec|^t$'
+    r'(?i)torq|effort|curr|vel(?!_mapper)|speed|rpm|/ ?s|temp|time|stamp|target|goal|cmd|elec|^t$'
 )
 """Words in names of columns that are not proposed as angles."""
 _LIKELY = re.compile(r'(?i)pos|ang|enc|theta|winkel|(rad|deg|rev|inc|cnt|counts)\b')
@@ -313,7 +315,8 @@ def _advice(path: Path, table: TableFile, sources: Sources, ratio: Fraction) -> 
     """List the columns with their first values, and propose a command line that works, if any."""
     names = [name for name in table.names if name]
     listed = ', '.join(f'{name} ({table.first.get(name, "")})' for name in names)
-    single = [name for name in filterfalse(_NO_ANGLE.search, names) if names.count(name) == 1]
+    angles = filter(may_be_angle, filterfalse(_NO_ANGLE.search, names))
+    single = [name for name in angles if names.count(name) == 1]
     likely = [*filter(_LIKELY.search, single)]
     raw, _ = table.load((likely if len(likely) > 1 else single)[:_TRIED])
     raw = {
@@ -321,7 +324,7 @@ def _advice(path: Path, table: TableFile, sources: Sources, ratio: Fraction) -> 
     }
     pairs = {}
     for rotor, output in permutations(raw, 2):
-        if len(raw[rotor]) != len(raw[output]):
+        if len(raw[rotor]) != len(raw[output]) or sides(rotor)[1] or sides(output)[0]:
             continue
         pair = np.array([raw[rotor], raw[output]])[:, :_ROWS]
         pair = np.diff(pair[:, np.isfinite(pair).all(axis=0)])

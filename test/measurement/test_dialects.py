@@ -285,6 +285,30 @@ ENCODERS = {
     'German': lambda t, r, o: in_german(written(
         [t, r * DEG, o * DEG], 'Zeit [s],Winkel Antrieb [°],Winkel Abtrieb [°]', mark=','
         ).replace(',', ';')),
+    'catman': lambda t, r, o: in_german(written(
+        [t, r * DEG, o * DEG], 'T0 = 1\t\t\nZeit  1 - Standardmessrate [s]\tWinkel Motor [°]\t'
+        'Winkel Abtrieb [°]\nAbtastrate: 25 Hz\t\t', mark='\t')),
+    'psql': lambda t, r, o: written(
+        [t, r, o], ' time  | rotor | output \n-------+-------+--------', mark=' | ')
+        + '(1320 rows)\n',
+    'French': lambda t, r, o: in_german(written(
+        [t, r * DEG, o * DEG], 'Temps [s],Angle moteur [°],Angle sortie [°]').replace(',', ';')),
+    'Italian': lambda t, r, o: written(
+        [t, r * DEG, o * DEG], 'Tempo [s];Angolo motore [°];Angolo uscita [°]', mark=';'),
+    'words in one': lambda t, r, o: written(
+        [t, r * DEG, o * DEG], 'Uhrzeit [s];Motorwinkel [°];Abtriebswinkel [°]', mark=';'),
+    'multiples in names': lambda t, r, o: written(
+        [t, r * DEG * 100, o * DEG * 10], 'time,rotor_deg_x100,output_ddeg', 3 * ['{:.4f}']),
+    'hexadecimal counts': lambda t, r, o: written(
+        [t, np.round((r - r.min()) * REV * 4096).astype(int), o], 'time,rotor_counts,output_rad',
+        ('{:.2f}', '{:06X}', '{:.5f}')),
+    'hexadecimal counts, said': lambda t, r, o: written(
+        [t, np.round((r - r.min()) * REV * 4096).astype(int), o], 'time,rotor_counts,output_rad',
+        ('{:.2f}', '0x{:x}', '{:.5f}')),
+    'ISO dates in the afternoon': lambda t, r, o: written(
+        [t, r, o], NAMES,
+        (lambda v: (NOON + timedelta(seconds=v)).strftime('%Y-%m-%d %I:%M:%S.%f %p'),
+         *DECIMALS[1:])),
     'counts of 16 bits': lambda t, r, o: written(
         [t, np.round(r * REV * 4096) % 65536, o], 'time,rotor_counts,output_rad',
         ('{:.2f}', '{:.0f}', '{:.5f}')),
@@ -294,6 +318,10 @@ ENCODERS = {
 }  # fmt: skip
 RAMPS = {
     'N·cm': lambda t, a, q: written([t, a * DEG, q * 100], 't,Angle [°],Torque [Ncm]'),
+    'kg·cm': lambda t, a, q: written([t, a * DEG, q / 0.0980665], 't,angle_deg,torque_kgcm'),
+    'lb-in': lambda t, a, q: written([t, a * DEG, q / 0.112985], 't,angle_deg,load [lb-in]'),
+    'Drehwinkel and Moment': lambda t, a, q: in_german(written(
+        [t, a * DEG, q], 'Zeit;Drehwinkel [°];Moment [Nm]', mark=';')),
     'N.m': lambda t, a, q: written([t, a * DEG, q], 't,angle [deg.],torque [N.m]'),
     'the motor in other units': lambda t, a, q: written(
         [t, a * -30 * DEG, q / -30 * 1e3], 'time,MotorPosition (deg),MotorTorque (mNm)'),
@@ -329,6 +357,7 @@ def test_every_dialect_is_read(tmp_path, gear, reference, dialect):
     assert_measured(recording, gear)
     # All but the rows that are out of order or none, of which there are at most 3.
     assert kind == 'ramps' or 1317 <= recording.rows <= 1320
+    assert recording.encoders is None or recording.encoders.timed or 'without times' in dialect
 
 
 def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, gear, reference):
@@ -372,6 +401,8 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         (lambda t, _, o: written([t, 1e-3 * o, np.round(1e3 * o)], 'time,angle,torque'),
          'torque has whole numbers: give its unit as in --torque-column .torque .Nmm'),
         (' (1764230000.000000) can0 141#A100000000000000\n', 'a log of CAN frames: decode'),
+        ('date Thu Nov 26 09:12:33 2026\nbase hex\n', 'a log of CAN frames: decode'),
+        ('t,angle [deg],force [N]\n0,1,2\n1,2,3\n', 'name them with --angle-column'),
         ('time,angle_grad,torque\n0,1,2\n', 'known; known: .*; or give it with --angle-unit'),
         ('time,angle,torque\ns,gon,Nm\n0,1,2\n', 'the unit gon is not known'),
         ('rotor,output\n1.5,20\n359.5,30.5\n', 'rotor has turns of 360'),
@@ -400,6 +431,7 @@ def test_what_speaks_against_a_unit_is_said(tmp_path, gear, reference, table, wr
     ('name', 'unit'),
     [
         ('enc {}', []),
+        ('odrv{}.axis0.pos_vel_mapper.pos_rel', []),
         ('Data{}', ['--angle-unit', 'deg']),
         ('FB{} [cnt]', ['--rotor-counts', '4096', '--output-counts', '4096']),
     ],
@@ -519,3 +551,13 @@ def test_what_is_neither_table_nor_bag_is_refused_with_what_can_be_read(tmp_path
     (tmp_path / 'r.ods').write_bytes(b'PK\x03\x04')
     with pytest.raises(BagError, match=r'bags are .mcap.* tables .csv.*\.parquet.* as \.gz'):
         read(tmp_path / 'r.ods', gear)
+
+
+def test_the_advice_gives_the_output_the_column_that_is_named_after_it(tmp_path, gear, reference):
+    time, rotor, output = reference('encoders')
+    content = written([time, rotor, 1.5 * rotor, output], 'time,motor1_pos,motor2_pos,output_pos',
+                      4 * ['{:.5f}'])  # fmt: skip
+    with pytest.raises(
+        RecordingError, match=r'--rotor-column motor\d_pos --output-column output_'
+    ):
+        read(saved(tmp_path, content), gear)
