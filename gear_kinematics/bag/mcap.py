@@ -229,6 +229,8 @@ class Mcap(Storage):
             texts = [text.decode() for text in _strings(metadata)]
             known = dict(zip(texts[::2], texts[1::2], strict=True))
             message_type, syntax, definition = self._schemas.get(schema, _NO_SCHEMA)
+            if encoding == b'cdr' and message_type.count('/') == 1:  # as other writers shorten it
+                message_type = message_type.replace('/', '/msg/')
             topic = Topic(
                 name.decode(),
                 message_type,

@@ -261,6 +261,8 @@ def _opened(file: Path, limits: ReadLimits, read: int = 0) -> Iterator[Storage]:
     except Exception as error:
         where, here = (storage.position(), storage.read) if storage else ('', 0)
         text = f'{file}: {where}{broken or cause(error)}'
+        if isinstance(error, FileNotFoundError) and (file.parent / 'metadata.yaml').exists():
+            text += '; metadata.yaml lists it: without that, the other files are read'
         damaged = read + here and not isinstance(error, UnsortedError)
         raise (DamagedBagError if damaged else BagError)(text) from error
 

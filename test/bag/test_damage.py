@@ -319,7 +319,7 @@ UNREADABLE = {
         partial(folder, relative_file_paths=['b.mcap', './b.mcap']),
     ),
     'a file that is missing': (
-        r'other\.mcap: No such file',
+        r'other\.mcap: No such file or directory; metadata.yaml lists it',
         partial(folder, relative_file_paths=['other.mcap']),
     ),
     'unknown compression of messages': (

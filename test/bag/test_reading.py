@@ -49,6 +49,7 @@ KINDS = {
     'mcap of zstd chunks': mcap_file,
     'mcap without chunks': partial(mcap_file, use_chunking=False),
     'mcap without definitions': partial(mcap_file, definition=False),
+    'mcap with types such as sensor_msgs/JointState': partial(mcap_file, shortened=True),
     'other topics, of unknown types': partial(mcap_file, others=OTHERS),
     'sqlite3 of Humble': lambda path, messages: old_recording(path, [*TYPES.items()], messages),
     'ROS 1': ros1_bag,

@@ -115,6 +115,7 @@ def mcap_file(
     *,
     finish: bool = True,
     definition: bool = True,
+    shortened: bool = False,
     cut: int | None = None,
     others: tuple[tuple[str, str, str, str, bytes], ...] = (),
     **options,
@@ -130,7 +131,8 @@ def mcap_file(
         channels = {}
         for topic, kind in TYPES.items():
             text, syntax = definition_of(kind) if definition else '', 'ros2msg'
-            schema = writer.register_schema(kind, syntax if definition else '', text.encode())
+            written = kind.replace('/msg/', '/') if shortened else kind
+            schema = writer.register_schema(written, syntax if definition else '', text.encode())
             channels[topic] = writer.register_channel(topic, 'cdr', schema)
         for number, (topic, received, data) in enumerate(messages):
             writer.add_message(channels[topic], received, data, received, number)
