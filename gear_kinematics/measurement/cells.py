@@ -16,6 +16,9 @@ MOMENT = re.compile(
 )
 
 
+MISSING = {'', 'nan', '-nan', 'inf', '-inf', 'null', 'none', '<na>', 'n/a', 'na', '-', '[]'}
+
+
 def cells_of(line: str, separator: str) -> list[str]:
     """Divide a line into cells; a space as separator stands for any number of them."""
     if separator == ' ':
@@ -35,7 +38,7 @@ def numbers(column: Any, point: str = '.') -> Any:
         return column.to_numpy()
     text = column.astype(str).str.strip().str.replace('\u2212', '-')
     text = text.str.replace(r'(?<=\d) sec$', '', regex=True)  # as MATLAB writes durations
-    text = text.str.replace(r"(?<=\d)[ '\u00a0\u202f](?=\d{3}\b)", '', regex=True)
+    text = text.str.replace(r"(?<=\d)[ '\u2019\u00a0\u202f](?=\d{3}\b)", '', regex=True)
     if text.str.fullmatch('(0x)?[0-9a-fA-F]{1,15}').all() and (
         text.str.startswith('0x').all() or text.str.len().eq(len(text.iloc[0])).all()
     ):  # hexadecimal, as not all are decimal
@@ -47,8 +50,9 @@ def numbers(column: Any, point: str = '.') -> Any:
     thousands = (both.any() or len(marked) < len(text)) and marked.str.fullmatch(grouped).all()
     plain = text.str.replace(other, '' if thousands else '.', regex=True)
     values = pd.to_numeric(plain.str.replace(',', '.'), errors='coerce').to_numpy(float)
-    if np.isfinite(values).any():
-        return values
+    if known := np.count_nonzero(np.isfinite(values)):
+        others = np.count_nonzero(~np.isfinite(values) & ~text.str.lower().isin(MISSING))
+        return values if known >= others else np.full(len(values), np.nan)
     text = text.str.replace(',', '.')
     moments = pd.to_datetime(text, format='ISO8601', utc=True, errors='coerce')
     if not moments.notna().any():
@@ -76,7 +80,7 @@ def weight(cell: str, point: str) -> float:
     mark, other = re.escape(point), re.escape('.' if point == ',' else ',')
     if re.fullmatch(rf'[-+\u2212]?(\d+{mark}?\d*|{mark}\d+)([eE][-+]?\d+)?', cell):
         return 1.0 if ',' not in cell else 0.9
-    grouped = rf"[-+\u2212]?[1-9]\d{{0,2}}(([ '\u00a0\u202f]|{other})\d{{3}})+({mark}\d*)?"
+    grouped = rf"[-+\u2212]?[1-9]\d{{0,2}}(([ '\u2019\u00a0\u202f]|{other})\d{{3}})+({mark}\d*)?"
     return 0.5 if re.fullmatch(grouped, cell) or MOMENT.fullmatch(cell) else 0.0
 
 

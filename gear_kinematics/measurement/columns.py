@@ -188,7 +188,7 @@ def find_columns(
 def described(role: str, column: Column) -> str:
     """Describe a column by its unit, and by the side of the gear where it was measured."""
     unit = column.unit + ', assumed' * column.borrowed
-    unit = unit or {'torque': 'N·m'}.get(role, 'rad, assumed')
+    unit = unit or {'torque': 'N·m, assumed'}.get(role, 'rad, assumed')
     side = ' of the rotor' if column.on_rotor else ' at the output'
     side = side if role in {'angle', 'torque'} else ''
     return f'{role}{side} [{unit.replace("nm", "N·m")}] from {column.name}'
@@ -263,7 +263,8 @@ def _role(name: str) -> tuple[str, tuple[int, ...]]:
         return '', ()
     if 'current' in keys and 'torque' not in kinds:
         return '', ()
-    rank = (len(words), *map(_KNOWN_WORDS.index, keys))
+    counted = not kinds and unit in {'turn', 'turns'}  # beside the angle within a turn
+    rank = (counted, len(words), *map(_KNOWN_WORDS.index, keys))
     return 'torque' if 'torque' in kinds else (*shafts, 'angle')[0], rank
 
 

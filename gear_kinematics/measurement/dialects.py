@@ -16,6 +16,7 @@ from typing import IO, Any, NamedTuple
 import numpy as np
 
 from gear_kinematics.measurement.cells import (
+    MISSING,
     MOMENT,
     Element,
     cells_of,
@@ -37,7 +38,6 @@ _FRAMES = re.compile(r'\s*\(\d+\.\d+\)\s+\w+\s+[0-9A-F]+#|;\$FILEVERSION|date \w
 """Beginnings of CAN bus logs of candump, PCAN-View and CANoe."""
 _NO_NAMES = re.compile(r'(?i)[-+|:=\s]*|sep=.*\s*')
 """Lines above the numbers that are no names, as below the names in tables of psql."""
-_MISSING = {'', 'nan', '-nan', 'inf', '-inf', 'null', 'none', 'n/a', 'na', '-', '[]'}
 _CLOCKS = {'name': 'ms', 'x_value': 's'}
 """Words, other than those for time, before names of channels with their own times; and units."""
 _TOPICS, _VALUE = (
@@ -203,14 +203,14 @@ def _layout(lines: Sequence[str]) -> _Layout:
     kinds: list[list[float]] = [[] for _ in range(width)]
     for cells in known:
         for kind, cell in zip(kinds, cells, strict=False):
-            kind.extend([weight(cell, point)] * (cell.lower() not in _MISSING))
+            kind.extend([weight(cell, point)] * (cell.lower() not in MISSING))
     shares = [sum(map(bool, kind)) / len(kind) if kind else 0.0 for kind in kinds]
     least = 1.0 if 1.0 in shares else 0.5  # words among numbers, such as states, are no names
     numeric = [k for k, share in enumerate(shares) if share >= least]
 
     def has_numbers(place: int) -> bool:
         cells = [rows[place][k] for k in numeric if k < len(rows[place])]
-        weights = [weight(cell, point) for cell in cells if cell.lower() not in _MISSING]
+        weights = [weight(cell, point) for cell in cells if cell.lower() not in MISSING]
         return bool(weights) and all(weights)
 
     begins = (k for k, place in enumerate(filled) if all(map(has_numbers, filled[k : k + _BEGIN])))

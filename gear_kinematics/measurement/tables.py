@@ -60,6 +60,7 @@ _NO_ANGLE = re.compile(
 _LIKELY = re.compile(r'(?i)pos|ang|enc|theta|winkel|(rad|deg|rev|inc|cnt|counts)\b')
 """Words in names of columns that are proposed first."""
 _COUNTS = '--rotor-counts', '4096', '--output-counts', '4096'  # example for whole numbers
+_THOUSAND = 1000.0
 _SHOWN = 800  # characters of an error, which may quote a long file
 
 
@@ -174,6 +175,11 @@ class _Samples:
             values = {role: np.where(np.abs(v) < _LEAST, 0.0, v) for role, v in values.items()}
             for role in roles:
                 if 'counts' in found[role].unit:
+                    if _divided(raw[found[role].name]):
+                        raise ValueError(
+                            f'{found[role].name} has fractions of counts, as if points divided '
+                            'thousands: write the numbers without them'
+                        )
                     values[role] = signed(values[role], found[role].scale)
             gaps = 0 if apart else np.cumsum(np.diff(chosen, prepend=chosen[0]) > _GAP)
             self.series |= dict.fromkeys(roles, _Series(stamp, values, gaps + 0 * stamp))
@@ -283,6 +289,13 @@ class _Samples:
                     'give the unit with --angle-unit'
                 )
         return both
+
+
+def _divided(counts: Array) -> bool:
+    """Whether all fractions are of three digits, as those of 1.024 in place of 1024."""
+    sizes = np.abs(counts[np.isfinite(counts)])
+    fractions = (sizes % 1.0).any() and not (np.round(_THOUSAND * sizes, 6) % 1.0).any()
+    return bool(fractions and sizes.max() < _THOUSAND and not ((sizes > 0) & (sizes < 1)).any())
 
 
 def _recording(

@@ -144,6 +144,11 @@ ENCODERS = {
         [t, r * DEG, o * DEG], WITH_DEG, 3 * [grouped('.', ',')], ';'),
     'thousands by space': lambda t, r, o: written(
         [t, r * DEG, o * DEG], WITH_DEG, 3 * [grouped('\u202f', ',')], ';'),
+    'thousands as in Switzerland': lambda t, r, o: written(
+        [t, r * DEG, o * DEG], WITH_DEG, 3 * [grouped('\u2019')], ';'),
+    'turns beside the angle within them': lambda t, r, o: written(
+        [t, np.floor(r * REV), r * DEG % 360.0, o * DEG],
+        'time,motor_turns,motor_angle_deg,output_deg', ('{:.2f}', '{:.0f}', '{:.5f}', '{:.5f}')),
     'thousands by apostrophe': lambda t, r, o: written(
         [t, r * DEG, o * DEG], WITH_DEG, 3 * [grouped("'")], ';'),
     'sep=': lambda t, r, o: in_german(
@@ -389,6 +394,14 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         (lambda t, r, o: written([t, np.round(r * 1e4), o * DEG], 'time,rotor,output [deg]'),
          'such as counts: give its unit as in --rotor-column .rotor .counts.'),
         (lambda t, r, o: written([t, r, o], 'time,rotor [gon],output'), 'unit gon is not known'),
+        (lambda t, r, o: written(
+            [t, r * 1e3, o], 'time;rotor_counts;output_rad',
+            ('{:.2f}', lambda v: f'{v:,.0f}'.replace(',', '.'), '{:.5f}'), ';'),
+         'rotor_counts has fractions of counts, as if points divided'),
+        (lambda t, r, o: written(
+            [t, r, o], NAMES,
+            ('{:.2f}', lambda v: f'{v:.3f} or so' if abs(v) > 5 else '7', '{:.5f}')),
+         'no usable rows: none has numbers in all of rotor, output'),
         (lambda t, r, o: written([t, r, o], NAMES, ('26.11.2026 {:.0f}', *DECIMALS[1:])),
          'the times in time: no numbers nor ISO 8601'),
         (lambda t, r, o: written([25 * t, r / 3, o / 3], NAMES),
@@ -422,8 +435,9 @@ def test_what_speaks_against_a_unit_is_said(tmp_path, gear, reference, table, wr
             given = {'angle': angle[0]}
     else:
         path = saved(tmp_path, written_as(*reference('encoders')))
+    counts = 4096 if 'fractions of counts' in cause else None
     with pytest.raises(RecordingError, match=cause) as caught:
-        read(path, gear, Sources(**given))
+        read(path, gear, Sources(**given, rotor_counts=counts))
     assert '\n' not in str(caught.value)
 
 
