@@ -10,7 +10,7 @@ from gear_kinematics.bag.errors import BagError, DamagedBagError
 from gear_kinematics.bag.reading import Bag, ReportProgress
 from gear_kinematics.bag.roles import find_rotor_topic, joints_on
 from gear_kinematics.wire.cdr import SECOND, header_stamp
-from gear_kinematics.wire.joint_reader import JOINT_MISSING, JointReader, RejectedInputError
+from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError, Rejection
 from gear_kinematics.wire.topics import (
     BODY_POSES,
     JOINT_STATE,
@@ -116,7 +116,7 @@ def _has_joint(reader: JointReader | None, data: bytes) -> bool:
         if reader:
             reader.read(data)
     except RejectedInputError as rejection:
-        return str(rejection) != JOINT_MISSING
+        return str(rejection) != Rejection.JOINT_MISSING
     return True
 
 

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from gear_kinematics.measurement.wording import ARC_MINUTES, PERCENT, plus_minus
 from gear_kinematics.report.document import number
 from gear_kinematics.statistics.uncertainty import Estimate
-from gear_kinematics.wire.joint_reader import ARRAY_SIZES
+from gear_kinematics.wire.joint_reader import Rejection
 
 NAMED = 3  # moments of a kind that are named
 _UNITS = {'si': 1.0, 'arcmin': ARC_MINUTES, 'deg': math.degrees(1.0), 'ms': 1e3}
@@ -267,7 +267,7 @@ class Observation(Enum):
         'the satellite.'
     )
     # What the messages of a rotor seem to have wrong
-    SIZES_DIFFER = '{count:%d message|%d messages} rejected: ' + ARRAY_SIZES
+    SIZES_DIFFER = '{count:%d message|%d messages} rejected: ' + Rejection.ARRAY_SIZES
     STAMPS_REPEAT = '{count} of {total} stamps repeat the one before'
     NO_EFFORT = 'the effort is 0 throughout the motion, and taken as none'
     # What differs between recordings

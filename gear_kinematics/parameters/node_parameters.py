@@ -6,7 +6,7 @@ The default values are in config/actuator.yaml alone.
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from operator import attrgetter
 from pathlib import Path
@@ -165,18 +165,13 @@ class NodeParameters:
     def load(
         path: Path | None = None, node: str = NODE, others: Iterable[str] = (), actuator: str = ''
     ) -> 'NodeParameters':
-        """Read a node's parameters from a file as the node would; others have their defaults.
+        """Read a node's parameters from a file of ROS as the node would; others have defaults.
 
-        Args:
-            path: a parameter file of ROS: blocks of parameters below names of nodes. None: the
-                default one.
-            node: the node's fully qualified name. Without a namespace, it is the only node of that
-                name in the file, or one without a namespace.
-            others: names of parameters that the node has besides.
-            actuator: name of the actuator, in the file of an arm of several.
+        Without a namespace, the node is the only one of its name in the file. It may have `others`
+        besides, whose names are known. `actuator` selects one of an arm.
 
         Raises:
-            ConfigError: as `load_actuators`, and if it leaves open which actuator is meant.
+            ConfigError: as `load_actuators`, and if it is open which actuator is meant.
         """
         from gear_kinematics.parameters import arm  # noqa: PLC0415, it imports this module
 
@@ -214,6 +209,10 @@ class NodeParameters:
             values |= {f'{branch.name}.{key}': getattr(branch, key) for key in BRANCH_PARAMETERS}
         return values
 
+    def only_zero_differs(self, other: Self) -> bool:
+        """Whether the same motion is counted from another zero at most, as after homing."""
+        return replace(self, rotor_zero=other.rotor_zero) == other
+
     def as_file(self) -> str:
         """Write a parameter file for every node, from which `load` reads the same parameters."""
         from gear_kinematics.parameters import arm  # noqa: PLC0415
@@ -233,8 +232,7 @@ class NodeParameters:
     def joint_names(self) -> list[str]:
         """Names of all joints in messages and in the URDF, of which `output_name` is the last.
 
-        Raises:
-            ValueError: if there is no such gear, or a name is refused.
+        Raises ValueError if there is no such gear, or a name is refused.
         """
         from gear_kinematics.shape.urdf import joint_names  # noqa: PLC0415, of few programs
 
@@ -243,11 +241,7 @@ class NodeParameters:
 
     @property
     def gear(self) -> Gear:
-        """The gear: only its ratio if `gear_ratio` is given, else the mechanism.
-
-        Raises:
-            MechanismError: if there is no such mechanism.
-        """
+        """The mechanism, or the ratio that is given; raises MechanismError without either."""
         return GearRatio.parse(self.gear_ratio) if self.gear_ratio else self.mechanism
 
     @property
@@ -276,11 +270,7 @@ class NodeParameters:
         return TorqueSharing(mechanism, preload, -1 if self.preload < 0.0 else 1)
 
     def urdf(self) -> str:
-        """Write the URDF of the mechanism.
-
-        Raises:
-            ValueError: if there is none, or `output_joint` is empty or the name of another joint.
-        """
+        """Write the URDF; raises ValueError without a mechanism, or if a name is refused."""
         from gear_kinematics.shape.urdf import urdf  # noqa: PLC0415, of few programs
 
         mechanism, module = self.mechanism, self.module

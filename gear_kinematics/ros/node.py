@@ -34,7 +34,7 @@ from gear_kinematics.state.arm_state import ArmState
 from gear_kinematics.state.monitors import Connections
 from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.wire import topics
-from gear_kinematics.wire.joint_reader import JOINT_MISSING, RejectedInputError
+from gear_kinematics.wire.joint_reader import RejectedInputError, Rejection
 from gear_kinematics.wire.topics import topic_of
 
 _REPORT_PERIOD = 1.0  # s
@@ -253,7 +253,7 @@ class GearStatePublisher(PublishingNode):
     def _warn_of(self, topic: str, name: str, rejection: RejectedInputError) -> None:
         if topic == topics.ROTOR_STATE:
             actuator = self._actuators[name]
-            if str(rejection) == JOINT_MISSING not in actuator.state.input.rejected:
+            if str(rejection) == Rejection.JOINT_MISSING not in actuator.state.input.rejected:
                 return  # a message of another driver on a shared topic, and no input
             actuator.state.monitor.last_input = time.monotonic()
         if time.monotonic() >= self._next_warning:

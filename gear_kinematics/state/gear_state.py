@@ -18,7 +18,6 @@ from gear_kinematics.state.monitors import Connections, EncoderMonitor, InputMon
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.rotor_samples import RotorSamples
-from gear_kinematics.state.rotor_settings import only_zero_differs
 from gear_kinematics.state.state_messages import OutputMessages, Row, state_messages
 from gear_kinematics.state.statuses import GearReport
 from gear_kinematics.state.turn_reference import TurnReference
@@ -77,7 +76,7 @@ class GearState:
         Raises:
             ValueError: if messages on chosen topics cannot have the names in the parameters.
         """
-        if not only_zero_differs(parameters, self.parameters):
+        if not parameters.only_zero_differs(self.parameters):
             self._loads = None
         self.input.parameters = parameters
         self.output_encoder.configure(parameters)
@@ -195,11 +194,8 @@ class GearState:
     ) -> RotorAnswers:
         """Process many messages in the order of their reception.
 
-        Args:
-            messages: topic, time of reception, ns, and message of the two topics and of others;
-                the rows of the samples are their indices.
-            rotor: topic of the rotor.
-            encoder: topic of the output's encoder; '' if there is none.
+        Those on other topics than the rotor's and the output encoder's are left out. The rows of
+        the samples are indices of messages: topic, time of reception, ns, and data.
         """
         correction, errors = None, list[ErrorSample]()
         if self.output_encoder.received or any(topic == encoder for topic, *_ in messages):

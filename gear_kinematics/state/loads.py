@@ -51,11 +51,7 @@ class LoadEstimator:
     """Computes and encodes the loads of a mechanism."""
 
     def __init__(self, parameters: NodeParameters) -> None:
-        """Take the preload and the bodies from the parameters.
-
-        Raises:
-            MechanismError: if they describe no mechanism or no preload.
-        """
+        """Take preload and bodies from the parameters; raises MechanismError without them."""
         mechanism = parameters.mechanism
         self.sharing = parameters.sharing
         self._ratio = mechanism.gear_ratio
@@ -102,14 +98,10 @@ class LoadEstimator:
     def at(
         self, turns: Any, angle: Any, effort: Any, motion: Pair, xp: ModuleType = np
     ) -> SampleLoads:
-        """Return the loads where the rotor is at 2π turns + angle, as floats or arrays.
+        """Return the loads at a rotor angle of 2π turns + angle, rad; arrays, or floats by `math`.
 
-        Args:
-            turns: whole turns of the rotor.
-            angle: rad.
-            effort: of the rotor, N·m; NaN if unknown.
-            motion: velocity and acceleration of the rotor, which count if the bodies have mass.
-            xp: `math` for floats.
+        The effort is that of the rotor, N·m, NaN if unknown. The motion, its velocity and
+        acceleration, counts if the bodies have mass.
         """
         torque, inertias = self._torque_ratio * effort, self._at_rest
         _, rest = self._ratio.output_angle(turns, angle, xp)

@@ -15,7 +15,7 @@ from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition, Fact, GearReport
 from gear_kinematics.state.turn_reference import SAMPLES, TurnReference
 from gear_kinematics.wire.cdr import SECOND
-from gear_kinematics.wire.joint_reader import JOINT_MISSING
+from gear_kinematics.wire.joint_reader import Rejection
 
 _BEYOND_ANY_GEAR = 0.1  # rad
 
@@ -60,8 +60,8 @@ class DriverMonitor:
     ) -> Iterator[Fact]:
         """Yield what has grown of the messages that were rejected or lost."""
         if counts := {cause: grown[cause] for cause in rejected if grown[cause]}:
-            which = Condition.JOINT_MISSING if JOINT_MISSING in counts else Condition.REJECTED
-            yield which(counts=counts)
+            missing = Rejection.JOINT_MISSING in counts
+            yield (Condition.JOINT_MISSING if missing else Condition.REJECTED)(counts=counts)
         if lost := grown['lost']:
             yield Condition.LOST(count=lost)
         if not driver.losses_known:

@@ -19,21 +19,21 @@ from gear_kinematics.wire.joint_reader import JointMessage, JointReader, Rejecte
 
 
 def measured_angle(parameters: NodeParameters, position: Any) -> Any:
-    """The measured output angle at a position of its encoder, rad; floats or arrays."""
+    """Convert positions of the output's encoder to output angles, rad; floats or arrays."""
     return parameters.output_encoder_direction * (position - parameters.output_encoder_zero)
 
 
 class OutputEncoder:
     """Compares the angles of output_encoder messages with the ideal output angle.
 
-    If the parameters ask for it, the errors of unknown turns go to the reference alone.
+    With an absolute encoder, errors go to the reference alone while the turns are unknown.
     """
 
     def __init__(self, parameters: NodeParameters, reference: TurnReference | None = None) -> None:
         self.received = 0
         self.rejected: Counter[str] = Counter()
         self.comparison = TransmissionError()
-        """Counts the measured angles that were compared, and those that were not by cause."""
+        """Counts the measured angles that were compared and, by cause, those that were not."""
         self._turn_reference = reference
         self.direction_checked = False
         """Whether both encoders have moved in the same sense; at rest, any direction fits."""
@@ -41,7 +41,7 @@ class OutputEncoder:
         self.configure(parameters)
 
     def configure(self, parameters: NodeParameters) -> None:
-        """Compare anew, after a change of parameters or homing; all counts go on."""
+        """Start the comparison again after a change of parameters or homing; keep all counts."""
         self.window = ErrorWindow(round(parameters.transmission_error_window * SECOND))
         if _directions(parameters) != _directions(self.parameters):
             self.direction_checked = False
@@ -58,12 +58,10 @@ class OutputEncoder:
         self._segment: int | None = None
 
     def accept(self, data: JointMessage, now: Callable[[], int]) -> Sequence[ErrorSample]:
-        """Process the next message; returns the errors that are known now, in order.
+        """Process the next message; returns the errors that have become known, in order.
 
-        A message without a stamp gets that of the clock `now`, ns.
-
-        Raises:
-            RejectedInputError: if the message has no valid angle. It is counted.
+        A message without a stamp gets the time of the clock `now`, ns. RejectedInputError, which
+        is counted, is raised if the message has no valid angle.
         """
         self.received += 1
         self._compare_one_segment()
@@ -78,9 +76,9 @@ class OutputEncoder:
     def follow(
         self, sample: RotorSample, correction: Correction | None = None
     ) -> Sequence[ErrorSample]:
-        """Process the rotor's next sample, of known turns; returns the same as `accept`.
+        """Process the rotor's next sample; returns the errors that have become known.
 
-        With a reference, the turns may be unknown.
+        Only with a reference may its turns be unknown.
         """
         self._compare_one_segment()
         ideal = self._ratio.output_angle(*sample.position, math)
@@ -98,7 +96,7 @@ class OutputEncoder:
         return samples
 
     def _check_direction(self, sample: ErrorSample) -> None:
-        """See whether the error grows by twice the travel, as it does the wrong way round."""
+        """Check that the error does not grow by twice the travel, as with opposed directions."""
         first, parameters = self._first or sample, self.parameters
         self._first = first
         travel = abs(TURN * (sample.turns - first.turns) + sample.ideal - first.ideal)
@@ -107,7 +105,7 @@ class OutputEncoder:
         self.direction_checked = travel > max(least) and change < 0.5 * travel
 
     def _compare_one_segment(self) -> None:
-        """Compare anew where the rotor's count has become another one."""
+        """Start the comparison again if the rotor's turn count has changed."""
         if self.reference and self.reference.rotor.segment != self._segment:
             self._segment = self.reference.rotor.segment
             self._first = None

@@ -11,40 +11,42 @@ import numpy as np
 
 from gear_kinematics.kinematics import RotorPosition, RotorSample, RotorTurns, split_turns
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
-from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.parameters import PARAMETERS, NodeParameters
 from gear_kinematics.state.disorder import Disorder, order
 from gear_kinematics.state.effort_field import EffortField
 from gear_kinematics.state.plausibility import BELIEVED, Belief, Plausibility
 from gear_kinematics.state.rotor_samples import RotorSamples
-from gear_kinematics.state.rotor_settings import (
-    encoders_differ,
-    limits,
-    longest_silence,
-    only_zero_differs,
-    torque_factor,
-)
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.state.velocity_field import VelocityField
 from gear_kinematics.wire.batches import Array, decode_joint_states
-from gear_kinematics.wire.cdr import LATEST
+from gear_kinematics.wire.cdr import LATEST, SECOND
 from gear_kinematics.wire.joint_reader import (
-    ARRAY_SIZES,
     CLOCK_RESET,
     GREATEST,
-    IMPLAUSIBLE,
-    JOINT_MISSING,
-    MALFORMED,
-    OUT_OF_ORDER,
-    POSITION_MISSING,
-    POSITION_NOT_FINITE,
-    POSITION_TOO_LARGE,
-    STAMP_OUT_OF_RANGE,
     JointMessage,
     JointReader,
     RejectedInputError,
+    Rejection,
 )
 
 _new = tuple.__new__  # faster than RotorSample(...)
+_ENCODERS = [
+    name
+    for name in PARAMETERS
+    if name.startswith(('rotor_', 'output_encoder_')) and name != 'rotor_effort_factor'
+]
+"""Parameters on which the turns depend that an absolute encoder at the output has found."""
+
+
+def _limits(parameters: NodeParameters) -> tuple[float, float, float]:
+    """Greatest speed and acceleration of the rotor, and the period of its encoder."""
+    bounds = parameters.max_rotor_speed, parameters.max_rotor_acceleration
+    return *bounds, parameters.rotor_period
+
+
+def _longest_silence(parameters: NodeParameters) -> float:
+    """Silence after which the driver may have restarted, ns, as in diagnostics; 0: never."""
+    return parameters.input_timeout * SECOND if parameters.absolute else 0.0
 
 
 class RotorInput:
@@ -63,8 +65,6 @@ class RotorInput:
         self.missing_joint = ''
         """Which joints there are in the first message without the rotor's, if any."""
         self.last: RotorSample | None = None
-        self._parameters = parameters
-        self._reader = JointReader(parameters.rotor_joint)
         self.zero = split_turns(parameters.rotor_zero)
         """The position in use: `rotor_zero`, or what a reference put in its place."""
         self.origin: Fact | None = None  # source of the turn count: homing or the output's encoder
@@ -73,35 +73,44 @@ class RotorInput:
         self.rezeroed = 0
         """Number of these that gave the same motion another zero."""
         self._disorder = Disorder()
+        speed, acceleration, period = limits = _limits(parameters)
+        self.plausibility = Plausibility(*limits)
         self.turns = RotorTurns(
-            period=parameters.rotor_period,
-            max_speed=parameters.max_rotor_speed,
-            max_acceleration=parameters.max_rotor_acceleration,
-            longest_silence=longest_silence(parameters),
+            period=period,
+            max_speed=speed,
+            max_acceleration=acceleration,
+            longest_silence=_longest_silence(parameters),
         )
-        self.velocity_field = VelocityField(float(1 / parameters.gear.gear_ratio))
+        self._configure(parameters)
+        self._select_joint()
+
+    def _configure(self, parameters: NodeParameters) -> None:
+        self._parameters = parameters
+        self.turns.max_speed, self.turns.max_acceleration, _ = _limits(parameters)
+        self.turns.longest_silence = _longest_silence(parameters)
+        self._torque_factor = parameters.rotor_direction * parameters.rotor_effort_factor
+        """N·m of the rotor, in its direction, per unit of the effort in the messages."""
+
+    def _select_joint(self) -> None:
+        self._reader = JointReader(self._parameters.rotor_joint)
+        self.velocity_field = VelocityField(float(1 / self._parameters.gear.gear_ratio))
         self.effort_field = EffortField()
-        self._torque_factor = torque_factor(parameters)
-        self.plausibility = Plausibility(*limits(parameters))
 
     @property
     def parameters(self) -> NodeParameters:
-        """Those of the node, which can change any time; another encoder resets the state."""
+        """Parameters of the node, which can change any time; another encoder resets the state."""
         return self._parameters
 
     @parameters.setter
     def parameters(self, parameters: NodeParameters) -> None:
-        self.turns.max_speed = parameters.max_rotor_speed
-        self.turns.max_acceleration = parameters.max_rotor_acceleration
-        self.turns.longest_silence = longest_silence(parameters)
-        self._torque_factor = torque_factor(parameters)
-        before = self._parameters
-        if limits(parameters) != limits(before):
-            self.plausibility.restrict(*limits(parameters))
-        if encoders_differ(parameters, before):
+        before, limits = self._parameters, _limits(parameters)
+        self._configure(parameters)
+        if limits != _limits(before):
+            self.plausibility.restrict(*limits)
+        if any(getattr(parameters, name) != getattr(before, name) for name in _ENCODERS):
             self.zero = split_turns(parameters.rotor_zero)
             self._restarts += 1
-            self.rezeroed += only_zero_differs(parameters, before)
+            self.rezeroed += parameters.only_zero_differs(before)
             if parameters.absolute or before.absolute:
                 self.turns.forget_turns()
         joint, period = parameters.rotor_joint, parameters.rotor_period
@@ -109,11 +118,8 @@ class RotorInput:
             self.turns.period = period
             self.turns.reset()
             self.plausibility.reset()
-            self.velocity_field = VelocityField(float(1 / parameters.gear.gear_ratio))
-            self.effort_field = EffortField()
-            self._reader = JointReader(parameters.rotor_joint)
+            self._select_joint()
             self.missing_joint, self.last = '', None
-        self._parameters = parameters
 
     @property
     def referenced(self) -> bool:
@@ -134,14 +140,13 @@ class RotorInput:
 
     @property
     def segment(self) -> int:
-        """A number that rises where the turn count restarts, is uncertain or is referenced."""
+        """Number that rises where the turn count restarts, is uncertain or is referenced."""
         return self.turns.unknown_gaps + self.resets + self._restarts + self.plausibility.jumps
 
     def accept(self, data: JointMessage, now: Callable[[], int]) -> RotorSample:
-        """Process the next message; one without a stamp gets that of the clock `now`, ns.
+        """Process the next message; one without a stamp gets the time of the clock `now`, ns.
 
-        Raises:
-            RejectedInputError: if the message gives no output. It is counted.
+        Raises RejectedInputError, which is counted, if the message gives no output.
         """
         self.received += 1
         try:
@@ -156,10 +161,9 @@ class RotorInput:
             raise
 
     def home(self, rotor_angle: float) -> float:
-        """Declare that the rotor angle is `rotor_angle` now; returns the zero, rad.
+        """Declare that the rotor is at an angle now, and return the zero, both in rad.
 
-        Raises:
-            RuntimeError: before the first valid message.
+        Raises RuntimeError before the first valid message.
         """
         zero = self.turns.home(rotor_angle, self._parameters.rotor_direction)
         self.zero, self.origin = split_turns(zero), Condition.HOMED()
@@ -170,7 +174,8 @@ class RotorInput:
     def refer(self, origin: Fact, turns: int = 0, angle: float = 0.0) -> None:
         """Add 2π `turns` + `angle`, rad, to the rotor angle from the next message on.
 
-        The turns are known then, from an origin, and a new segment begins; `parameters` remain.
+        From then on the turns are known, by their origin, and a new segment begins. `parameters`
+        stay as they are.
         """
         direction, (zero_turns, zero_angle) = self._parameters.rotor_direction, self.zero
         self.zero = RotorPosition(zero_turns - direction * turns, zero_angle - direction * angle)
@@ -179,14 +184,11 @@ class RotorInput:
         self._restarts += 1
 
     def zero_for(self, rotor_angle: float) -> float:
-        """Return or raise the same as `home`, but change nothing."""
+        """Find the zero that `home` would set, or raise its error, without changing anything."""
         return self.turns.zero_for(rotor_angle, self._parameters.rotor_direction)
 
     def accept_batch(self, messages: Sequence[bytes], received: Sequence[int]) -> RotorSamples:
-        """Process many serialised messages at once, with the same result as one by one.
-
-        The times of reception, ns, replace missing stamps.
-        """
+        """Process many messages with the result of `accept`; reception, ns, is their clock."""
         self.received += len(messages)
         states = decode_joint_states(messages, self._parameters.rotor_joint)
         position = np.abs(states.values[:, 0])  # NaN if it is missing, or the message malformed
@@ -197,13 +199,13 @@ class RotorInput:
             left = np.ones(len(messages), bool)
             # In the order of the checks in `accept`.
             for faulty, cause in (
-                (states.malformed, MALFORMED),
-                (states.stamp > LATEST, STAMP_OUT_OF_RANGE),
-                (~states.joint_found, JOINT_MISSING),
-                (~states.arrays_fit, ARRAY_SIZES),
-                (~states.present[:, 0], POSITION_MISSING),
-                (~np.isfinite(position), POSITION_NOT_FINITE),
-                (position > LARGEST_ANGLE, POSITION_TOO_LARGE),
+                (states.malformed, Rejection.MALFORMED),
+                (states.stamp > LATEST, Rejection.STAMP_OUT_OF_RANGE),
+                (~states.joint_found, Rejection.JOINT_MISSING),
+                (~states.arrays_fit, Rejection.ARRAY_SIZES),
+                (~states.present[:, 0], Rejection.POSITION_MISSING),
+                (~np.isfinite(position), Rejection.POSITION_NOT_FINITE),
+                (position > LARGEST_ANGLE, Rejection.POSITION_TOO_LARGE),
             ):
                 if count := int(np.count_nonzero(faulty & left)):
                     self.rejected[cause] += count
@@ -225,7 +227,7 @@ class RotorInput:
 
     def _leave_others(self) -> None:
         """Count messages without the joint, which is in others, as no fault."""
-        self.of_others += self.rejected.pop(JOINT_MISSING, 0)
+        self.of_others += self.rejected.pop(Rejection.JOINT_MISSING, 0)
         self.missing_joint = ''
 
     def _all_at_once(
@@ -283,7 +285,7 @@ class RotorInput:
         self.zero_stamps += 1
         stamp = now()
         if stamp > LATEST:
-            raise RejectedInputError(STAMP_OUT_OF_RANGE)
+            raise RejectedInputError(Rejection.STAMP_OUT_OF_RANGE)
         return stamp
 
     def _take(
@@ -300,7 +302,7 @@ class RotorInput:
             self.plausibility.set_back(time)
         if (verdict := self.plausibility.judge(position, stamp)) is not BELIEVED:
             if verdict is Belief.IMPLAUSIBLE:
-                raise RejectedInputError(IMPLAUSIBLE)
+                raise RejectedInputError(Rejection.IMPLAUSIBLE)
             self.turns.lose()
         if stamp < (field := self.velocity_field).quiet_until:
             self.turns.update(position, stamp, velocity)
@@ -340,7 +342,7 @@ class RotorInput:
             self.duplicates += 1
         elif last - stamp <= CLOCK_RESET:
             self._disorder.stamps.append(stamp)
-            raise RejectedInputError(OUT_OF_ORDER)
+            raise RejectedInputError(Rejection.OUT_OF_ORDER)
         else:
             self.resets += 1
             self.turns.reset()

@@ -202,11 +202,9 @@ class StateMessages(OutputMessages):
 
 
 def state_messages(parameters: NodeParameters) -> OutputMessages:
-    """The messages of a gear: those of its bodies too, unless only the ratio is known.
+    """Return the messages of a gear, with those of its bodies unless only the ratio is known.
 
-    Raises:
-        ValueError: if `output_joint` is empty or the name of another joint, or a name is not
-            printable.
+    Raises ValueError if a name is empty, not printable, or that of two joints.
     """
     gear, joint, prefix = parameters.gear, parameters.output_name, parameters.frame_prefix
     if isinstance(gear, Mechanism):

@@ -1,8 +1,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Finds the rotor's turns by an absolute encoder at the output, and watches that they agree.
 
-An encoder that is absolute within a turn leaves the turn of the output open: `output_range` tells
-it, and excludes angles that the output cannot have.
+An encoder that is absolute within a turn leaves the turn of the output open. `output_range`
+determines it, and excludes angles that the output cannot have.
 
 The rotor angle is 2π k + a with a known angle a and an unknown integer k. With i = N/D in lowest
 terms, the output angle within its turn, 2π k D/N + a D/N modulo 2π, takes |N| values that are
@@ -62,10 +62,9 @@ class Decision(NamedTuple):
 
 
 def nearest_turns(ratio: GearRatio, error: float) -> tuple[int, float]:
-    """Find the turns of the rotor, in (-|N|/2, |N|/2], that explain an error of the output best.
+    """Find the turns of the rotor, in (-|N|/2, |N|/2], that best explain an error of the output.
 
-    Returns:
-        The turns to add to the rotor's count, and what they leave of the error, rad.
+    Returns the turns to add to the rotor's count, and what they leave of the error, rad.
     """
     n = abs(ratio.numerator)
     # One step of the output angle is so many turns of the rotor; pow(..., 1) is 0.

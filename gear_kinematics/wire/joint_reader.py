@@ -4,6 +4,7 @@
 import math
 import struct
 from collections.abc import Callable, Iterable, Sequence
+from enum import StrEnum
 from functools import partial
 from operator import itemgetter
 from typing import Any
@@ -22,15 +23,6 @@ from gear_kinematics.wire.cdr import (
 )
 from gear_kinematics.wire.nearest import among, listed
 
-MALFORMED = 'not a JointState'
-STAMP_OUT_OF_RANGE = 'stamp out of range'
-JOINT_MISSING = 'joint missing'
-ARRAY_SIZES = 'array sizes'
-POSITION_MISSING = 'position missing'
-POSITION_NOT_FINITE = 'position not finite'
-POSITION_TOO_LARGE = 'position too large'
-OUT_OF_ORDER = 'out of order'
-IMPLAUSIBLE = 'implausible'
 CLOCK_RESET = 1_000_000_000  # ns; a stamp that is older by more shows a clock that was set back
 
 GREATEST = 1e280
@@ -46,10 +38,24 @@ effort; None for a value that is absent or not finite."""
 _Unpack = Callable[[bytes], tuple[Any, ...]]
 
 
-class RejectedInputError(ValueError):
-    """A message without an output; the text is one of the causes above, which are counted."""
+class Rejection(StrEnum):
+    """The cause for which a message has no output."""
 
-    def __init__(self, cause: str, describe: Callable[[], str] = str) -> None:
+    MALFORMED = 'not a JointState'
+    STAMP_OUT_OF_RANGE = 'stamp out of range'
+    JOINT_MISSING = 'joint missing'
+    ARRAY_SIZES = 'array sizes'
+    POSITION_MISSING = 'position missing'
+    POSITION_NOT_FINITE = 'position not finite'
+    POSITION_TOO_LARGE = 'position too large'
+    OUT_OF_ORDER = 'out of order'
+    IMPLAUSIBLE = 'implausible'
+
+
+class RejectedInputError(ValueError):
+    """A message without an output; the text is the cause, which is counted."""
+
+    def __init__(self, cause: Rejection, describe: Callable[[], str] = str) -> None:
         """Note the cause, and a function that returns further details."""
         super().__init__(cause)
         self._describe = describe
@@ -86,7 +92,7 @@ def joints_of(data: bytes) -> list[str]:
 
 def _missing(joint: bytes, data: bytes) -> RejectedInputError:
     name = joint.decode(errors='backslashreplace')
-    return RejectedInputError(JOINT_MISSING, partial(describe_missing, name, data))
+    return RejectedInputError(Rejection.JOINT_MISSING, partial(describe_missing, name, data))
 
 
 class JointReader:
@@ -117,7 +123,7 @@ class JointReader:
             if len(data) != self._size or self._fixed_of(data) != self._fixed:
                 self._learn(data)
         except MalformedMessageError as error:
-            raise RejectedInputError(MALFORMED) from error
+            raise RejectedInputError(Rejection.MALFORMED) from error
         return self._take(self._numbers_of(data), data)
 
     def _learn(self, data: bytes) -> None:
@@ -180,7 +186,7 @@ class JointsReader:
         try:
             layout = joint_state_layout(data)
         except MalformedMessageError as error:
-            raise RejectedInputError(MALFORMED) from error
+            raise RejectedInputError(Rejection.MALFORMED) from error
         learnt = _JointsLayout(layout, self._joints, data)
         if layout.size <= _MAX_KEPT:
             if sum(map(len, self._layouts.values())) >= _MOST_LAYOUTS:
@@ -220,7 +226,7 @@ class _Joint:
         """Those of its position, velocity and effort; None for one that is absent."""
         self.present = [offset for offset in self.offsets if offset is not None]
         self.missing = index is None
-        self._fault = POSITION_MISSING if fit else ARRAY_SIZES
+        self._fault = Rejection.POSITION_MISSING if fit else Rejection.ARRAY_SIZES
 
     def pick_from(self, offsets: Sequence[int]) -> Callable[[Sequence[Any]], tuple[Any, ...]]:
         """Make a function that takes the joint's numbers out of all, and None behind them."""
@@ -233,12 +239,13 @@ class _Joint:
         seconds, nanoseconds, position, velocity, effort = numbers
         stamp = seconds * SECOND + nanoseconds
         if stamp > LATEST:
-            raise RejectedInputError(STAMP_OUT_OF_RANGE)
+            raise RejectedInputError(Rejection.STAMP_OUT_OF_RANGE)
         if position is None:
             raise _missing(self._joint, data) if self.missing else RejectedInputError(self._fault)
         if not -LARGEST_ANGLE <= position <= LARGEST_ANGLE:  # NaN compares false
-            finite = math.isfinite(position)
-            raise RejectedInputError(POSITION_TOO_LARGE if finite else POSITION_NOT_FINITE)
+            if math.isfinite(position):
+                raise RejectedInputError(Rejection.POSITION_TOO_LARGE)
+            raise RejectedInputError(Rejection.POSITION_NOT_FINITE)
         if velocity is not None and not -GREATEST <= velocity <= GREATEST:
             velocity = None
         if effort is not None and not -GREATEST <= effort <= GREATEST:
