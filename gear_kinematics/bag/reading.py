@@ -160,11 +160,7 @@ class Bag:
                 progress(done, self.message_count)
 
     def type_of(self, topic: str, wanted: str = '') -> str:
-        """Return the type of a topic.
-
-        Raises:
-            BagError: if the topic is not in the bag, or not of the wanted type.
-        """
+        """Return the type of a topic; BagError if the bag lacks it, or it is not as wanted."""
         found = self.topics.get(topic)
         if found is None or (wanted and found != wanted):
             raise missing_topic(self.path, self.topics, topic, wanted)
@@ -235,8 +231,7 @@ def _plain(pieces: Iterator[list[Message]], limits: ReadLimits) -> Iterator[list
 def _opened(file: Path, limits: ReadLimits, read: int = 0) -> Iterator[Storage]:
     """Open a file of a bag after `read` messages of others; if compressed, a temporary copy.
 
-    Raises:
-        BagError: for any exception about the file, also from the body of the with statement.
+    Any exception about the file, also from the body of the with statement, becomes a BagError.
     """
     storage, broken = None, ''
     try:

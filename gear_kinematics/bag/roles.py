@@ -51,19 +51,12 @@ def find_topics(
     joints: Collection[str] = (),
     namespace: str | None = None,
 ) -> Topics:
-    """Find the topics by type and name, in any namespace; that of the rotor's topic comes first.
+    """Find the topics by type and name; those in the namespace of the rotor's topic come first.
 
-    Args:
-        bag: an open bag.
-        given: names of known topics by their parts.
-        outputs: whether the outputs must exist too.
-        poses: whether the poses are one of the outputs.
-        joints: of the rotors, to choose the topic that has most of them.
-        namespace: of the node, to choose among several sets of topics (default: that of a given
-            output).
-
-    Returns:
-        The names; the name of the poses is empty if they are neither recorded nor given.
+    The names of some parts may be given. The rotor's topic is that with most of the `joints`, and
+    the `namespace` of the node, or else of a given output, chooses among several sets of topics.
+    Without `outputs`, only the rotor's topic must exist. Poses that are neither recorded nor given
+    have an empty name.
 
     Raises:
         BagError: if a topic is missing or ambiguous.

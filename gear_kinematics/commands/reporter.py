@@ -92,10 +92,7 @@ class Reporter:
         """Print the document, unless a form of it goes to stdout, and write the files.
 
         `configs` are the parameter files that were used. It is not `printed` if one line on stderr
-        was enough.
-
-        Returns:
-            The exit code for the verdict.
+        was enough. Returns the exit code for the verdict.
 
         Raises:
             ValueError: if there is nothing to plot; everything else is written by then.

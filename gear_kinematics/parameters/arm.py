@@ -40,14 +40,13 @@ _JOINTS = 'rotor_joint', 'output_joint', 'output_encoder_joint'
 def load_actuators(
     path: Path | None = None, node: str = NODE, others: Iterable[str] = ()
 ) -> dict[str, NodeParameters]:
-    """Read the parameters of all actuators of a node from a file, by name in their order.
+    """Read the parameters of all actuators of a node, by name; see `NodeParameters.load`.
 
-    A relative path in the file is relative to it. The arguments are those of
-    `NodeParameters.load`.
+    Paths in the file are relative to it.
 
     Raises:
         ConfigError: if it cannot be read, has nothing for the node, leaves open which node is
-            meant, or naming every value and every name that is refused.
+            meant, or has values or names that are refused, of which the text lists all.
     """
     path = path or default_config()
     given = given_parameters(path, node)
@@ -84,10 +83,7 @@ def as_file(actuators: Iterable[NodeParameters], node: str = '/**') -> str:
 
 
 def arm_urdf(actuators: Mapping[str, NodeParameters]) -> tuple[str, list[str]]:
-    """Write the URDF of the actuators whose bodies are known, side by side where they are several.
-
-    Returns:
-        The URDF, and the names of the actuators that are not in it.
+    """Write the URDF of all actuators whose bodies are known, side by side, and name the others.
 
     Raises:
         ValueError: if only the ratios are known, or there is no such mechanism.

@@ -35,14 +35,10 @@ def names_of_files(given: Mapping[str, Any]) -> list[str]:
 
 
 def require_any(paths: Collection[Path], node: str) -> dict[str, Path]:
-    """Check that parameter files contain parameters, and at least one of them some for the node.
+    """Return the calibrations and home files that parameter files name, relative to these.
 
-    ROS silently ignores other files, and the node would run with its default values. Here, they
-    raise ConfigError.
-
-    Returns:
-        The paths of calibrations and home files by the values of the parameters in the files, to
-        which relative ones are relative.
+    Raises ConfigError if a file has no parameters, or none has any for the node. ROS silently
+    ignores such files, and the node would run with its default values.
     """
     useless = []
     files: dict[str, Path] = {}

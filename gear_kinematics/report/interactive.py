@@ -18,12 +18,11 @@ _LINE = 36  # greatest number of characters in a line of text, so that it fits o
 
 
 def interactive(panels: Sequence[Panel], mechanism: MovingMechanism | None) -> dict[str, Any]:
-    """Return data and layout of a plot of panels, from top to bottom, over a common x axis.
+    """Return a plot of panels, from top to bottom, over a common x axis.
 
-    Returns:
-        `data` and `layout` of plotly; `time`, the x of all lines that have no `x`; `turned`, the
-        angles of rotor and output in degrees, if a mechanism moves with the plot; `forces` of its
-        branches, if they are drawn.
+    It has `data` and `layout` of plotly, and `time`, the x of all lines that have no `x`. If a
+    mechanism moves with the plot, `turned` has the angles of rotor and output, degrees, and
+    `forces` the forces of its branches if these are drawn.
     """
     several = len(panels) > 1
     layout: dict[str, Any] = {'shapes': [], 'annotations': [], 'showlegend': False}

@@ -65,10 +65,9 @@ class Actuator:
         return float(parameters.gear.gear_ratio.rotor_angle(parameters.home_angle))
 
     def home_zero(self) -> tuple[float, str]:
-        """Find `rotor_zero` for a shaft at `home_angle`, rad; says where the shaft was and is.
+        """Return `rotor_zero`, rad, for a shaft at `home_angle`, and say where it was and is.
 
-        Raises:
-            RefusedError: if the shaft cannot be homed; the text says why.
+        Raises RefusedError if the shaft cannot be homed; the text says why.
         """
         parameters, rotor = self.state.parameters, self.state.input
         ratio, limit = parameters.gear.gear_ratio, parameters.home_max_speed

@@ -87,24 +87,13 @@ def live_messages(
     rate: float = 1.0,
     progress: ReportProgress = lambda _done, _total: None,
 ) -> Iterator[Message]:
-    """Play a bag's topics of encoders into a node process and yield what it publishes.
+    """Play a bag's topics of encoders into a node process, and yield all messages as received.
 
-    The node runs in a private namespace and communicates on this machine only. Messages are sent
-    only as fast as it processes them, so that none is lost at any rate. Rotor messages without a
-    stamp get their time of reception: the node would use its clock, and the outputs could not be
-    matched.
-
-    Args:
-        source: an open bag.
-        parameters: of the node.
-        rotor_topic: name of the rotor topic in the bag.
-        encoder_topic: name of the output encoder's topic in the bag, to play it too.
-        rate: bag time / real time.
-        progress: called with the number of rotor messages sent.
-
-    Yields:
-        Messages on /rotor_state, /output_encoder and `outputs_of` the parameters, in the order of
-        their reception.
+    They are on /rotor_state, /output_encoder and `outputs_of` the parameters. The node runs in a
+    private namespace and communicates on this machine only. Messages are sent `rate` times as fast
+    as they were recorded, but only as fast as the node processes them, so that none is lost. Rotor
+    messages without a stamp get their time of reception: the node would use its clock, and the
+    outputs could not be matched. The progress is that of the rotor's messages.
 
     Raises:
         BagError: if the topic is missing or empty; if the bag is damaged, after the outputs for

@@ -58,17 +58,9 @@ def play(
     """Publish a bag's joint states unchanged, with their original timing.
 
     A late message does not delay the next ones. The publisher is reliable, which is compatible
-    with every subscription.
-
-    Args:
-        source: an open bag.
-        topic: the name in the bag, of JointState messages.
-        published: the name to publish it under.
-        rate: bag time / real time.
-        loop: whether to restart at the end, a mean period after the last message, until stopped.
-        wait: whether to wait for a subscriber first.
-        stopped: returns whether to stop; called at least every 0.1 s.
-        progress: called with the number of messages sent.
+    with every subscription; it may `wait` for a first one. A `loop` begins again a mean period
+    after the last message, until `stopped`, which is called at least every 0.1 s. `rate` is bag
+    time / real time.
 
     Raises:
         BagError: if the bag lacks the topic, has nothing to play or is damaged; the messages

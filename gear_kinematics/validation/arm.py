@@ -38,12 +38,9 @@ class JoinedMessages:
     ) -> None:
         """Start without messages.
 
-        Args:
-            joints: all joints that can be in them, in their order, with the numbers of their
-                actuators.
-            needed: the actuators with a joint in a message whenever their rotor is valid.
-            count: number of all actuators.
-            others: whether there are joints of others, about which nothing is known.
+        `joints` are all that can be in a message, in their order, with the numbers of their
+        actuators, of which there are `count`. Those that are `needed` have a joint in a message
+        whenever their rotor is valid. Nothing is known of joints of `others`, if there are any.
         """
         self._actuators, self._order, self._others = joints, list(joints), others
         # A set of actuators is a number, with a bit for each.
@@ -58,12 +55,9 @@ class JoinedMessages:
         self._faults: defaultdict[_Fault, Occurrences] = defaultdict(Occurrences)
 
     def take(self, messages: JointStateBatch, stamps: Array, valid: Array) -> None:
-        """Judge the next messages.
+        """Judge the next messages of the topic.
 
-        Args:
-            messages: of the topic.
-            stamps: of the next inputs, ns, (n,).
-            valid: whether they have a valid state of each actuator, (n, actuators).
+        The next inputs have stamps, ns, (n,), and may be valid for an actuator, (n, actuators).
         """
         sets = valid.astype(self._bits.dtype) @ self._bits
         inputs = np.stack([stamps, sets & self._needed])

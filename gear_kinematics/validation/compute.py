@@ -37,17 +37,11 @@ _TOPICS = Topics()
 class ComputeResult:
     """Numbers of messages that were computed and copied."""
 
-    inputs: Mapping[str, RotorInput]
-    """Inputs by actuator, which have counted the messages on the rotor's topic, and the rejected
-    ones."""
-    computed: int
-    """Messages written on each output topic."""
-    copied: int
-    """Messages copied from other topics."""
-    questions: Mapping[str, Fact | None]
-    """Says of each actuator if its efforts are hardly torques of a rotor, N·m; else ''."""
-    left_out: tuple[str, ...]
-    """Topics that were not copied: those not chosen, and those that a rosbag2 cannot hold."""
+    inputs: Mapping[str, RotorInput]  # by actuator, with counts of the rotor's messages
+    computed: int  # messages written on each output topic
+    copied: int  # messages copied from other topics
+    questions: Mapping[str, Fact | None]  # by actuator: efforts that are hardly torques of a rotor
+    left_out: tuple[str, ...]  # topics not copied: not chosen, or not possible in a rosbag2
 
 
 def compute(
@@ -64,31 +58,17 @@ def compute(
     compression: Literal['none', 'zstd'] = 'none',
     progress: ReportProgress | None = None,
 ) -> ComputeResult:
-    """Copy a bag and add or replace the output topics; with `gear_ratio`, only `output_state`.
+    """Copy an open bag to a new folder, and add or replace the topics that the node publishes.
 
-    With a preload, the loads are outputs too, and with a calibration CORRECTED_TOPICS beside the
-    topic of the output. The actuators of an arm have the topics that they have in the node.
+    The actuators are given by name, '' for one gear. They have the topics that the node gives
+    them: only `output_state` if just the ratio is known, the loads with a preload, and
+    CORRECTED_TOPICS with a calibration. Of the other topics, all are copied or those in `others`;
+    an `encoder_topic` that references the rotor always is. `files` are contents by name.
 
-    Each output directly follows its rotor message and has its time of reception. The same input
-    gives the same bytes. From mcap to mcap, copies keep their times of publication. If this fails
-    or is interrupted, no target is left.
-
-    Where an output encoder references the rotor's count, outputs are those of the node: before the
-    reference those of the nearest turn, or of the configured zero, and referenced from then on.
-
-    Args:
-        source: an open bag.
-        target: the folder to create.
-        actuators: parameters of each actuator by name, '' for one gear.
-        topics: names of the input and the node's outputs in the bag.
-        encoder_topic: name of the output encoder in the bag, if it references the rotor; it is
-            copied too.
-        calibrations: of the actuators that have one.
-        others: other topics to copy; None copies all.
-        files: contents of further files of the target, by name.
-        storage: of the target, see `BagWriter`.
-        compression: of the target, see `BagWriter`.
-        progress: called after each batch; the total counts all topics of the bag.
+    Each output follows its rotor message, with the same time of reception. Until the output's
+    encoder references the rotor, outputs are those of the nearest turn or the configured zero, as
+    in the node. The same input gives the same bytes; from mcap to mcap, copies keep their times of
+    publication. If this fails or is interrupted, no target is left.
 
     Raises:
         BagError: if the source lacks a topic, is damaged or has no valid rotor message, or if the

@@ -69,8 +69,7 @@ class CountChanges:
     def learn(self, samples: Window, position: FieldSamples) -> bool:
         """Learn from output angles at moved samples, (n,), and move these by what is found.
 
-        Returns:
-            Whether a change was found, so that the expected angles have changed.
+        Returns whether a change was found, so that the expected angles have changed.
         """
         before, angle_before, error_before = self._latest
         numbers, error, angle = samples['number'], position.error, position.recorded

@@ -105,13 +105,10 @@ class Completeness:
     def update(
         self, received: Array, stamp: Array, answered: Flags, begun: Mapping[str, int]
     ) -> None:
-        """Process the next inputs in the order of their reception.
+        """Process the next inputs: times of reception in order and stamps, both (n,), ns.
 
-        Args:
-            received: when they were, (n,), ns.
-            stamp: (n,), ns.
-            answered: whether they have their outputs, (topics, n).
-            begun: the times from which topics are recorded, ns, by their names.
+        `answered`, (topics, n), says whether they have their outputs, and `begun` when the
+        recording of each topic began, ns.
         """
         if not len(received):
             return

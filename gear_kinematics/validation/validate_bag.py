@@ -53,15 +53,10 @@ _BATCH = 8192  # messages of a live node that are validated together
 def validate(
     bag: Path | str, parameters: NodeParameters | Path | str, **options: Any
 ) -> BagReport:
-    """Validate a bag, as in a test of another package.
-
-    Args:
-        bag: a file or a folder.
-        parameters: of the node, or their file.
-        options: further fields of `Task`, as the options of `gearkin validate`.
+    """Validate a bag, as in a test of another package; `options` are further fields of `Task`.
 
     Raises:
-        ConfigError: if the file cannot be used.
+        ConfigError: if the parameter file cannot be used.
         MechanismError: if the parameters describe no mechanism.
     """
     if isinstance(parameters, NodeParameters):
@@ -85,11 +80,8 @@ def validate_bag(
 ) -> BagReport:
     """Validate one bag; the report contains any error about the recording.
 
-    Args:
-        task: the bag, and how to validate it.
-        progress: called after each batch; the total counts all topics of the bag, or with `play`
-            the rotor's alone.
-        play: `live_messages`, to validate the outputs of a live node instead of recorded ones.
+    `play` is `live_messages`, to validate the outputs of a live node instead of recorded ones.
+    The total in `progress` then counts the rotor's messages, instead of all in the bag.
 
     Raises:
         MechanismError: if the parameters describe no mechanism.

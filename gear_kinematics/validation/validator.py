@@ -48,17 +48,11 @@ class Validator:
         further: Mapping[str, str] = _NONE,
         encoder: str = '',
     ) -> None:
-        """Prepare for a recording.
+        """Prepare for a recording; raises ValueError if the parameters describe no gear.
 
-        Args:
-            task: how to validate it.
-            topics: names of the topics; that of poses that are not recorded is empty.
-            further: the recorded ones of CORRECTED_TOPICS, LOAD_TOPICS and JOINT_STATES, each with
-                its name in the recording.
-            encoder: the topic of an encoder at the output that references the rotor, if recorded.
-
-        Raises:
-            ValueError: if the parameters describe no gear.
+        `further` has the recorded ones of CORRECTED_TOPICS, LOAD_TOPICS and JOINT_STATES with
+        their names in the recording, and `encoder` is the topic of an encoder at the output that
+        references the rotor. The names of other topics that are not recorded are empty.
         """
         self.task = task
         self._parameters = parameters = task.parameters

@@ -93,9 +93,8 @@ class LiveCommissioning:
     def changes(self, gear: GearNode) -> dict[str, Any]:
         """Return the parameters that a running node has to change.
 
-        Raises:
-            ValueError: if the ratio is undetermined, the node belongs to another gear, or the
-                change needs a restart.
+        Raises ValueError if the ratio is undetermined, the node belongs to another gear, or the
+        change needs a restart.
         """
         result, parameters = self.result(), gear.parameters
         if not result.between:
