@@ -30,7 +30,7 @@ def _zstd() -> Any:
 
 
 class _Zstandard:
-    """The needed part of Python's zstd, made of zstandard, which Debian and Ubuntu package."""
+    """The needed part of Python's zstd, based on zstandard, which Debian and Ubuntu package."""
 
     def __init__(self) -> None:
         import zstandard  # noqa: PLC0415
@@ -74,8 +74,7 @@ class ReadLimits:
     of a compressed file. Only blank images and maps expand further: they are few, or small.
     """
 
-    max_record = 2**30
-    """Largest record on disk, bytes."""
+    max_record = 2**30  # largest record on disk, bytes
     max_descriptions = 2**25
     """Largest descriptions of topics and types together, bytes; all are kept in memory."""
     chunk_expansion, file_expansion = 20, 100
@@ -107,11 +106,7 @@ class ReadLimits:
             raise ValueError('its compressed data expand to more than a bag of this size can hold')
 
     def describe(self, *texts: str | bytes) -> None:
-        """Count the description of a topic or type, with its number: once for several files.
-
-        Raises:
-            ValueError: if they are larger than any recorder writes.
-        """
+        """Count the description of a topic or type once; ValueError if all are too large."""
         if (key := hash(texts)) in self._known:
             return
         self._known.add(key)

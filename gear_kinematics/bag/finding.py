@@ -134,11 +134,7 @@ class Contents(NamedTuple):
 
 
 def find_contents(path: Path) -> Contents:
-    """Find the files of a recording, a rosbag2 folder or a file, and read its metadata.
-
-    Raises:
-        ValueError: or other exceptions, if this is not a recording.
-    """
+    """Find the files of a recording, a folder or a file; raises any Exception if it is none."""
     path = _recording(path)
     if path.is_file():
         return Contents([path], {}, None)

@@ -105,9 +105,9 @@ class Mcap(Storage):
         yield pending
 
     def _overlapping_chunks(self) -> list[tuple[int, int, int, int]]:
-        """Return the time of the first message, position, length and size of each whole chunk.
+        """Return first time, position, length and size of all chunks, if any overlap.
 
-        There are none if none overlap in time, or if there are messages outside of chunks.
+        Without overlaps in time, or with messages outside of chunks, the list is empty.
         """
         chunks, latest, overlap = list[tuple[int, int, int, int]](), 0, False
         offset = self._stream.seek(len(MCAP_MAGIC))

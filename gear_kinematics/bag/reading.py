@@ -105,9 +105,7 @@ class Bag:
         self._readings.close()
 
     def messages(self, topics: Collection[str]) -> Iterator[Message]:
-        """Read raw messages in the order in which they were received, those of ROS 1 as CDR.
-
-        A topic that is not in the bag has no messages.
+        """Read raw messages in the order of their reception, those of ROS 1 as CDR.
 
         Raises:
             BagError: if no message can be read.
@@ -125,9 +123,8 @@ class Bag:
     ) -> Iterator[list[Message]]:
         """Read raw messages as `messages` does, many at a time, which is faster.
 
-        The total that `progress` gets after each batch counts all topics of the bag. With
-        `any_encoding`, messages that are not CDR are read, too; with `publish_times`, those of an
-        mcap are `Published`.
+        The total in `progress` counts all topics of the bag. `any_encoding` reads messages that
+        are not CDR as well; with `publish_times`, those of an mcap are `Published`.
         """
         options = {'any_encoding': any_encoding, 'publish_times': publish_times}
         return self._batches(self._pieces(topics, **options), topics, progress, list)

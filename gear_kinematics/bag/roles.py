@@ -96,7 +96,7 @@ def find_rotor_topic(bag: Bag, given: str | None = None, *joints: str) -> str:
 def outputs_of(bag: Bag, rotor: str) -> Topics:
     """Return the topics of the outputs for a rotor's topic: those that a bag has, by their name.
 
-    If it has none, or those of several nodes, the names are in the namespace of the rotor's topic.
+    If it has none, or those of several nodes, they are in the namespace of the rotor's topic.
     """
     kind = TOPICS[OUTPUT_STATE].type
     near = Topics.in_namespace_of(rotor)
@@ -118,10 +118,7 @@ def only_joint(bag: Bag, topic: str, joint: str) -> str:
 
 
 def joints_on(bag: Bag, topics: Sequence[str]) -> dict[str, list[str]]:
-    """Return the joints in the first messages on topics of joint states, safe to print.
-
-    A topic without a readable message has none.
-    """
+    """Return the joints, safe to print, in the first readable messages on JointState topics."""
     first: dict[str, list[bytes]] = {topic: [] for topic in topics}
     left = set(topics)
     with suppress(BagError):
@@ -140,12 +137,9 @@ def joints_on(bag: Bag, topics: Sequence[str]) -> dict[str, list[str]]:
 
 
 def find_encoder_topic(bag: Bag, rotor: str, given: str | None = None) -> str:
-    """Return the topic of the output encoder: the given one, or else by name; empty without one.
+    """Return the output encoder's topic: given, or by name, best beside the rotor's; '' if none.
 
-    That in the namespace of the rotor's topic comes first.
-
-    Raises:
-        BagError: if the given one is missing, or several elsewhere have the name.
+    Raises BagError if the given one is missing, or several in other namespaces have the name.
     """
     wanted = TOPICS[OUTPUT_ENCODER].type
     if given:

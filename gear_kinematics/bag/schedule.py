@@ -43,10 +43,7 @@ def due_messages(
 
 
 def count_due(source: Bag, topics: Collection[str]) -> int | None:
-    """Count the messages of one round of `due_messages`; None if there are none.
-
-    That takes reading them all.
-    """
+    """Count the messages of one round of `due_messages`, by reading all; None without any."""
     count = 0
     with suppress(BagError):  # playing them raises it, too
         for _ in _one_round(source, topics):

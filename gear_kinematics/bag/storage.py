@@ -78,10 +78,8 @@ class Storage:
     def __init__(self, limits: ReadLimits) -> None:
         """Start with the limits on the files of the bag."""
         self.limits = limits
-        self.read = 0
-        """Number of messages that the caller has taken from `pieces`."""
-        self.any_encoding = False
-        """Whether messages are read that are not CDR, too."""
+        self.read = 0  # number of messages that the caller has taken from `pieces`
+        self.any_encoding = False  # whether messages are read that are not CDR, too
         self.publish_times = False
         """Whether messages are `Published` where the file knows when they were."""
 
@@ -90,10 +88,7 @@ class Storage:
         raise NotImplementedError
 
     def pieces(self, topics: Collection[str]) -> Iterator[list[Message]]:
-        """Read the messages on the given topics, some at a time, in the order of reception.
-
-        Those before an error are yielded before it is raised.
-        """
+        """Read messages on topics in the order of reception; an error is raised after the last."""
         raise NotImplementedError
 
     def close(self) -> None:
@@ -111,10 +106,7 @@ class Storage:
 
 
 def in_batches(messages: Iterable[Message], count: int = 256) -> Iterator[list[Message]]:
-    """Group messages into batches of up to `count` messages, and of about 1 MiB at most.
-
-    Messages before an exception are yielded before it is raised.
-    """
+    """Group messages into batches of up to `count` messages and about 1 MiB; see `joined`."""
     return joined(([message] for message in messages), count, 2**20)
 
 

@@ -91,11 +91,7 @@ class BagWriter:
         storage: Literal['mcap', 'sqlite3'] = 'mcap',
         compression: Literal['none', 'zstd'] = 'none',
     ) -> None:
-        """Define the recording in a new folder of an existing one; `__enter__` opens it.
-
-        The compression zstd is that of the chunks of an mcap file, or of a whole sqlite3
-        file.
-        """
+        """Define a new folder for `__enter__` to create; zstd is for chunks, or a sqlite3 file."""
         self.path = Path(path)
         self._storage = StoragePlugin[storage.upper()]
         modes = {'mcap': CompressionMode.STORAGE, 'sqlite3': CompressionMode.FILE}
@@ -146,11 +142,7 @@ class BagWriter:
             (self._partial / name).write_bytes(content)
 
     def add_topic(self, name: str, message_type: str) -> None:
-        """Add a topic of a type that ROS 2 Jazzy has, such as sensor_msgs/msg/JointState.
-
-        Raises:
-            BagError: if it has been added already, or the type is unknown.
-        """
+        """Add a topic of a type of ROS 2 Jazzy; BagError if it is there or the type is unknown."""
         with bag_errors(self.path):
             definition = _jazzy_definition(message_type)
             self._add(Topic(name, message_type, 'cdr', 'ros2msg', *definition), [])

@@ -49,7 +49,7 @@ def group(parser: argparse.ArgumentParser, title: str) -> argparse._ArgumentGrou
 
 
 ALL = 'use this actuator of an arm only (default: all)'
-"""The help on `--actuator` where a command works on all of them."""
+"""The help on `--actuator` of commands that work on all actuators."""
 
 
 def add_config(
@@ -60,11 +60,7 @@ def add_config(
     chosen: str = '',
     actuator: str = 'use this actuator of an arm',
 ) -> None:
-    """Add the options for the parameters of a node.
-
-    `chosen` and `actuator` are the help on `--node`, if it has a purpose of its own, and on
-    `--actuator`.
-    """
+    """Add the options for the parameters of a node; `chosen` replaces the help on `--node`."""
     gear = group(parser, 'gear')
     gear.add_argument(
         '--config',
@@ -149,13 +145,10 @@ def load_config(options: argparse.Namespace, bag: Path | None = None) -> NodePar
 def load_configs(
     options: argparse.Namespace, bag: Path | None = None
 ) -> dict[str, NodeParameters]:
-    """Load the parameters of all actuators, or of the chosen one, from `config_path`, by name.
+    """Load the parameters of all actuators, or of the chosen one, by name; '' is that of one gear.
 
-    Without `actuators` in the file, the only name is ''. Options replace some of the parameters.
-
-    Raises:
-        ValueError: for values that the node would refuse, and for options that would replace a
-            parameter of several actuators.
+    Options replace some of them. Raises ValueError for values that the node would refuse, and for
+    options that would replace a parameter of several actuators.
     """
     found = load_actuators(config_path(options, bag), options.node)
     found, replacing = chosen(found, options.actuator), _replacing(options)
@@ -176,7 +169,7 @@ def check_of_one(options: argparse.Namespace, actuators: Collection[str], *names
 
 
 def _replacing(options: argparse.Namespace) -> dict[str, Any]:
-    """The values of parameters in options."""
+    """Return the values of parameters in options."""
     given = {}
     for name, parameter in _REPLACED.items():
         if (value := getattr(options, name, None)) is None:

@@ -22,8 +22,7 @@ CALIBRATION = 'calibration.yaml'  # name of a calibration in the folder of a bag
 def add_rotor(parser: argparse.ArgumentParser, *, configured: bool = True) -> None:
     """Add the options for the rotor's topic and joint; `load_config` applies the latter.
 
-    Without `configured`, the command takes no parameters of the node, and the joint finds the
-    topic.
+    In a command that is not `configured` by parameters, the joint only finds the topic.
     """
     group = arguments.group(parser, 'recording')
     group.add_argument(
@@ -59,10 +58,7 @@ def add_calibration(parser: argparse.ArgumentParser) -> None:
 def calibration_path(
     options: argparse.Namespace, config: NodeParameters, bag: Path | None
 ) -> Path | None:
-    """Choose the given calibration, or that of the parameters, or the one in the bag's folder.
-
-    Those of an arm are all in its parameters.
-    """
+    """Choose the given calibration, that of the parameters, or for one gear that of the folder."""
     if given := options.calibration or config.calibration:
         return Path(given)
     return arguments.in_bag_folder(bag, CALIBRATION) if bag and not config.actuator else None
@@ -84,7 +80,7 @@ def files_of(
 ) -> dict[str, bytes]:
     """Return parameters and calibrations as files to keep beside a new recording.
 
-    They are those of one of several nodes, if its full name is given.
+    If several nodes are recorded, the files are those of the node with a full name.
     """
     files, used = dict[str, bytes](), list[NodeParameters]()
     for actuator, config in configs.items():
@@ -118,10 +114,9 @@ def results(
     tasks: Sequence[Any],
     unit: str,
 ) -> dict[tuple[Path, str], processes.Report]:
-    """Return the reports on tasks by their `bag` and the name of the actuator in `parameters`.
+    """Return the reports on tasks by `key`, from several processes or machines if the options say.
 
-    With `--jobs`, several processes compute them, with one progress bar in the unit; otherwise,
-    each recording has its own.
+    These have one progress bar, in the unit; otherwise, each recording has its own.
     """
     if options.jobs > 1 or options.scheduler:
         if options.scheduler:
@@ -139,7 +134,7 @@ def results(
 
 
 def key(task: Any) -> tuple[Path, str]:
-    """Return the key of the report on a task in `results`."""
+    """Return what identifies a task: its bag, and the actuator in its parameters."""
     return task.bag, task.parameters.actuator
 
 

@@ -25,11 +25,10 @@ _COLUMNS = {
 
 
 def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: bool = True) -> None:
-    """Add the recordings, and the options on how to read them.
+    """Add the recordings and the options on how to read them; tables have roles of `_COLUMNS`.
 
-    `load_config` applies `--ratio` and `--joint`, and `sources` returns the others. `roles`
-    are those of `_COLUMNS` that tables can have; without `configured`, the command takes
-    neither parameters of the node nor a ratio.
+    `load_config` applies `--ratio` and `--joint`, and `sources` returns the others. A command that
+    is not `configured` takes neither parameters of the node nor a ratio.
     """
     number = '+' if configured else '*'  # --live takes their place
     text = 'recording by ROS, or table such as a CSV file'
@@ -138,7 +137,7 @@ def teeth(text: str) -> tuple[int, int]:
 
 
 def sources(options: argparse.Namespace) -> Sources:
-    """The columns and topics given by the options."""
+    """Return the columns and topics that the options give."""
     names: dict[str, Any] = {role: getattr(options, f'{role}_column', None) for role in _COLUMNS}
     return Sources(
         **names,
@@ -153,7 +152,7 @@ def sources(options: argparse.Namespace) -> Sources:
 
 
 def say_columns(recording: Recording, options: argparse.Namespace) -> None:
-    """Print on stderr what was taken of a table, in one line, and what cannot be true."""
+    """Print on stderr which columns of a table were read, in one line, and what cannot be true."""
     taken = [', '.join(recording.columns)] if is_table(recording.path) else []
     for clause in () if options.quiet else (*taken, *recording.faults):
         print(printable(f'{recording.name}: {clause}'), file=sys.stderr)

@@ -30,12 +30,10 @@ def add_force(parser: argparse.ArgumentParser) -> None:
 
 
 def check_targets(options: argparse.Namespace, targets: Mapping[str, str | None]) -> None:
-    """Check that files can be written and replace nothing else, before any other work.
+    """Check before any work that files can be written and replace only files of the same kind.
 
-    The targets are paths by the name of the option or argument; '-' is stdout.
-
-    Raises:
-        ValueError: if a file must not or cannot be written; the text names the first one.
+    The targets are paths by the name of the option or argument; '-' is stdout. Raises ValueError,
+    which names the first file that must not or cannot be written.
     """
     inputs = {given.resolve() for given in _inputs(options)}
     files: dict[Path, str] = {}

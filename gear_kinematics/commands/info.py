@@ -56,10 +56,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _questions(bag: Bag, summary: Summary, joints: Sequence[str]) -> Iterator[str]:
-    """Yield what seems to be wrong with the messages of the rotors whose joints are known.
-
-    Without a given joint, the only joint of a topic is taken.
-    """
+    """Yield what seems wrong in messages of the given joints, or else of a topic's only joint."""
     for topic in summary.topics:
         if topic.part != 'rotor':
             continue

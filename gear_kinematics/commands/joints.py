@@ -32,11 +32,8 @@ def choose_joint(
 ) -> Channel:
     """Return the joint that is given, the only one on its usual topic, or the one the user names.
 
-    Topic and name are given as far as they are known. Questions and errors contain the role of
-    the joint, and `hint`, which says what else to do where there are several.
-
-    Raises:
-        ValueError: if there is none, or there are several and nobody to ask.
+    Topic and name are given as far as they are known. `hint` says what else to do where there are
+    several joints. Raises ValueError if there is none, or there are several and nobody to ask.
     """
     found = _candidates(joints, given, {'rotor': ROTOR_STATE, 'output': OUTPUT_ENCODER}[role])
     if len(found) == 1:
@@ -60,10 +57,7 @@ def choose_joint(
 
 
 def joints_of_arm(joints: Sequence[Channel], topic: str) -> list[Channel]:
-    """Return the joints of the rotors of an arm: all on a given topic, or on the only one.
-
-    Raises ValueError if there is none, or there are several topics.
-    """
+    """Return an arm's rotor joints: all on the given or only topic; ValueError without one."""
     found = _candidates(joints, Channel(topic, ''), ROTOR_STATE)
     if len(topics := {joint.topic for joint in found}) == 1:
         return found
@@ -73,9 +67,9 @@ def joints_of_arm(joints: Sequence[Channel], topic: str) -> list[Channel]:
 
 
 def _candidates(joints: Sequence[Channel], given: Channel, base: str) -> list[Channel]:
-    """Find the given joints, on their usual topic or else on those of other packages.
+    """Find the given joints on their usual topic, or else on topics of other packages.
 
-    Topics of this package count only if something is given.
+    Other topics of this package count only if something is given.
     """
     topic = given.topic and f'/{given.topic.removeprefix("/")}'
     found = [j for j in joints if topic in {'', j.topic} and given.joint in {'', j.joint}]

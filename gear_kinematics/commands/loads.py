@@ -74,10 +74,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _configs(options: argparse.Namespace, bag: Path) -> list[NodeParameters]:
-    """Return the parameters of the gear in a table, or of all actuators with known bodies.
-
-    The other actuators of an arm are named on stderr.
-    """
+    """Return the parameters of actuators with known bodies; name others of an arm on stderr."""
     if is_table(bag):
         return [arguments.load_config(options, bag)]
     configs = [*arguments.load_configs(options, bag).values()]

@@ -74,10 +74,9 @@ def run(options: argparse.Namespace) -> ExitCode:
 def kept(
     options: argparse.Namespace, running: Mapping[str, Mapping[str, NodeParameters]]
 ) -> dict[str, bytes]:
-    """Return the parameters of the actuators of running nodes as files to keep beside a bag.
+    """Return the parameters of running nodes, by their full names, as files to keep beside a bag.
 
-    Several nodes, by their full names, share the parameter file. One that has not answered has no
-    actuators, and is left out.
+    Several nodes share the parameter file. One that has not answered is left out.
     """
     files: dict[str, bytes] = {}
     for gear, configs in running.items():

@@ -59,9 +59,8 @@ class Reporter:
     ) -> None:
         """Check that everything can be written, before any other work.
 
-        The document will have a number of sections, of which the last one, if `compared`,
-        compares the others and has the figure of the plot. The command itself writes
-        `others`, by option.
+        The document will have a number of sections; if `compared`, the last of several compares
+        the others, and has the figure for `--plot`. The command itself writes `others`, by option.
 
         Raises:
             ValueError: if options exclude each other, or a file must not or cannot be written.

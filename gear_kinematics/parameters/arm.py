@@ -99,12 +99,12 @@ def arm_urdf(actuators: Mapping[str, NodeParameters]) -> tuple[str, list[str]]:
 
 
 def full_name(actuator: str, name: str) -> str:
-    """Name in ROS of a parameter of an actuator."""
+    """Return the name in ROS of a parameter of an actuator."""
     return f'{actuator}.{name}' if actuator else name
 
 
 def labelled(actuator: str, text: str) -> str:
-    """A text on an actuator, with its name before it if it has one."""
+    """Put the name of an actuator, if it has one, before a text on it."""
     return f'{actuator}: {text}' if actuator else text
 
 
@@ -160,10 +160,7 @@ def shared_names(actuators: Mapping[str, NodeParameters]) -> list[str]:
 def unknown_parameters(
     names: Iterable[str], branches: Mapping[str, Iterable[str]], others: Iterable[str] = ()
 ) -> list[str]:
-    """A fault for each name that no node has with these branches of its actuators.
-
-    The last text lists the names that the node has.
-    """
+    """List a fault for each name that no node has with these branches, then all known names."""
     every = dict.fromkeys(branch for each in branches.values() for branch in each)
     known = [*PARAMETERS, *branch_parameters(every), *others]
     own = [
@@ -196,7 +193,7 @@ def unknown_parameters(
 
 
 def by_actuator(given: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """The values that hold for each actuator, by names without that of the actuator."""
+    """Return the values that apply to each actuator, by names without that of the actuator."""
     names = dict.fromkeys(given.get('actuators') or [''])
     values = {}
     for name in names:
@@ -213,7 +210,7 @@ def by_actuator(given: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
 
 
 def _branches(values: Mapping[str, Any]) -> list[str]:
-    """The names of the branches, or the default ones if they are refused."""
+    """Return the names of the branches, or the default ones if they are refused."""
     default: list[str] = default_value('branches')
     names: list[str] = values.get('branches', default)
     return default if PARAMETERS['branches'].fault('branches', names) else names

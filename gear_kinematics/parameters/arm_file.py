@@ -21,11 +21,9 @@ _ANY_GEAR = "gear_ratio: '1'"
 def add_actuators(path: Path, blocks: Mapping[str, Sequence[str]], head: Sequence[str]) -> None:
     """Add actuators to the parameter file of an arm, or begin one; all of them or none.
 
-    The blocks are lines of YAML by the names of the actuators, to stand below each name, and
-    the head begins a new file. All that is in an existing file is kept.
-
-    Raises:
-        ConfigError: if that is impossible, or the node would refuse the result.
+    The blocks are the lines of YAML below the name of each actuator. A new file begins with the
+    head; everything in an existing one is kept. Raises ConfigError if that is impossible, or the
+    node would refuse the result.
     """
     new, text = not os.path.lexists(path), _extended(path, blocks, head)
     try:

@@ -183,10 +183,7 @@ class NodeParameters:
 
     @classmethod
     def of(cls, values: Mapping[str, Any], actuator: str = '') -> Self:
-        """Create parameters from valid values by names in ROS, without that of the actuator.
-
-        Other parameters have their defaults.
-        """
+        """Create parameters from valid values by names in ROS; the others have their defaults."""
 
         def value(name: str) -> Any:
             return values[name] if name in values else default_value(name)
@@ -201,7 +198,7 @@ class NodeParameters:
         return cls(actuator=actuator, **given)
 
     def values(self) -> dict[str, Any]:
-        """The values by their names in ROS, without that of the actuator."""
+        """Return the values by their names in ROS, without that of the actuator."""
         values = {name: attrgetter(name)(self) for name in PARAMETERS}
         values['branches'] = [branch.name for branch in self.branches]
         values |= {name: [*values[name]] for name in _LISTS}
@@ -254,10 +251,9 @@ class NodeParameters:
 
     @property
     def sharing(self) -> TorqueSharing:
-        """How the branches share the torque of the output; equally if `preload` is 0.
+        """How the branches share the torque of the output: equally if `preload` is 0.
 
-        Raises:
-            MechanismError: without a mechanism; of a preload, without two branches, one elastic.
+        Raises MechanismError without a mechanism, or if a preload lacks two branches or stiffness.
         """
         mechanism, preload = self.mechanism, None
         if self.preload:

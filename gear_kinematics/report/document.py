@@ -151,8 +151,7 @@ class Pen(StrEnum):
     FOURTH = 'fourth'
     FIFTH = 'fifth'
     SIXTH = 'sixth'
-    MODEL = 'text'
-    """Dashed line."""
+    MODEL = 'text'  # dashed line
     FAINT = 'faint'
 
 

@@ -17,9 +17,8 @@ def page(
 ) -> str:
     """Write a self-contained page with a title as text and a body as HTML.
 
-    The browser runs only the scripts whose sources are given, and `style` adds to the rules of
-    all pages. The page may connect only to the `server` of WebSockets, `ws://host:port`, if
-    any.
+    The browser runs only the given scripts, and connects only to the `server` of WebSockets,
+    `ws://host:port`, if any. `style` adds to the rules of all pages.
     """
     hashes = ' '.join(
         f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"

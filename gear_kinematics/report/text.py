@@ -33,9 +33,8 @@ _TONE_STYLES = {Tone.PLAIN: '', Tone.NONE: 'dim', Tone.NOTABLE: 'yellow', Tone.B
 def render(document: Document, console: Console, *, brief: bool = False) -> None:
     """Print a report: tables on a terminal, one row per line elsewhere.
 
-    If it is brief, a section is reduced to its verdict, findings and answer; in a pipe, to a
-    single line if it passed. On a terminal, only sections that have an answer or are unusable are
-    reduced.
+    A brief report has of each section its verdict, findings and answer; in a pipe, a section that
+    passed is a single line. On a terminal, only sections with an answer, or unusable, are brief.
     """
     if not console.is_terminal:
         for line in lines(document, brief=brief):

@@ -19,7 +19,7 @@ encoder with 4096 counts per turn would be 1.5 rad/s, and 0.08 rad/s at an outpu
 
 
 class RefusedError(RuntimeError):
-    """A shaft cannot be homed: its fault, and what is true of all with such a fault."""
+    """A shaft cannot be homed, because of a fault, for which there is a remedy."""
 
     def __init__(self, fault: str, remedy: str) -> None:
         super().__init__(fault + remedy)
@@ -43,10 +43,7 @@ class Actuator:
         self._segment, self._due = -1, 0  # of these, and the stamp of the next measurement, ns
 
     def note(self, now: float) -> None:
-        """Take note of a valid message of the rotor, which came now.
-
-        The speed is the mean over `_SPEED_SPAN`; 0 until there is one.
-        """
+        """Note a valid message of the rotor, and its mean speed over `_SPEED_SPAN`, 0 at first."""
         state = self.state
         state.monitor.last_input = self._seen = now
         if state.segment != self._segment:  # other turns or zero

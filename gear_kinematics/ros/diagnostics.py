@@ -42,10 +42,9 @@ def find_faults(
     exclusive: Collection[str],
     clash: Callable[[str, str], bool] = lambda _other, _topic: True,
 ) -> list[Fact]:
-    """Find incompatible QoS, an error for a node's subscriptions and a warning for its publishers.
+    """Find incompatible QoS, other publishers on exclusive topics, and a node of the same name.
 
-    Another publisher on an exclusive topic is a warning if it clashes, given the full name of its
-    node and the topic, as is another node of the same name.
+    Another publisher is a fault if it clashes, given the full name of its node and the topic.
     """
     own_name = node.get_fully_qualified_name()
     faults = [

@@ -28,10 +28,7 @@ class DriverLog:
         inputs: Mapping[str, RotorInput],
         joints: Callable[[], Collection[str]] = list,
     ) -> None:
-        """Start with the node that subscribes to the rotors' topic, and inputs by actuator.
-
-        `joints` returns the names in the messages of several actuators.
-        """
+        """Take the node that hears the rotors, the inputs by actuator, and the joints it hears."""
         self._joints = joints
         self._own, self._lacking = Counter[str](), Counter[str]()
         """Messages with the joint of each actuator, and the updates since there was none."""
@@ -61,10 +58,7 @@ class DriverLog:
         return {name: each.plausibility.jumps for name, each in self._inputs.items()}
 
     def update(self, publishers: int, silence: float) -> None:
-        """Take the number of publishers, and the time since the last message, s, if any.
-
-        This is to be called once a second.
-        """
+        """Take, once a second, the number of publishers and the time since the last message, s."""
         jumps = self._jumped()
         for name, each in self._inputs.items():
             if jumps[name] > self._jumps[name]:

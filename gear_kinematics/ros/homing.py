@@ -42,8 +42,7 @@ class Homing:
     ) -> None:
         """Open a service for each shaft of an arm, and one for all.
 
-        `path` is that of the home file, if there is to be one, and `kept` names the shafts whose
-        zeros are in it.
+        `path` is that of the home file, if any, and `kept` names the shafts whose zeros it has.
         """
         self._node, self._path, self._actuators, self._set = node, path, actuators, set(kept)
         for name, actuator in actuators.items():

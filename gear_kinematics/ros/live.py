@@ -60,10 +60,7 @@ class ReplayError(RuntimeError):
 
 @contextmanager
 def running_node(arguments: Sequence[str] = (), **options: Any) -> Iterator[subprocess.Popen[str]]:
-    """Run gear_state_publisher in its own process, and stop it at the end.
-
-    The arguments are those of its command line, and the options those of `subprocess.Popen`.
-    """
+    """Run gear_state_publisher as a process with options of `Popen`, and stop it at the end."""
     # Without -P, `-m` would import modules from the current folder.
     command = [sys.executable, '-P', '-m', 'gear_kinematics.ros', *arguments]
     process = subprocess.Popen(command, text=True, **options)  # noqa: S603  # our own node

@@ -27,16 +27,15 @@ def declared_actuators(
     default: Callable[[str], Any] = default_value,
     shared: Mapping[str, Declaration] = PARAMETERS,
 ) -> dict[str, NodeParameters]:
-    """Declare the parameters of all actuators of a node; returns their values by actuator.
+    """Declare the parameters of all actuators of a node, and return their values by actuator.
 
-    Those of an arm are declared for each actuator, except `COMMON` ones, and so are `others`.
-
-    `default` gives a default value by name, and `shared` declares those of gear_state_publisher.
+    The `shared` ones, of gear_state_publisher, and the `others` are declared for each actuator of
+    an arm, except `COMMON` ones. `default` gives a default value by name.
 
     Raises:
         ParameterException: if a value of `others` is refused.
-        ValueError: if a parameter that the node does not have was given, or a value or a name is
-            refused; the text lists them all.
+        ValueError: if an unknown parameter was given, or a value or a name is refused; the text
+            lists them all.
     """
     # rclpy ignores undeclared parameters, and has no public access to them.
     given = {name: _plain(each.value) for name, each in given_parameters(node).items()}

@@ -31,10 +31,7 @@ class OtherGears:
         self._names: dict[str, list[NodeParameters]] = {}
 
     def clash(self, other: str, topic: str) -> bool:
-        """Whether another node, by its full name, has joints of this one on a topic.
-
-        False until it has had time to answer; True if it does not.
-        """
+        """Return whether another node has joints of this one on a topic, or does not answer."""
         if other not in self._clients:
             try:
                 self._clients[other] = AsyncParameterClient(self._node, other)

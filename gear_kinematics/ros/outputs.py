@@ -42,8 +42,7 @@ class PublishingNode(Node):  # type: ignore[misc]  # rclpy has no types
 
     def __init__(self, name: str, **options: Any) -> None:
         """Start without publishers."""
-        self.outputs: dict[str, Publisher] = {}
-        """The publishers by topic."""
+        self.outputs: dict[str, Publisher] = {}  # the publishers by topic
         self._senders: dict[str, Callable[[bytes], None]] = {}
         super().__init__(name, **options)
 

@@ -28,10 +28,7 @@ _UNUSABLE = 2  # exit code: unusable parameters or arguments
 
 
 def main(make_node: Callable[..., Any], program: str) -> int:
-    """Run a node until SIGINT or SIGTERM; returns the exit code.
-
-    It is made with `parameter_files`, and has a parameter `executor`, and `wait_for_delivery`.
-    """
+    """Make a `PublishingNode` and run it until SIGINT or SIGTERM; returns the exit code."""
     signals = _caught_signals()
     try:
         use_profile()

@@ -129,7 +129,7 @@ class GearSimulator(PublishingNode):
             self._due += self._period
 
     def _compare_clocks(self) -> None:
-        """Find when the states are in the node's clock, unless something came in between."""
+        """Compare the clocks, unless the process was preempted between the two readings."""
         before = time.monotonic_ns()
         now = self.get_clock().now().nanoseconds
         if time.monotonic_ns() - before < _ACCURACY or not self._offset:

@@ -127,8 +127,8 @@ class ArmState:
     def encode(self, answered: _Answered) -> list[tuple[str, bytes]]:
         """Return topic and message of what is published for a message, on the chosen topics.
 
-        A JointState has the joints of all that are answered: a field that none has is empty, and
-        NaN where one lacks it.
+        A JointState has the joints of all actuators that are answered. A field that none of them
+        has is empty; it is NaN for those that lack it.
         """
         if self._single:
             return self._single.encode()
@@ -173,9 +173,9 @@ def _joined(stamp: int, parts: _Parts) -> bytes:
 def _joined_template(
     templates: tuple[JointStateTemplate, ...],
 ) -> tuple[JointStateTemplate, Callable[[Sequence[float]], Sequence[float]]]:
-    """Return the template of the joined message, and what takes its numbers, in their order.
+    """Return the template of the joined message, and a function that orders its numbers.
 
-    It takes them out of the numbers of all templates, which NaN follows, for what one lacks.
+    The function takes the numbers of all templates and then a NaN, which stands for missing ones.
     """
     names = [name for template in templates for name in template.names]
     velocity = any(template.velocity for template in templates)

@@ -151,10 +151,9 @@ class GearState:
         return encoded + self.encode_errors(self.errors) if self.errors else encoded
 
     def rows(self) -> list[Row]:
-        """Return what the messages on the chosen topics are encoded of, without errors.
+        """Return templates and numbers of the messages on the chosen topics, without errors.
 
-        This is to be called for each message, as accelerations, of which loads depend, follow the
-        motion.
+        To be called for each message: the loads depend on accelerations, which follow the motion.
         """
         if self.withheld:
             return []
@@ -174,10 +173,7 @@ class GearState:
         return [(TRANSMISSION_ERROR, encode(e.stamp, [e.error])) for e in errors if chosen]
 
     def report(self, now: float, connections: Connections) -> dict[str, GearReport]:
-        """Report facts by subject since the last report, until a time of a steady clock, s.
-
-        The connections are those of the node.
-        """
+        """Report facts by subject since the last report, until a time of a steady clock, s."""
         reports = {'rotor input': self.monitor.report(now, connections)}
         if errors := self.encoder_monitor.report(now, connections.encoder):
             reports['transmission error'] = errors
@@ -229,9 +225,9 @@ class GearState:
         return RotorAnswers(samples, correction, errors)
 
     def encode_batch(self, answers: RotorAnswers) -> dict[str, list[bytes]]:
-        """Encode the recorded states, all corrections if any, and all loads if one is chosen.
+        """Encode the states, all corrections if there are any, and all loads if one is chosen.
 
-        A message is empty where there is none for a sample. Nothing is withheld.
+        A sample without a message has an empty one. Nothing is withheld.
         """
         samples, correction, _ = answers
         encoded = self.messages.encode_outputs(samples)

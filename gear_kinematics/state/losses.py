@@ -3,10 +3,7 @@
 
 
 class Losses:
-    """Counts the messages missing between those received from a publisher.
-
-    Each publisher counts from 1: a lower number than the last is that of a new publisher.
-    """
+    """Counts the missing messages of a publisher; a number below the last is from a new one."""
 
     def __init__(self) -> None:
         self.missing = 0

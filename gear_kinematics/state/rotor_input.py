@@ -70,8 +70,7 @@ class RotorInput:
         self.origin: Fact | None = None  # source of the turn count: homing or the output's encoder
         self._restarts = 0
         """Counts homing, references by the output, and changes of the encoders' parameters."""
-        self.rezeroed = 0
-        """Number of these that gave the same motion another zero."""
+        self.rezeroed = 0  # number of these that gave the same motion another zero
         self._disorder = Disorder()
         speed, acceleration, period = limits = _limits(parameters)
         self.plausibility = Plausibility(*limits)

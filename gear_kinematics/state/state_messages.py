@@ -57,7 +57,7 @@ class OutputMessages:
         ]
 
     def rows(self, sample: RotorSample, topics: Iterable[str]) -> list[Row]:
-        """Return what the messages for a sample are encoded of."""
+        """Return topics, templates and numbers of the messages for a sample."""
         output_turns, output_rest = self._ratio.output_angle(*sample.position, math)
         angle = TURN * output_turns + output_rest
         _, _, velocity, effort = sample
@@ -72,10 +72,7 @@ class OutputMessages:
     def corrected_rows(
         self, sample: RotorSample, correction: Correction, topics: Iterable[str] = CORRECTED_TOPICS
     ) -> Iterator[Row]:
-        """Yield what the messages for a corrected sample are encoded of.
-
-        They are on all or some of CORRECTED_TOPICS.
-        """
+        """Yield templates and numbers of the messages on CORRECTED_TOPICS, or some of them."""
         for topic in topics:
             if topic == CORRECTED_STATE:
                 turns, rest = self._ratio.output_angle(*sample.position, math)
@@ -143,7 +140,7 @@ class StateMessages(OutputMessages):
         }
 
     def rows(self, sample: RotorSample, topics: Iterable[str]) -> list[Row]:
-        """Return what the messages for a sample are encoded of."""
+        """Return topics, templates and numbers of the messages for a sample."""
         _, (turns, angle), velocity, effort = sample
         output_turns, output_rest = self._ratio.output_angle(turns, angle, math)
         output_angle = TURN * output_turns + output_rest

@@ -59,11 +59,9 @@ class VelocityField:
         self.factor = math.nan
         """The velocities in the messages as a multiple of the slope of the positions."""
         self.contradicts = False  # whether the velocities contradict the positions
-        self.decided: int | None = None
-        """ns, the stamp of the reading that decided first."""
+        self.decided: int | None = None  # ns, the stamp of the reading that decided first
         self._candidate = VelocityMeaning.UNDECIDED
-        self._moved = False
-        """Whether there was a velocity other than 0."""
+        self._moved = False  # whether there was a velocity other than 0
         self.restart()
 
     def restart(self) -> None:

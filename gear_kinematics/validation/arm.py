@@ -48,8 +48,7 @@ class JoinedMessages:
             [1 << k for k in range(count)], np.int64 if count <= _BITS else object
         )
         self._needed = self._set_of(needed)
-        self._inputs = np.zeros((2, 0), self._bits.dtype)
-        """Stamps and sets of the latest inputs."""
+        self._inputs = np.zeros((2, 0), self._bits.dtype)  # stamps and sets of the latest inputs
         self._waiting = self._inputs
         """Stamps and sets of messages whose inputs may come with the next batch."""
         self._faults: defaultdict[_Fault, Occurrences] = defaultdict(Occurrences)

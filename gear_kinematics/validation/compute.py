@@ -149,10 +149,7 @@ def _answers(
     encoder: str,
     efforts: dict[str, float],
 ) -> dict[str, dict[int, bytes]]:
-    """Return the outputs by their names in the node and by the place of the rotor's message.
-
-    Raises the `efforts`, N·m, to the greatest.
-    """
+    """Return outputs by name in the node and row of the input; raise `efforts` to the greatest."""
     found = defaultdict[str, list[dict[int, bytes]]](list)
     for actuator, gear in gears.items():
         answers = gear.batch(messages, rotor, encoder)

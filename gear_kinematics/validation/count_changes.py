@@ -47,10 +47,8 @@ class CountChanges:
 
     def __init__(self, parameters: NodeParameters, tolerance: float, *, homing: bool) -> None:
         """Start without changes; angles agree within a tolerance, rad of the output."""
-        self.count = 0
-        """Number of changes so far."""
-        self.homed = False
-        """Whether homing was one of them."""
+        self.count = 0  # number of changes so far
+        self.homed = False  # whether homing was one of them
         self._parameters, self._ratio = parameters, parameters.gear.gear_ratio
         self._tolerance, self._homing = tolerance, homing
         self._steps = np.array([(-1, 0.0, 0.0)], _STEP)  # ascending
@@ -137,11 +135,11 @@ class CountChanges:
     def _explain(
         self, sample: Any, before: int, angle: float, jump: float, *, whole: bool, constant: bool
     ) -> int | None:
-        """The number of the first sample that a jump moves, rad; None if nothing explains it.
+        """Return the number of the first sample that a jump, rad, moves; None if unexplained.
 
-        `sample` is the first one whose output shows it; `before` (-1: none) and `angle`, rad, are
-        segment and angle of the output before. The jump is `whole` periods of the rotor, or stays
-        `constant` over many outputs.
+        `sample` is the first whose output shows the jump. The output before it had the segment
+        `before` (-1: none) and the `angle`, rad. The jump may be `whole` periods of the rotor, or
+        stay `constant` over many outputs.
         """
         repeats, absolute = bool(self._parameters.rotor_period), self._parameters.absolute
         segment = int(sample['segment'])
@@ -165,6 +163,6 @@ class CountChanges:
         return int(sample['number'])
 
     def _count_at(self, number: Array) -> Array:
-        """The step of each sample, (n,), by its number."""
+        """Return the step of each sample, (n,), by its number."""
         steps = self._steps
         return steps[np.maximum(np.searchsorted(steps['number'], number, 'right') - 1, 0)]

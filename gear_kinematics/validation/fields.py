@@ -59,8 +59,7 @@ class Occurrences:
 
     def __init__(self) -> None:
         self.count = 0
-        self.first: int | None = None
-        """Stamp of the one that was added first, ns."""
+        self.first: int | None = None  # stamp of the one that was added first, ns
 
     def add(self, stamps: Array) -> None:
         """Add occurrences at stamps, (n,), ns."""
@@ -85,8 +84,7 @@ class FieldSamples(NamedTuple):
     """(m,): indices of the messages with the field in input or output only."""
     recorded: Array = np.zeros(0)
     """(n,), the recorded value, where a field is one number; NaN where it is absent."""
-    expected: Array = np.zeros(0)
-    """(n,), the expected value; NaN as in `recorded`."""
+    expected: Array = np.zeros(0)  # (n,), the expected value; NaN as in `recorded`
 
 
 class FieldErrors:

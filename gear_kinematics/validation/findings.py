@@ -24,7 +24,7 @@ _WHY_LEFT_OUT = {
 def findings(report: BagReport) -> list[Sentence]:
     """Return all that is wrong with a bag: its damage, its faults by gravity, and the rest.
 
-    Wrong numbers come before missing messages, a cause before its effects.
+    Wrong numbers come before missing messages, and a cause before its effects.
     """
     damage = [] if report.error is None else [Sentence('error', printable(report.error))]
     notes = [found for found in report.findings if not (found.fails or found.explains)]

@@ -28,8 +28,7 @@ class InputHealth:
         self._first_stamp: int | None = None
         self._last: tuple[int, float] | None = None  # stamp, ns, and angle, rad
         self._duration = 0.0
-        self._period = 0.0
-        """Median period of the first batch, s."""
+        self._period = 0.0  # median period of the first batch, s
         self._gaps = 0
         self._longest: list[Gap] = []
         self._overspeed = 0

@@ -73,8 +73,7 @@ class Matcher:
         self.extra = Occurrences()
         self.duplicates = 0
         self.out_of_order = Occurrences()
-        self.matched = np.zeros(0, bool)
-        """Whether each sample of the window has its message."""
+        self.matched = np.zeros(0, bool)  # whether each sample of the window has its message
         self._next = 0
         self._last_stamp: int | None = None
 
@@ -158,9 +157,9 @@ def _alike(
 
 
 def _of_later_clock(stamp: int, received: int, row: int, window: Window, resets: Array) -> bool:
-    """Return whether a message is for an input, even unrecorded, after a sample's next reset.
+    """Return whether a message answers an input, perhaps unrecorded, after a sample's next reset.
 
-    That is so if it was received nearer to when the input must have been, by its neighbour.
+    Its time of reception is then nearer to when that input must have been received.
     """
     after = resets[np.searchsorted(resets, row, 'right') :]
     if not len(after):
@@ -171,14 +170,14 @@ def _of_later_clock(stamp: int, received: int, row: int, window: Window, resets:
 
 
 def rotor_angle(samples: Window) -> Array:
-    """The rotor angle of samples, (n,), rad."""
+    """Return the rotor angle of samples, (n,), rad."""
     return np.asarray(TURN * samples['turns'] + samples['angle'])
 
 
 class OutputTopic:
-    """One output topic: matches its messages, keeps late ones for a batch, collects faults.
+    """An output topic: matches its messages, keeps late ones for a batch, and collects faults.
 
-    A class for each type of message, or topic, decodes its messages and compares their fields.
+    Its subclasses decode the messages of a type or topic, and compare their fields.
     """
 
     layout: Callable[[bytes], MessageLayout]
@@ -189,10 +188,9 @@ class OutputTopic:
     def __init__(
         self, name: str, label: str, expectation: Expectation, units: Mapping[str, str]
     ) -> None:
-        """Start without messages; `label` is the joint or the frame that they name.
+        """Start without messages, which name a joint or frame, the `label`.
 
-        The expectation says how to judge them, and `units` what is compared in them, by
-        its names.
+        The expectation says how to judge them; `units` are those of the compared fields, by name.
         """
         self.name, self.label = name, label
         self.errors = tuple(
@@ -209,8 +207,7 @@ class OutputTopic:
         self._malformed = Occurrences()  # by times of reception, as they have no stamp
         self._faults: defaultdict[tuple[FindingCause, str], Occurrences] = defaultdict(Occurrences)
         """Faults by what is wrong, and the name of the joint or the frame."""
-        self.late = list[bytes]()
-        """Messages that wait for their inputs."""
+        self.late = list[bytes]()  # messages that wait for their inputs
         self._late_received = np.zeros(0, np.int64)
         self.unstamped = False
         """Whether the node gave its own time to some inputs, which had no stamp."""
@@ -224,7 +221,7 @@ class OutputTopic:
         window: Window,
         inputs: RecordedInputs,
     ) -> None:
-        """Compare new messages, and when they were received, ns, with the latest samples, (n,)."""
+        """Compare new messages, received at times in ns, with the latest samples, (n,)."""
         times = np.asarray(received, np.int64)
         if late := len(self.late):
             messages = self.late + messages

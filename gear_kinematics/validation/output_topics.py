@@ -146,9 +146,9 @@ class OutputState(JointStateTopic):
             window['acceleration'][at[lacking | without]] = np.nan
 
     def judge_velocities(self, *, contradict: bool) -> None:
-        """Count outputs without a velocity of the time before its meaning was found.
+        """Count outputs without a velocity from before the meaning of velocities was found.
 
-        They are right if the velocities contradict the positions, which the node knew before.
+        They are right if the velocities contradict the positions, as the node may have known.
         """
         if not contradict:
             self.errors[1].absent.add_all(self._absent_velocities)
@@ -282,10 +282,10 @@ def _orientation_error(quaternions: Sequence[Array], angle: Array) -> Array:
 
 
 def _in_order(messages: int, samples: int, fit: Callable[[int, slice], Array]) -> Array:
-    """Pair messages with samples in the order of both; `fit` returns which samples fit a message.
+    """Pair messages with samples in the order of both, and return the indices of both, (2, n).
 
-    Messages that fit none are paired by their place between two that do, or all by their
-    place. Returns the indices of the messages and of their samples, (2, n).
+    `fit` returns which samples fit a message. Messages that fit none are paired by their place
+    between two that do; if there are none, all are paired by their place.
     """
     found = [(-1, -1)]
     for message in range(messages):

@@ -41,8 +41,7 @@ class Missing:
     """The missing outputs of one topic."""
 
     def __init__(self) -> None:
-        self.inputs = Occurrences()
-        """The stamps of inputs without their output."""
+        self.inputs = Occurrences()  # the stamps of inputs without their output
         self.left_out: Counter[str] = Counter()
         """Numbers of missing outputs that are not judged, by cause."""
         self.ended_early: float | None = None
@@ -69,9 +68,9 @@ class Missing:
         self._after.add(stamp[end:])
 
     def close(self, last: int, *, strict: bool, lost: int) -> None:
-        """Judge the inputs after the last output; the last one was received at a time, ns.
+        """Judge the inputs after the last output, of which the `last` was received at a time, ns.
 
-        `lost` is how many messages of the topic the recorder says that it lost.
+        According to the recorder, it `lost` so many messages of the topic.
         """
         late = self._after.count and last - self._after_since > _MAX_END
         if strict or late or self._last_answered is None:
@@ -162,10 +161,10 @@ class Completeness:
 
 
 class RecordedInputs:
-    """The latest stamps of recorded inputs, to find inputs that were not recorded.
+    """Keeps the latest stamps of recorded inputs, to find inputs that were not recorded.
 
-    Where a driver's stamps are reset, as by a bag that is played again and again, the clock of the
-    stamps is another one; which one an output has is seen by its age.
+    Each reset of a driver's stamps, as by a bag that is played in a loop, begins another clock.
+    The age of an output shows which clock its stamp is from.
     """
 
     def __init__(self, *, strict: bool) -> None:

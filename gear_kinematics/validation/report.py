@@ -132,8 +132,7 @@ class Series:
     """A thinned-out record of a topic over time for plots; all lists have the same length."""
 
     topic: str
-    time: list[float]
-    """Time since the first sample of the input, s."""
+    time: list[float]  # time since the first sample of the input, s
     rotor_angle: list[float]
     errors: dict[str, list[float]] = field(default_factory=dict)
     """Worst error of each interval, by the names of the fields: recorded minus expected, or the

@@ -32,10 +32,8 @@ class Task:
     """A bag, and how to validate it."""
 
     bag: Path
-    parameters: NodeParameters
-    """Parameters of the node."""
-    config: str = ''
-    """Their file."""
+    parameters: NodeParameters  # parameters of the node
+    config: str = ''  # their file
     tolerances: Tolerances = _TOLERANCES
     strict: bool = False
     """Whether to judge all missing and extra messages, even if the recorder may have caused them
@@ -44,15 +42,11 @@ class Task:
     """Whether to compare by the matrix method as well, with code that the node does not run."""
     only_joint: bool = True
     """Whether the only joint on the rotor's topic is the rotor, if the configured one is not."""
-    rotor_topic: str | None = None
-    """None, as for the other topics: found by type and name."""
+    rotor_topic: str | None = None  # each topic that is None is found by type and name
     output_topic: str | None = None
     poses_topic: str | None = None
-    namespace: str | None = None
-    """Namespace of the node, to choose among several sets of topics."""
+    namespace: str | None = None  # that of the node, to choose among several sets of topics
     calibration: Calibration | None = None
     """That of `parameters.calibration`; without it, the corrected output is not judged."""
-    actuators: 'tuple[Task, ...]' = ()
-    """A task for each actuator of an arm; empty for one gear."""
-    debug: bool = False
-    """Whether to print tracebacks of unexpected errors to stderr."""
+    actuators: 'tuple[Task, ...]' = ()  # one for each actuator of an arm; empty for one gear
+    debug: bool = False  # whether to print tracebacks of unexpected errors to stderr

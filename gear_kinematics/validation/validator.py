@@ -118,10 +118,10 @@ class Validator:
     def report(
         self, error: str | None = None, lost: Mapping[str, int] = MappingProxyType({})
     ) -> BagReport:
-        """Return the report on all messages; must be called once, at the end.
+        """Return the report on all messages; to be called once, at the end.
 
-        `error` is damage at which reading ended, and `lost` how many messages the recorder
-        says that it lost, by topic.
+        `error` is the damage at which reading ended. `lost` counts by topic the messages that the
+        recorder lost, according to itself.
         """
         if any(output.late for output in self.outputs):  # they wait for one more batch
             self.take(MessagesByTopic(self.topics))
@@ -266,9 +266,9 @@ class Validator:
         self._window = self._window.take(slice(count, None))
 
     def _withheld(self, samples: Window) -> Array:
-        """Whether a node that withholds outputs of unknown turns has given none yet, (n,).
+        """Return for which samples, (n,), the node may have withheld outputs of unknown turns.
 
-        Outputs begin somewhere in a segment, which a recording of the rotor does not show.
+        Where in a segment its outputs begin, a recording of the rotor does not show.
         """
         withheld = np.zeros(len(samples), bool)
         if self._parameters.unreferenced_outputs == 'withhold':
@@ -299,7 +299,7 @@ class Validator:
                     return
 
     def _found(self) -> Iterator[Finding]:
-        """Yield with what the outputs are compared, what explains their faults, and the rest."""
+        """Yield what the outputs are compared with, what explains their faults, and the rest."""
         rotor = self._topics.rotor
         if self._topics.poses and not self.poses:
             yield Finding(FindingCause.POSES_UNJUDGED, values={'poses': self._topics.poses})

@@ -78,7 +78,7 @@ def homing_client(node: Node, name: str, actuator: str) -> Any:
 
 
 def parameters_of(node: Node, name: str) -> Mapping[str, NodeParameters]:
-    """Ask a gear node for the parameters of its actuators; none if it has ended or is silent."""
+    """Ask a gear's node for the parameters of its actuators; empty if it does not answer."""
     gear, end = GearNode(node, name), time.monotonic() + 2.0 * _PATIENCE
     executor = SingleThreadedExecutor(context=node.context)
     executor.add_node(node)
@@ -164,10 +164,7 @@ class GearNode:
             self._client.list_parameters([], 0, self._ask)
 
     def joint(self, topic: str, name: str = '') -> JointValue | None:
-        """Return the latest value of a topic of type `JointState`; None before there is one.
-
-        The joint is that of the output, or the one with a name.
-        """
+        """Return the latest value of the output's joint on a topic, or of a named one, if any."""
         output = self._outputs.heard.get(self._topics.get(topic, ''))
         if output is None or output.last is None:
             return None

@@ -59,8 +59,7 @@ class Polled:
         )
         self.last: Taken | None = None
         self.count = 0
-        self.losses = Losses()
-        """Messages that are missing, if the topic has one publisher."""
+        self.losses = Losses()  # messages that are missing, if the topic has one publisher
         self._rate: float | None = None  # messages per second, once a second is over
         self._begun = 0  # ns
         self._before = time.monotonic(), 0  # s, and the count then

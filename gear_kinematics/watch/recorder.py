@@ -32,20 +32,17 @@ class Recorder:
     ) -> None:
         """Record all gear nodes, or the one with a full name, into an open bag.
 
-        The topics of the loads, which a node computes for listeners alone, need `loads`.
+        The `loads` are recorded only if asked for, as a node computes them for listeners alone.
         """
         self._left_out = {topics.JOINT_STATES, *(() if loads else topics.LOAD_TOPICS)}
-        self.heard: dict[str, Polled] = {}
-        """The topics on which messages have come."""
-        self.gears: set[str] = set()
-        """Full names of the gear nodes."""
-        self.inputs: set[str] = set()
-        """The topics to which the gear nodes subscribe."""
+        self.heard: dict[str, Polled] = {}  # the topics on which messages have come
+        self.gears: set[str] = set()  # full names of the gear nodes
+        self.inputs: set[str] = set()  # the topics to which the gear nodes subscribe
         self._node, self._bag = node, bag
         self._wanted = '' if wanted == NODE else f'/{wanted.removeprefix("/")}'
         self._open: dict[str, tuple[str, Polled]] = {}  # with the types
-        # Beside a reliable subscription until the driver is known: it hears every driver, and
-        # one that was made only then would miss the first messages.
+        # In addition to a reliable subscription, until the driver is known: this one hears every
+        # driver, and if it were made only then, it would miss the first messages.
         self._best_effort: dict[str, Polled] = {}
         self._least: dict[str, int] = {}  # ns from the dispatch to the reception of a message
 
