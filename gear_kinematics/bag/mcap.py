@@ -68,11 +68,7 @@ class Mcap(Storage):
         return list(self._channels.values())
 
     def pieces(self, topics: Collection[str]) -> Iterator[list[Message]]:
-        """Read messages, sorted by the times of their chunks, or by up to a piece without chunks.
-
-        Raises:
-            UnsortedError: if they are further out of order.
-        """
+        """Read messages, sorted by their chunks or pieces; UnsortedError if that does not do."""
         self._read_summary()
         chunks = self._overlapping_chunks()
         if chunks:
@@ -261,7 +257,6 @@ class Mcap(Storage):
             self._schemas, self._channels = {}, {}
 
     def _chunk_records(self, body: bytes) -> bytes:
-        """Decompress the records of a chunk."""
         size, crc, name_length = struct.unpack_from('<16xQII', body)
         name = body[32 : 32 + name_length].decode()
         (length,) = struct.unpack_from('<Q', body, 32 + name_length)

@@ -76,10 +76,7 @@ class MessagesByTopic(dict[str, TopicMessages]):
 
 
 class Bag:
-    """A recording: a rosbag2 folder, one of its files alone, or a ROS 1 bag.
-
-    A context manager, which ends unfinished reading on exit.
-    """
+    """A recording: a rosbag2 folder, one of its files, or a ROS 1 bag; on exit, reading ends."""
 
     topics: Mapping[str, str]  # types by name, such as sensor_msgs/msg/JointState
     not_cdr: frozenset[str]  # topics whose messages are of another encoding
@@ -180,7 +177,6 @@ class Bag:
         return ReadLimits(sum(file.stat().st_size for file in self._files if file.exists()))
 
     def _describe(self) -> None:
-        """Collect the descriptions of the topics."""
         limits = self._limits()
         for file in self._files:
             try:

@@ -94,10 +94,7 @@ def find_rotor_topic(bag: Bag, given: str | None = None, *joints: str) -> str:
 
 
 def outputs_of(bag: Bag, rotor: str) -> Topics:
-    """Return the topics of the outputs for a rotor's topic: those that a bag has, by their name.
-
-    If it has none, or those of several nodes, they are in the namespace of the rotor's topic.
-    """
+    """Return the output topics for a rotor topic, in its namespace, or as recorded of one node."""
     kind = TOPICS[OUTPUT_STATE].type
     near = Topics.in_namespace_of(rotor)
     recorded = [

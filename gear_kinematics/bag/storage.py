@@ -140,7 +140,7 @@ def missing_topic(
 ) -> BagError:
     """Return the error for a topic that is not in a bag, or not of the wanted type ('': any).
 
-    It lists the topics, and suggests the one whose name is nearest, if `suggest`.
+    It lists the topics, and may suggest the one with the nearest name.
     """
     of_type = {topic for topic, kind in topics.items() if kind == wanted}
     text = f'{path}: no topic {name}' + (f' of type {wanted}' if wanted else '') + ' in it'

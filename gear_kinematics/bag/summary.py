@@ -62,10 +62,9 @@ def summarise(
     joints: Sequence[str] = (),
     progress: ReportProgress | None = None,
 ) -> Summary:
-    """Read a whole recording; without a given topic, the joints identify that of the rotors.
+    """Read a whole recording; joints identify the topic of the rotors if it is not given.
 
-    Raises:
-        BagError: if no message can be read, or the given topic is missing.
+    Raises BagError if no message can be read, or the given topic is missing.
     """
     rotor = unclear = damage = ''
     try:

@@ -148,10 +148,7 @@ class BagWriter:
             self._add(Topic(name, message_type, 'cdr', 'ros2msg', *definition), [])
 
     def copy_topic(self, bag: Bag, name: str) -> None:
-        """Add a topic of another bag, with its type definition, hash and QoS.
-
-        A type that neither the bag nor ROS 2 Jazzy defines is written without a definition, as
-        rosbag2 does.
+        """Add a topic of another bag, with hash, QoS and, if the bag or Jazzy has it, definition.
 
         Raises:
             TopicError: if it cannot be copied.
@@ -212,10 +209,9 @@ def _jazzy_definition(message_type: str) -> tuple[str, str]:
 
 
 def _as_ros2(topic: Topic) -> Topic:
-    """Return a topic as ROS 2 records it; with the name of the type alone if it is undefined.
+    """Return a topic as ROS 2 records it, without a definition if there is none.
 
-    Raises:
-        ValueError: if the type is defined in a syntax that ROS 2 does not have.
+    Raises ValueError if the type is defined in a syntax that ROS 2 does not have.
     """
     if not topic.definition and topic.type in get_typestore(Stores.ROS2_JAZZY).fielddefs:
         definition, type_hash = _jazzy_definition(topic.type)

@@ -27,7 +27,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Draw the frames, write the file and print its length."""
     path = Path(options.out)
     check_targets(options, {'FILE': options.out})
     check_image(path, ['gif'])

@@ -135,7 +135,7 @@ _REPLACED = {
 def load_config(options: argparse.Namespace, bag: Path | None = None) -> NodeParameters:
     """Load the parameters of one actuator from `config_path`; options replace some of them.
 
-    Raises ValueError if the node would refuse a value, or it is open which actuator is meant.
+    Raises ValueError if the node would refuse one, or it is not clear which actuator is meant.
     """
     path = config_path(options, bag)
     config = NodeParameters.load(path, options.node, actuator=options.actuator)

@@ -117,7 +117,6 @@ class _Parser(argparse.ArgumentParser):
         self.error(message)
 
     def error(self, message: str) -> NoReturn:
-        """Print the message and exit."""
         complain(f'{message}; see {self.prog} --help')
         raise SystemExit(ExitCode.UNUSABLE)
 

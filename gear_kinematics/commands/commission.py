@@ -16,7 +16,12 @@ from gear_kinematics.commands.encoders import (
     sources,
 )
 from gear_kinematics.commands.joints import choose_joint
-from gear_kinematics.commands.output import Console, message_progress, warn_of_shared_memory
+from gear_kinematics.commands.output import (
+    Console,
+    message_progress,
+    stopped_by_signals,
+    warn_of_shared_memory,
+)
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.measurement.commissioning import analysis
 from gear_kinematics.measurement.commissioning.document import document, write_file
@@ -53,7 +58,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Write a parameter file, or judge one."""
     path = Path(options.output)
     if not options.check:
         check_new(path, options.actuator)
@@ -82,7 +86,6 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _read(options: argparse.Namespace, request: analysis.Request) -> analysis.Commissioning:
-    """Read the recordings."""
     # Positions as they are, whose wraps no limit of the speed rules out.
     parameters = replace(NodeParameters.load(), max_rotor_speed=1e6, max_rotor_acceleration=1e9)
     known = replace(sources(options), as_recorded=True)
@@ -106,7 +109,6 @@ def _read(options: argparse.Namespace, request: analysis.Request) -> analysis.Co
 
 
 def _recorded(path: Path) -> list[analysis.Channel]:
-    """List the joints in a bag."""
     with open_bag(path) as bag:
         heard = joints_on(bag, [topic for topic in bag.topics if bag.topics[topic] == JOINT_STATE])
     return [analysis.Channel(topic, joint) for topic, joints in heard.items() for joint in joints]
@@ -122,7 +124,6 @@ def _hear(request: analysis.Request) -> analysis.Commissioning:
     """Listen to both encoders until all values are known, or the user ends it."""
     warn_of_shared_memory(participants=1)
     # These need ROS, unlike most commands.
-    from gear_kinematics.ros.replay import stopped_by_signals  # noqa: PLC0415
     from gear_kinematics.watch.commissioning import LiveCommissioning  # noqa: PLC0415
     from gear_kinematics.watch.drivers import listen  # noqa: PLC0415
     from gear_kinematics.watch.text import guide, list_drivers  # noqa: PLC0415

@@ -33,7 +33,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Write the bag and its parameters, and print the number of its messages."""
     configs = arguments.load_configs(options, options.bag)
     arguments.check_of_one(options, configs, 'calibration')
     calibrations = {

@@ -30,7 +30,6 @@ def add_arguments(_parser: argparse.ArgumentParser) -> None:
 
 
 def run(_options: argparse.Namespace) -> ExitCode:
-    """Show the output live, then the result of the validation."""
     warn_of_shared_memory(participants=2)
     # Needs ROS, unlike most commands.
     from gear_kinematics.ros.live import ReplayError, live_messages  # noqa: PLC0415

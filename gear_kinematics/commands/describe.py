@@ -44,7 +44,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Report the facts."""
     reporter = Reporter(options)
     config = arguments.load_config(options)
     described, size = config.mechanism, config.module
@@ -70,7 +69,6 @@ def _sentence(data: Mapping[str, Any]) -> str:
 
 
 def _facts(mechanism: Mechanism) -> list[_Fact]:
-    """List the properties of the mechanism alone."""
     zk = mechanism.ring_teeth
     return [
         _Fact('ring_teeth', zk),
@@ -89,7 +87,6 @@ def _facts(mechanism: Mechanism) -> list[_Fact]:
 
 
 def _tooth_facts(mechanism: Mechanism, module: float) -> list[_Fact]:
-    """List the properties of involute teeth with the module."""
     try:
         pair, interference = tooth_pair(mechanism, module), None
     except InterferenceError as error:

@@ -46,10 +46,7 @@ def force_at(options: argparse.Namespace, config: NodeParameters) -> float:
 
 
 def recording(options: argparse.Namespace, config: NodeParameters) -> Trajectory | None:
-    """Read the part of the rotor's motion selected by the options; None without a bag.
-
-    Raises ValueError if such options are given without a bag.
-    """
+    """Read the part of the rotor's motion that the options select; None without them and a bag."""
     if not options.bag:
         for name in ('rotor_topic', 'joint', 'start_offset', 'duration'):
             if getattr(options, name) is not None:

@@ -78,10 +78,7 @@ def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
 def add_known_ratio(
     parser: argparse.ArgumentParser, purpose: str, *, several: bool = False
 ) -> argparse._MutuallyExclusiveGroup:
-    """Add the options `--ratio` and `--teeth`; `known_ratio` returns their ratio.
-
-    With `several`, the ratio is a list of ratios with the names of joints, '' for all.
-    """
+    """Add `--ratio` and `--teeth`, for `known_ratio`; `several` ratios have names of joints."""
     known = arguments.group(parser, 'gear').add_mutually_exclusive_group()
     if several:
         known.add_argument('--ratio', nargs='+', type=_named_ratio, metavar='I', help=purpose)

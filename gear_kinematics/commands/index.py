@@ -35,7 +35,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Report the setting and its neighbours."""
     reporter = Reporter(options)
     if options.degrees is None and not options.phase_b:
         raise ValueError('give --degrees or --phase-b')

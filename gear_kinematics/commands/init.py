@@ -44,7 +44,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """List the drivers, and write the file."""
     path = Path(options.output)
     if options.arm and (options.actuator or options.joint):
         raise ValueError('--arm sets up all joints: leave out --actuator and --joint')

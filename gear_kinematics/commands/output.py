@@ -2,6 +2,7 @@
 """Output of commands on terminals and in pipes, and progress bars."""
 
 import os
+import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -20,10 +21,7 @@ def complain(error: object) -> None:
 
 
 def warn_of_shared_memory(participants: int) -> None:
-    """Warn if there is little shared memory for the DDS participants, before importing ROS.
-
-    Raises SharedMemoryError if there is too little to import it.
-    """
+    """Warn before ROS is imported if shared memory is low; SharedMemoryError if it is too low."""
     if warning := check_shared_memory(participants):
         complain(warning)
 
@@ -36,6 +34,21 @@ def closed_pipe_ignored() -> Iterator[None]:
         sys.stdout.flush()
     except BrokenPipeError:
         sys.stdout = open(os.devnull, 'w')  # noqa: PTH123, SIM115, for the interpreter's last flush
+
+
+@contextmanager
+def stopped_by_signals() -> Iterator[Callable[[], bool]]:
+    """Let SIGINT and SIGTERM have no effect; yields a function that returns whether one came."""
+    received: list[int] = []
+    previous = {
+        number: signal.signal(number, lambda number, _frame: received.append(number))
+        for number in (signal.SIGINT, signal.SIGTERM)
+    }
+    try:
+        yield lambda: bool(received)
+    finally:
+        for number, handler in previous.items():
+            signal.signal(number, handler)
 
 
 class Console(console.Console):

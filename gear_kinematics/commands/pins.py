@@ -62,7 +62,7 @@ def find(
 ) -> Pins:
     """Find the pins nearest to a turn, rad, plus the turn for the cam phase if requested.
 
-    Raises ValueError if the turn exceeds a whole turn in either direction.
+    Raises ValueError for more than a whole turn in either direction.
     """
     phase = ring_phase(mechanism) if options.phase_b else None
     wanted = turn + (phase or 0.0)

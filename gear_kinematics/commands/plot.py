@@ -37,7 +37,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Draw the figure and write its file."""
     for name, figure in _OF_ONE.items():
         if getattr(options, name) is not None and options.figure != figure:
             raise ValueError(f'--{name} is for {figure}, not for {options.figure}')

@@ -90,7 +90,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Report preload, limits, torque split and pins."""
     reporter = Reporter(options)
     answer = _answer(options)
     a, b = answer.names

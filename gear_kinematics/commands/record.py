@@ -7,7 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from gear_kinematics.commands import ExitCode, arguments, bags
-from gear_kinematics.commands.output import Console, warn_of_shared_memory
+from gear_kinematics.commands.output import Console, stopped_by_signals, warn_of_shared_memory
 from gear_kinematics.parameters import NODE, NodeParameters
 from gear_kinematics.report.document import counted
 from gear_kinematics.wire.nearest import listed
@@ -32,7 +32,6 @@ def run(options: argparse.Namespace) -> ExitCode:
     warn_of_shared_memory(participants=1)
     # These need ROS, unlike most commands, and the last one rosbags.
     from gear_kinematics.ros.live import replay_node  # noqa: PLC0415
-    from gear_kinematics.ros.replay import stopped_by_signals  # noqa: PLC0415
     from gear_kinematics.watch.gear import parameters_of  # noqa: PLC0415
     from gear_kinematics.watch.recorder import Recorder  # noqa: PLC0415
     from gear_kinematics.watch.text import show_recording  # noqa: PLC0415, isort: skip

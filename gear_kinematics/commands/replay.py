@@ -9,7 +9,11 @@ from gear_kinematics.bag import Bag
 from gear_kinematics.bag.roles import find_rotor_topic, joints_on
 from gear_kinematics.bag.schedule import count_due
 from gear_kinematics.commands import ExitCode, arguments, bags
-from gear_kinematics.commands.output import message_progress, warn_of_shared_memory
+from gear_kinematics.commands.output import (
+    message_progress,
+    stopped_by_signals,
+    warn_of_shared_memory,
+)
 from gear_kinematics.wire.nearest import among
 from gear_kinematics.wire.topics import ROTOR_STATE
 
@@ -34,10 +38,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Publish the messages and print their greatest delay."""
     warn_of_shared_memory(participants=1)
     # Needs ROS, unlike most commands.
-    from gear_kinematics.ros.replay import play, stopped_by_signals  # noqa: PLC0415
+    from gear_kinematics.ros.replay import play  # noqa: PLC0415
 
     with bags.naming(options.bag), Bag(options.bag) as bag:
         topic = _topic(bag, options)

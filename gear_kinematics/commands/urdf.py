@@ -37,7 +37,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Write the meshes, and print the URDF."""
     configs = arguments.load_configs(options)
     if options.macro and len(configs) > 1:
         raise ValueError(

@@ -62,7 +62,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Validate every bag."""
     tolerances = Tolerances(
         **{name: getattr(options, f'tolerance_{name}') for name in Tolerances._fields}
     )

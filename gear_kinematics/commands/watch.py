@@ -4,7 +4,7 @@
 import argparse
 
 from gear_kinematics.commands import ExitCode, arguments
-from gear_kinematics.commands.output import Console, warn_of_shared_memory
+from gear_kinematics.commands.output import Console, stopped_by_signals, warn_of_shared_memory
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -20,7 +20,6 @@ def run(options: argparse.Namespace) -> ExitCode:
     """Watch until interrupted; then raises KeyboardInterrupt, once everything is closed."""
     warn_of_shared_memory(participants=1)
     # These need ROS, unlike most commands.
-    from gear_kinematics.ros.replay import stopped_by_signals  # noqa: PLC0415
 
     if options.text:
         from gear_kinematics.watch.text import show  # noqa: PLC0415

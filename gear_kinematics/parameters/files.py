@@ -57,8 +57,8 @@ def require_any(paths: Collection[Path], node: str) -> dict[str, Path]:
 def given_parameters(path: Path, node: str) -> dict[str, Any]:
     """Read the parameters for a node from a file, by dotted names.
 
-    All blocks that apply to the node count, in the order in which they begin: a later value of a
-    parameter replaces an earlier one, whether its block has a wildcard or not.
+    Of all blocks that apply to the node, with wildcards or not, a later one replaces the values of
+    an earlier one.
     """
     blocks = _read(path)
     if not blocks:
@@ -77,9 +77,9 @@ default_values = cache(given_parameters)  # of an installed file, which does not
 
 
 def _check_strays(path: Path, name: str, blocks: Sequence[tuple[str, dict[str, Any]]]) -> None:
-    """Refuse parameters that were meant for a node to which only wildcards apply.
+    """Refuse parameters that seem to be meant for a node to which only wildcards apply.
 
-    They are below a name that is nearly its own, or they describe a gear where no wildcard does.
+    They are below a name that is nearly its own, or they describe a gear and no wildcard does.
     """
     strays, common = [], False
     for pattern, parameters in blocks:
@@ -168,7 +168,6 @@ def _blocks(tree: Any, name: str = '') -> Iterator[tuple[str, dict[str, Any]]]:
 
 
 def _flatten(tree: _Pairs, prefix: str = '') -> Iterator[tuple[str, Any]]:
-    """Yield the dotted names and values of parameters."""
     for key, value in tree:
         if isinstance(value, _Pairs):
             yield from _flatten(value, f'{prefix}{key}.')

@@ -89,7 +89,6 @@ def _check(
 
 
 def _owner(actuators: Mapping[str, NodeParameters], node: str) -> dict[str, Any]:
-    """Return what a file belongs to."""
     return {'schema': f'gear_kinematics/home/{1 if "" in actuators else 2}', 'node': node}
 
 

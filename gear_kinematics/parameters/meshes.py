@@ -21,10 +21,10 @@ def check(value: str) -> None:
 
 
 def folder_name(mechanism: Mechanism, module: float) -> str:
-    """The folder of the meshes of a mechanism below `meshes` of the package's share directory.
+    """Name the folder of a mechanism's meshes below `meshes` of the package's share directory.
 
-    The name contains every size that determines the meshes, and no dots, as foxglove_bridge
-    serves no folders with dots in their names.
+    The name contains every size that determines the meshes, and no dots: foxglove_bridge serves
+    no folders with dots in their names.
     """
     teeth = mechanism.ring_teeth, mechanism.satellite_teeth
     return re.sub(r'\W', '_', '_'.join(map(repr, (*teeth, mechanism.eccentricity, module))))

@@ -21,10 +21,9 @@ from gear_kinematics.wire.topics import OUTPUT_ENCODER, ROTOR_STATE
 def new_config(
     topic: str, joint: str, name: str, ratio: GearRatio, teeth: tuple[int, int] | None = None
 ) -> str:
-    """Return the text of a named parameter file for a joint on a driver's topic.
+    """Return the text of a named parameter file for a joint, or its index, on a driver's topic.
 
-    The joint is an index where joints have no names. Without the `teeth` of ring and satellite,
-    only the ratio is known of the gear.
+    Without the `teeth` of ring and satellite, only the ratio of the gear is known.
     """
     values = _gear(joint, ratio, teeth)
     # The head of the default file is about the default file.
@@ -60,7 +59,7 @@ def arm_head(command: str) -> list[str]:
 
 
 def _gear(joint: str, ratio: GearRatio, teeth: tuple[int, int] | None) -> dict[str, str]:
-    """The parameters that are known of a gear, as scalars of YAML."""
+    """Return the parameters that are known of a gear, as scalars of YAML."""
     values = {'rotor_joint': quoted(joint), 'gear_ratio': quoted(str(ratio))}
     if teeth:
         values |= zip(('ring_teeth', 'satellite_teeth'), map(str, teeth), strict=True)
@@ -74,10 +73,10 @@ def quoted(text: str) -> str:
 
 
 def start_command(topic: str, name: str, encoder: str = '') -> str:
-    """Return the command that starts the node with a parameter file and a driver's topics.
+    """Return the command that starts the node with a parameter file and the topics of drivers.
 
-    An empty topic, such as that of a missing output encoder, is not remapped. In a workspace of
-    ROS, the node is not on the PATH; in a virtual environment, only while that is active.
+    A missing encoder has an empty topic. In a workspace of ROS, the node is not on the PATH; in a
+    virtual environment, it is only while that is active.
     """
     program = ['ros2', 'run', PACKAGE, NODE]
     if shutil.which(NODE):

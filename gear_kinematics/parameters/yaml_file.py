@@ -19,11 +19,8 @@ class Loader(getattr(yaml, 'CSafeLoader', yaml.SafeLoader)):  # type: ignore[mis
 
     max_bytes: ClassVar[int] = 2**18
     max_events: ClassVar[int] = 2**13
-    """Greatest number of values and of begins and ends of lists.
-
-    They load within 50 ms, and are twice as many as in a calibration of 60 coefficients, the
-    largest that is ever fitted.
-    """
+    """Greatest number of values and of begins and ends of lists, which load within 50 ms: twice as
+    many as in a calibration of 60 coefficients, the largest that is ever fitted."""
     aliases: ClassVar[bool] = False
     """Whether aliases are allowed: text written from their values can expand without end."""
     tags: ClassVar[bool] = True
@@ -56,10 +53,9 @@ for _kind, _number in (('int', Loader.construct_yaml_int), ('float', Loader.cons
 
 
 def read_yaml(path: Path, error_type: type[ValueError], loader: type[Loader] = Loader) -> Any:
-    """Read the document of a file, which must be a regular one: a pipe could block for ever.
+    """Read the document of a regular file, as a pipe could block for ever.
 
-    Raises:
-        error_type: if it cannot be read; the text names the file and the cause.
+    If that is impossible, an error of the type names the file and the cause.
     """
     try:
         with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK), 'rb') as file:  # no folder
@@ -106,7 +102,7 @@ def load_yaml(text: str, loader: type[Loader] = Loader) -> Any:
 
 
 def _cause(error: Exception) -> str:
-    """The cause without the lines of the file, which may be any file and a secret."""
+    """Describe the cause without lines of the file, which may be any file, and a secret."""
     if isinstance(error, yaml.MarkedYAMLError) and error.problem_mark:
         return f'{error.problem} in line {error.problem_mark.line + 1}'
     if not isinstance(error, (yaml.YAMLError, ValueError)):

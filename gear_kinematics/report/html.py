@@ -70,7 +70,6 @@ def _header(document: Document) -> Iterator[str]:
 
 
 def _section(section: Section, number: int, drawings: Drawings) -> Iterator[str]:
-    """Write the parts of a section: findings, figures, and then tables."""
     name, kind = f'figure-{number}', section.verdict or ''
     moments = name if section.figure and section.figure.stacked else ''
     findings = [_sentence(finding, moments) for finding in section.findings]
@@ -126,7 +125,6 @@ def _plot(
 
 
 def _legend(panels: Sequence[Panel]) -> str:
-    """Write the names of the lines of a plot."""
     lines = {line.name: line for panel in panels if panel.has_legend for line in panel.lines}
     items = ''.join(
         f'<li style="--line: var(--{line.pen})">{escape(name)}</li>'

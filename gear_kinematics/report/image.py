@@ -47,11 +47,9 @@ _TICK_DIGITS = 8
 
 
 def check_image(path: Path, formats: Collection[str] = _METADATA.keys()) -> None:
-    """Check that an image can be written, before any work; its suffix is the format.
+    """Check before any work that the suffix is a format, and that there is matplotlib.
 
-    Raises:
-        ValueError: if the suffix is none of the formats.
-        ModuleNotFoundError: without matplotlib.
+    Raises ValueError or ModuleNotFoundError if that is not so.
     """
     if _format(path) not in formats:
         raise ValueError(f'{path}: the suffix must be {" or ".join(formats)}')

@@ -10,10 +10,7 @@ from gear_kinematics.report.document import Document
 
 
 def to_json(document: Document) -> str:
-    """Write the data of a report; numbers that strict JSON cannot express are null.
-
-    The first member names the command, by which `mark.is_report` recognises the file.
-    """
+    """Write the data of a report, behind the command, by which `mark.is_report` recognises it."""
     data = {'made_by': document.title, **document.data}
     # ASCII passes every pipe and every code page.
     return json.dumps(_strict(data), indent=2, allow_nan=False, ensure_ascii=True) + '\n'

@@ -14,8 +14,8 @@ from gear_kinematics.wire import topics
 from gear_kinematics.wire.cdr import SECOND
 
 _SPEED_SPAN = 100_000_000
-"""ns between the positions that give a speed, at least: of messages at 1 kHz, one step of an
-encoder with 4096 counts per turn would be 1.5 rad/s, and 0.08 rad/s at an output that rests."""
+"""Least time between the positions that give a speed, ns. Of messages at 1 kHz, one step of an
+encoder with 4096 counts per turn would be 1.5 rad/s, and 0.08 rad/s at an output at rest."""
 
 
 class RefusedError(RuntimeError):
@@ -32,7 +32,6 @@ class Actuator:
     _before: RotorSample  # where `_speed` was measured last
 
     def __init__(self, parameters: NodeParameters, calibration: Calibration | None) -> None:
-        """Start without messages."""
         self.state = GearState(parameters, calibration)
         if parameters.preload:
             self.state.preload_monitor = PreloadMonitor(parameters)

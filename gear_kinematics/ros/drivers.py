@@ -15,8 +15,7 @@ from gear_kinematics.state.losses import Losses
 from gear_kinematics.state.monitors import DriverFacts
 
 DEPTH = 2000
-"""Queued messages on either side of a topic: those of a driver at several kHz while the node is
-blocked."""
+"""Messages in the queue on either side of a topic, for a driver at several kHz and a busy node."""
 
 
 class DriverInput:
@@ -69,8 +68,8 @@ class DriverInput:
     def count_losses(self) -> None:
         """Count the drivers, and the messages lost since the last call.
 
-        Losses are unknown while there are two drivers, whose numbers are not told apart, and where
-        the middleware does not number messages.
+        Losses are unknown with two drivers, whose numbers cannot be told apart, and where the
+        middleware does not number messages.
         """
         losses, facts, before = self._losses, self._facts, self._facts.publishers
         drivers = self.subscription.get_publisher_count()

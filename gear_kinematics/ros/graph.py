@@ -18,7 +18,6 @@ class Graph:
     """The publishers of JointState topics, and the gear nodes, which have ~/home as well."""
 
     def __init__(self, node: Node) -> None:
-        """Query the graph."""
         self._publishers = {
             topic: node.get_publishers_info_by_topic(topic)
             for topic, types in node.get_topic_names_and_types()

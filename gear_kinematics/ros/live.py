@@ -134,10 +134,10 @@ def live_messages(
 
 
 class Replay:
-    """A driver of both encoders, and a recorder of them and of the node's outputs.
+    """A driver of both encoders, and a recorder of their messages and of the node's outputs.
 
-    A context manager with its own ROS context. Nothing runs in the background: messages are
-    received only within `receive_until` and the waits.
+    A context manager with its own ROS context. Messages are received only within its methods that
+    wait; nothing runs in the background.
     """
 
     def __init__(
@@ -172,7 +172,6 @@ class Replay:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Close the topics."""
         self._resources.close()
 
     def wait_for_node(self, joint: str, timeout: float = 60.0) -> None:
@@ -241,10 +240,7 @@ class Replay:
 
 @contextmanager
 def replay_node(namespace: str) -> Iterator[Node]:
-    """Create a ROS node in its own context, without signal handlers.
-
-    It has no services, as nothing would answer them while messages are played.
-    """
+    """Create a ROS node in its own context, without signal handlers and services."""
     context = Context()
     rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
     node = Node(
@@ -313,7 +309,7 @@ def _environment(values: Mapping[str, str]) -> Iterator[None]:
 
 
 def outputs_of(parameters: NodeParameters) -> Collection[str]:
-    """The recorded topics on which the node answers."""
+    """Return the recorded topics on which the node answers."""
     outputs = [_TOPICS.output]
     if isinstance(parameters.gear, Mechanism):
         outputs.append(_TOPICS.poses)

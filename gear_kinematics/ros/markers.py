@@ -61,9 +61,9 @@ class Markers:
         return bytes(serialize_message(MarkerArray(markers=markers)))
 
     def _shapes(self) -> Iterator[Marker]:
-        """Yield every shape in the frame of its link, without prefix.
+        """Yield each shape in the frame of its link, without prefix.
 
-        Along the axis, the coupling is on the satellite, and the arm on the coupling.
+        Along the axis, the coupling is next to the satellite, and then the arm.
         """
         mechanism, face = self._mechanism, FACE_WIDTH
         ring, satellite = teeth.outlines(mechanism, self._module)

@@ -107,11 +107,11 @@ class GearStatePublisher(PublishingNode):
         self._log_start()
 
     def _current(self) -> dict[str, NodeParameters]:
-        """The parameters of all actuators."""
+        """Return the parameters of all actuators."""
         return {name: each.state.parameters for name, each in self._actuators.items()}
 
     def _shown(self) -> dict[str, NodeParameters]:
-        """The parameters of those whose bodies are known."""
+        """Return the parameters of the actuators whose bodies are known."""
         return {name: each for name, each in self._current().items() if not each.gear_ratio}
 
     def _log_start(self) -> None:
@@ -132,7 +132,6 @@ class GearStatePublisher(PublishingNode):
         self._arm.choose(heard)
 
     def _check_parameters(self, changed: list[Parameter]) -> SetParametersResult:
-        """Refuse invalid values."""
         try:
             reason = next(filter(None, (fault_of(each, self._known) for each in changed)), '')
             if not reason and hasattr(self, '_arm'):  # else the constructor checks them
@@ -168,12 +167,10 @@ class GearStatePublisher(PublishingNode):
         self._prepared = {name: prepared[name] for name in affected}
 
     def _calibration(self, value: str, gear: Gear) -> Calibration | None:
-        """Load the calibration that a value of the parameter names, if any."""
         path = self._file(value)
         return Calibration.load(path, gear) if path else None
 
     def _file(self, value: str) -> Path | None:
-        """Return the file that a value of a parameter names, if any."""
         return self._files.get(value, Path(value)) if value else None
 
     def _configure(self, changed: Collection[Parameter]) -> None:

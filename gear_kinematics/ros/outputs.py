@@ -41,7 +41,6 @@ class PublishingNode(Node):  # type: ignore[misc]  # rclpy has no types
     """s of a steady clock. The logger's own throttle takes 0.3 ms for each text that it drops."""
 
     def __init__(self, name: str, **options: Any) -> None:
-        """Start without publishers."""
         self.outputs: dict[str, Publisher] = {}  # the publishers by topic
         self._senders: dict[str, Callable[[bytes], None]] = {}
         super().__init__(name, **options)

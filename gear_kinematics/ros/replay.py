@@ -1,10 +1,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Plays the rotor topic of a bag with the timing of the recording."""
 
-import signal
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from rclpy.duration import Duration
@@ -19,21 +17,6 @@ from gear_kinematics.ros.live import POLL, ReplayError, replay_node
 from gear_kinematics.wire.topics import JOINT_STATE
 
 _GRACE = 5.0  # s; subscribers acknowledge messages every 3 s
-
-
-@contextmanager
-def stopped_by_signals() -> Iterator[Callable[[], bool]]:
-    """Replace the effect of SIGINT and SIGTERM by a function that returns whether one came."""
-    received: list[int] = []
-    previous = {
-        number: signal.signal(number, lambda number, _frame: received.append(number))
-        for number in (signal.SIGINT, signal.SIGTERM)
-    }
-    try:
-        yield lambda: bool(received)
-    finally:
-        for number, handler in previous.items():
-            signal.signal(number, handler)
 
 
 @dataclass(slots=True)

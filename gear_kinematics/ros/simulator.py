@@ -94,7 +94,6 @@ class GearSimulator(PublishingNode):
         self.create_timer(self._period / SECOND, self._step, clock=steady)
 
     def _open(self, gear: 'SimulatedGear', qos: QoSProfile) -> None:
-        """Open the load and the services of a gear."""
         name = f'{gear.name}/' * bool(gear.name)
         self.create_subscription(
             Float64, f'{name}{topics.LOAD_TORQUE}', partial(self._on_load, gear), qos
@@ -230,7 +229,6 @@ def _make_model(kind: str, gear: TwinGear) -> TwinModel:
 
 
 def _check_parameters(changed: list[Parameter]) -> SetParametersResult:
-    """Refuse invalid values."""
     known = {**PARAMETERS, **twin.PARAMETERS}
     reason = next(filter(None, (fault_of(parameter, known) for parameter in changed)), '')
     if any(parameter.name == 'use_sim_time' and parameter.value for parameter in changed):

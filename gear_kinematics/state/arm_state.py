@@ -163,7 +163,6 @@ class ArmState:
 
 
 def _joined(stamp: int, parts: _Parts) -> bytes:
-    """Encode a JointState with the joints of several."""
     templates, given = parts
     template, pick = _joined_template(tuple(templates))
     return template.encode(stamp, pick((*given, math.nan)))

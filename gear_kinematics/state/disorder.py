@@ -15,10 +15,9 @@ class Disorder:
         self.stamps: list[int] = []
 
     def set_back(self, last: int, stamp: int) -> int:
-        """Return by how much the clock was set back between the last sample and the next, ns.
+        """Return by how much the clock was set back between two samples, ns; forget the stamps.
 
-        The clock was set back if several messages in a row, in order among themselves, were older
-        than the last sample. The stamps are forgotten.
+        It was set back if several messages in a row, in order, were older than the last sample.
         """
         stamps, self.stamps = self.stamps, []
         rising = len(stamps) > 1 and all(a < b for a, b in pairwise([*stamps, stamp]))

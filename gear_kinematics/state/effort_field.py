@@ -59,7 +59,7 @@ class EffortField:
 def questioned(effort: float, mechanism: Mechanism | None = None) -> Fact | None:
     """Question a torque of the rotor, N·m, that is implausibly large.
 
-    The output of a mechanism bears no more than a solid shaft of steel as large as a satellite.
+    A mechanism bears no more at its output than a solid steel shaft as large as a satellite.
     """
     bearable, whose = _MOTOR, 'the motor of a geared drive has'
     if mechanism:

@@ -69,12 +69,10 @@ class GearState:
         """Set where samples are noted for reports on the preload."""
 
     def apply(self, parameters: NodeParameters, calibration: Calibration | None) -> None:
-        """Change the parameters: all counts go on, and the turns if their encoders are the same.
+        """Change the parameters; all counts go on, and so do turns if their encoders are the same.
 
-        Transmission errors are compared anew, and corrections do not know the motion before.
-
-        Raises:
-            ValueError: if messages on chosen topics cannot have the names in the parameters.
+        The transmission error and the corrections begin again. Raises ValueError if messages on
+        chosen topics cannot have the names in the parameters.
         """
         if not parameters.only_zero_differs(self.parameters):
             self._loads = None
@@ -102,9 +100,8 @@ class GearState:
     def choose(self, topics: Collection[str]) -> None:
         """Encode messages for these of `topics` from now on, and compute what they need.
 
-        Raises:
-            ValueError: if messages cannot have the names in the parameters.
-            MechanismError: if there is no such preload, for topics of the loads.
+        Raises ValueError if messages cannot have the names in the parameters, or MechanismError if
+        loads are wanted of an impossible preload.
         """
         self._chosen = topics
         self._states = [topic for topic in topics if topic in STATE_TOPICS]

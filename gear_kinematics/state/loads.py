@@ -89,7 +89,7 @@ class LoadEstimator:
         return self.at(samples.turns, samples.angle, samples.effort, motion)
 
     def accelerations(self, stamps: Array, velocities: Array, segments: Array) -> Array:
-        """The accelerations that the loads need at the next samples, rad/s², (n,); 0 if none."""
+        """Return the accelerations that the loads need at the next samples, rad/s², (n,), or 0."""
         if not self._acceleration:
             return np.zeros(len(stamps))
         samples = zip(stamps.tolist(), velocities.tolist(), segments.tolist(), strict=True)
@@ -136,7 +136,7 @@ class LoadEstimator:
 
 
 def _wrenches(loads: SampleLoads) -> list[Any]:
-    """For each joint force x y and couple z."""
+    """Return force x, y and couple z of each joint."""
     numbers: list[Any] = []
     for _, mesh, cam, satellite_slot, arm_slot, C3, C5 in loads.branches:
         numbers += *mesh, 0.0, *cam, 0.0, *satellite_slot, C3, *arm_slot, C5
@@ -181,7 +181,6 @@ class PreloadMonitor:
     """Reports whether both branches stayed in mesh: the margin is less than 0 while one is out."""
 
     def __init__(self, parameters: NodeParameters) -> None:
-        """Start for a mechanism with a preload."""
         self._loads, self._preload = LoadEstimator(parameters), abs(parameters.preload)
         self._rows: list[tuple[Any, ...]] = []
 

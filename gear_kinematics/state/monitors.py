@@ -10,10 +10,9 @@ from dataclasses import dataclass, field
 from gear_kinematics.correction.error_window import ErrorStatistics
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.state.output_encoder import OutputEncoder
-from gear_kinematics.state.output_range import range_fault
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition, Fact, GearReport
-from gear_kinematics.state.turn_reference import SAMPLES, TurnReference
+from gear_kinematics.state.turn_reference import SAMPLES, TurnReference, range_fault
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import Rejection
 
@@ -168,7 +167,6 @@ class EncoderMonitor(DriverMonitor):
     """Monitors the encoder at the output, and the transmission error."""
 
     def __init__(self, encoder: OutputEncoder) -> None:
-        """Monitor an encoder."""
         super().__init__()
         self._encoder = encoder
         self._reported, self._compared = -math.inf, 0

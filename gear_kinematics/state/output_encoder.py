@@ -24,10 +24,7 @@ def measured_angle(parameters: NodeParameters, position: Any) -> Any:
 
 
 class OutputEncoder:
-    """Compares the angles of output_encoder messages with the ideal output angle.
-
-    With an absolute encoder, errors go to the reference alone while the turns are unknown.
-    """
+    """Compares the angles of the output's encoder with ideal ones, also to reference the turns."""
 
     def __init__(self, parameters: NodeParameters, reference: TurnReference | None = None) -> None:
         self.received = 0

@@ -280,7 +280,7 @@ class RotorInput:
         return self._take(stamp, row[0], velocity, effort)
 
     def _clock(self, now: Callable[[], int]) -> int:
-        """The stamp for a message without one."""
+        """Return the stamp for a message without one."""
         self.zero_stamps += 1
         stamp = now()
         if stamp > LATEST:
@@ -331,7 +331,7 @@ class RotorInput:
         return None if field.contradicts else velocity
 
     def _unwrapped(self, position: float) -> float:
-        """The latest position, rad, without the wraps of an encoder that repeats."""
+        """Return the latest position, rad, without the wraps of an encoder that repeats."""
         if self.turns.period and (unwrapped := self.turns.position):
             return TURN * unwrapped.turns + unwrapped.angle
         return position

@@ -82,6 +82,6 @@ class SlipWatch:
             self._steady = block
 
     def _moved(self, before: _Block, block: _Block) -> float:
-        """Angle by which the output has moved beyond the tolerance, rad; else 0."""
+        """Return by how much the output has moved, rad; 0 if that is within the tolerance."""
         angle = block.error - before.error
         return angle if abs(angle) > before.tolerance(block, self._parameters) else 0.0

@@ -100,7 +100,7 @@ class OutputMessages:
     def _output_state(
         self, output_angle: Any, velocity: Any, effort: Any
     ) -> tuple[Template, list[Any]]:
-        """Template and numbers of an output_state: floats or arrays; None where absent."""
+        """Return template and numbers of an output_state: floats or arrays; None where absent."""
         numbers = [output_angle]
         if velocity is not None:
             numbers.append(self._ratio.output_rate(velocity))
@@ -170,7 +170,7 @@ class StateMessages(OutputMessages):
     def _pose_numbers(
         self, output_angle: Any, branches: Sequence[BranchPosition], xp: ModuleType
     ) -> list[Any]:
-        """The numbers of body_poses: floats or arrays."""
+        """Return the numbers of body_poses: floats or arrays."""
         # These bodies all have the angle φ5; within the turn, its quaternion has w >= 0.
         sine, cosine = xp.sin(0.5 * output_angle), xp.cos(0.5 * output_angle)
         centres = [branch.satellite for branch in branches]
@@ -183,7 +183,7 @@ class StateMessages(OutputMessages):
     def _joint_state(
         self, sample: RotorSample, output_angle: float, branches: Sequence[BranchPosition]
     ) -> tuple[Template, Sequence[float]]:
-        """Template and numbers of the joint states, in the order of `joint_names`."""
+        """Return template and numbers of the joint states, in the order of `joint_names`."""
         rotor_angle = TURN * sample.position.turns + sample.position.angle
         on_cam = output_angle - rotor_angle
         numbers = [rotor_angle, *(on_cam for _ in branches)]

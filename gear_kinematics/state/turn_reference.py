@@ -17,7 +17,6 @@ from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.kinematics.rotor_turns import TURN, repeated
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.output_range import range_fault
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.wire.cdr import SECOND
@@ -26,6 +25,27 @@ SAMPLES = 60
 """Errors of a block, at least, of which a third is further from both ends than the longest delay.
 The true error lies outside of the range of n independent ones with a probability of 2^(1 - n),
 whatever the distribution of the noise (both sides of its median are equally likely): 2e-6 here."""
+
+
+def range_fault(
+    parameters: NodeParameters, angle: float, tolerance: float, period: float = math.inf
+) -> Fact | None:
+    """Return how an output angle within a tolerance contradicts the range, if it does.
+
+    Where the angle repeats after a period, rad, both ends of the range may be possible.
+    """
+    if not parameters.output_range:
+        return None
+    low, high = parameters.output_range
+    possible = [
+        low - tolerance <= each <= high + tolerance
+        for each in (angle, angle - period, angle + period)
+    ]
+    if possible == [True, False, False]:
+        return None
+    which = Condition.AT_EITHER_END if possible[0] else Condition.OUTSIDE
+    at, low, high = (math.degrees(each) for each in (angle, low, high))
+    return which(angle_deg=at, low_deg=low, high_deg=high)
 
 
 class Decision(NamedTuple):

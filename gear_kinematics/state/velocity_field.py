@@ -47,7 +47,7 @@ class VelocityField:
     """Follows positions and velocities of the rotor, and finds what the velocities are."""
 
     def __init__(self, output_factor: float) -> None:
-        """Take the velocity of the output for one of the rotor, which times a factor gives it."""
+        """Start without readings; the rotor's velocity times a factor is that of the output."""
         self._factors = {
             VelocityMeaning.RPM: 30.0 / math.pi,
             VelocityMeaning.TURNS: 0.5 / math.pi,
@@ -108,7 +108,7 @@ class VelocityField:
         return velocity
 
     def _add(self, velocities: Array) -> None:
-        """Add velocities of messages between readings, NaN for none, as one by one."""
+        """Add velocities of messages between readings, NaN for none, with the result of `add`."""
         given = velocities[~np.isnan(velocities)]
         self._total = float(np.cumsum(np.append(self._total, given))[-1])
         self._count += len(given)

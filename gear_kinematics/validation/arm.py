@@ -124,7 +124,6 @@ class ArmValidator:
     """Validates the actuators of an arm from the same messages."""
 
     def __init__(self, validators: Sequence[Validator]) -> None:
-        """Take the validators of all actuators in their order."""
         self._validators = validators
         self.topics = {topic for each in validators for topic in each.topics}
         """Names of all topics, among them '' for those that are not recorded."""

@@ -26,7 +26,7 @@ class Unbroken:
         self._holes = 0
 
     def segments(self, stamp: Array, segment: Array) -> Array:
-        """The segments of the next samples, (n,)."""
+        """Return the segments of the next samples, (n,)."""
         first = stamp[:1] if self._last is None else self._last
         period = np.diff(stamp, prepend=first)
         forward = period > 0

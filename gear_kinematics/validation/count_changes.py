@@ -65,9 +65,9 @@ class CountChanges:
                 samples[name] = samples[name] + sign * count[name]
 
     def learn(self, samples: Window, position: FieldSamples) -> bool:
-        """Learn from output angles at moved samples, (n,), and move these by what is found.
+        """Learn from output angles at moved samples, (n,), and move these if a change was found.
 
-        Returns whether a change was found, so that the expected angles have changed.
+        Returns whether one was found, so that the expected angles are others.
         """
         before, angle_before, error_before = self._latest
         numbers, error, angle = samples['number'], position.error, position.recorded

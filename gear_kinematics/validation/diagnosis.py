@@ -27,8 +27,8 @@ _MAX_SCATTER = 1e-5  # greatest relative deviation of all values together from a
 class AngleFit:
     """Slope of recorded output angles over rotor angles, and their mean error, from running sums.
 
-    Uncertainties are those of the jackknife over blocks of successive samples. The slope is that
-    within blocks, so that an angle that steps, as by homing, changes the offset alone.
+    Uncertainties are those of the jackknife over blocks of successive samples. The slope is taken
+    within blocks, so that a step of the angle, as by homing, changes the offset alone.
     """
 
     def __init__(self) -> None:
@@ -87,7 +87,6 @@ def _in_blocks(values: Array) -> Array:
 
 
 def _ratio_of_sums(above: Array, below: Array) -> Estimate | None:
-    """Return the quotient of two sums over blocks."""
     if len(above) < _MIN_BLOCKS:
         return None
     with np.errstate(over='ignore', invalid='ignore', divide='ignore'):

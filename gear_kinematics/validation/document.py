@@ -231,7 +231,6 @@ def figure(report: BagReport) -> Figure | None:
 
 
 def _error_panel(title: str, field: FieldReport, series: Series) -> Panel:
-    """Draw the size of an error, and its tolerance."""
     error = np.abs(np.asarray(series.errors[field.name], float))
     # A logarithmic axis has no zero.
     line = _line(series.time, 'error', Pen.SECOND, np.maximum(error, _LEAST_ERROR))

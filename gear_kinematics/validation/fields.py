@@ -136,7 +136,6 @@ class SeriesRecorder:
     """Keeps the worst error of each field in each interval of messages."""
 
     def __init__(self, fields: Sequence[FieldErrors]) -> None:
-        """Start without samples of these fields."""
         self._fields = fields
         self._start: int | None = None  # stamp of the first message, ns
         self._kept = np.zeros((2 + len(fields), 0))

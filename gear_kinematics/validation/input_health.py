@@ -102,7 +102,6 @@ def repeats_stamps(rotor: InputReport) -> bool:
 
 
 def _mostly_rejected(rotor: InputReport) -> Iterator[Finding]:
-    """Fail a bag of which the node rejects most inputs."""
     rejected = sum(rotor.rejected.values())
     if 2 * rejected > rotor.messages - rotor.of_others:
         causes = ', '.join(f'{cause} {count}' for cause, count in rotor.rejected.items())

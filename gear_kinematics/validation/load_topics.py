@@ -20,15 +20,11 @@ _UNITS = {
 
 
 class LoadTopic(OutputTopic):
-    """A topic of the loads; where they are unknown, no message is needed, and none is judged.
-
-    Samples have an `acceleration`, too, which is NaN there.
-    """
+    """A topic of loads; where they are unknown, `acceleration` is NaN, and nothing is judged."""
 
     def __init__(
         self, topic: str, name: str, loads: LoadEstimator, expectation: Expectation
     ) -> None:
-        """Take the loads of the node, for one of LOAD_TOPICS."""
         self._topic, self._loads, self._template = topic, loads, loads.templates[topic]
         self.layout = self._template.layout
         if topic == BRANCH_LOADS:

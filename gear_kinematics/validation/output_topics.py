@@ -74,11 +74,11 @@ class JointStateTopic(OutputTopic):
         return found
 
     def _expected(self, samples: Window) -> Sequence[Bounds]:
-        """The least and the greatest value of each field; NaN where it is absent."""
+        """Return the least and the greatest value of each field; NaN where it is absent."""
         raise NotImplementedError
 
     def _ideal_angle(self, samples: Window) -> Array:
-        """The ideal output angle at samples, (n,), rad."""
+        """Return the ideal output angle at samples, (n,), rad."""
         turns, angle = split_turns(samples['angle'])  # beyond a turn where the count was moved
         turns += samples['turns']
         output_turns, rest = self._gear.gear_ratio.output_angle(turns, angle, np)
@@ -267,9 +267,9 @@ class MechanismStates(OutputTopic):
 
 
 def _orientation_error(quaternions: Sequence[Array], angle: Array) -> Array:
-    """Return the greatest error of the bodies, (n,), rad, whose expected angle is about z.
+    """Return the greatest error of quaternions x, y, z and w, (bodies, n), from an angle about z.
 
-    The recorded quaternions are x, y, z and w, each (bodies, n).
+    Angle and error are in rad, (n,).
     """
     x, y, z, w = quaternions
     sine, cosine = np.sin(0.5 * angle), np.cos(0.5 * angle)

@@ -29,8 +29,8 @@ from gear_kinematics.watch.gear import GearNode
 from gear_kinematics.watch.view import Entry, Guide, Tone
 
 _MOST_STATES = 40_000
-"""20 s of both encoders at 1 kHz, analysed in 0.2 s of a processor; of more, one of every two,
-four, ... is kept: after five minutes, at 62 Hz, a rotor's wraps still show."""
+"""20 s of both encoders at 1 kHz, analysed in 0.2 s of a processor. Of more, every second is kept,
+then every fourth and so on: after five minutes, at 62 Hz, the wraps of a rotor still show."""
 _PAUSE = 1.0  # s between the begins of analyses
 _STROKE = TURN / 6.0  # rad, in each direction
 GUIDE = 'Turn the output by hand, slowly, at least a sixth of a turn in both directions.'
@@ -65,8 +65,8 @@ class LiveCommissioning:
     def result(self) -> Commissioning:
         """Analyse the messages so far; raises ValueError if there is nothing to measure.
 
-        A ratio that was shown stays, with a note: messages that a busy machine loses can make it
-        undetermined.
+        If a busy machine has lost messages that determine a ratio, the one shown stays, with a
+        note.
         """
         result, found = self._pool.submit(self._analyse).result(), self._found
         if not result.between and found and found.between and found.request == result.request:

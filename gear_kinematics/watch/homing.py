@@ -19,7 +19,7 @@ _PATIENCE = 5.0  # s to wait for the answer
 
 
 def home(wanted: str, actuator: str) -> Answer:
-    """Call `~/home` of a node, or of the only one if no full name is given, and return its answer.
+    """Call `~/home` of the node with a full name, or of the only one, and return its answer.
 
     Raises:
         ValueError: if there is no such node, or there are several to choose from.

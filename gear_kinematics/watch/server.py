@@ -101,7 +101,6 @@ class _Guarded(RequestHandler):
 
 class _Page(_Guarded):
     async def get(self, _token: str) -> None:
-        """Send the page."""
         self.finish(watch_page(f'ws://{self.request.host}'))
 
 
@@ -111,11 +110,9 @@ class _Live(_Guarded, WebSocketHandler):
     _origins = ()  # browsers always name that of a WebSocket
 
     def open(self, _token: str) -> None:
-        """Begin to send."""
         self._sending = asyncio.create_task(self._send())
 
     def on_close(self) -> None:
-        """End sending."""
         self._sending.cancel()
 
     async def on_message(self, message: str | bytes) -> None:

@@ -72,10 +72,7 @@ class View:
 def view_of(
     gear: GearNode | None, gears: Collection[GearNode] = (), *, looking: bool = False
 ) -> View:
-    """Compose the view of the node that was found or asked for, beside all that run.
-
-    While `looking`, not all nodes may have been found yet.
-    """
+    """Compose the view of a gear, and of all that run, some of which may not be found yet."""
     nodes = tuple(map(_choice, gears))
     state, message = _state_of(gear, [gear.name for gear in gears])
     if looking and state == 'no node':

@@ -23,10 +23,11 @@ from sensor_msgs.msg import JointState
 from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, write_bag
 
 from gear_kinematics.bag import Bag, BagError, DamagedBagError
+from gear_kinematics.commands.output import stopped_by_signals
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.ros import live
 from gear_kinematics.ros.live import ReplayError, live_messages
-from gear_kinematics.ros.replay import play, stopped_by_signals
+from gear_kinematics.ros.replay import play
 
 pytestmark = pytest.mark.live
 
