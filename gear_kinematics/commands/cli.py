@@ -26,70 +26,66 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
     'set up': {
         'commission': (
             'find ratio, directions, zeros and kind of encoder, and write a parameter file',
-            'commission logs/monday -o actuator.yaml',
+            'logs/monday -o actuator.yaml',
         ),
-        'init': ('list running drivers, and write a parameter file for one', 'init --ratio -19'),
-        'watch': ('show a running node and its driver live, and home it', 'watch --text'),
+        'init': ('list running drivers, and write a parameter file for one', '--ratio -19'),
+        'watch': ('show a running node and its driver live, and home it', '--text'),
         'home': (
             'tell a running node that the output is at its home angle now',
-            'home --node /left/gear_state_publisher',
+            '--node /left/gear_state_publisher',
         ),
     },
     'record and prove': {
-        'record': ('record what running nodes hear and publish', 'record monday'),
-        'validate': ('compare recorded outputs with recomputed ones', 'validate logs/monday'),
-        'compute': (
-            'write a bag with the outputs for a rotor topic',
-            'compute logs/monday computed',
-        ),
-        'replay': ("publish a bag's rotor topic with its own timing", 'replay logs/monday --loop'),
-        'info': (
-            'list the contents of recordings: topics, rates, joints and gaps',
-            'info logs/*/',
-        ),
-        'demo': ('play the shipped bag into the live node and validate its outputs', 'demo'),
+        'record': ('record what running nodes hear and publish', 'monday'),
+        'validate': ('compare recorded outputs with recomputed ones', 'logs/monday'),
+        'compute': ('write a bag with the outputs for a rotor topic', 'logs/monday computed'),
+        'replay': ("publish a bag's rotor topic with its own timing", 'logs/monday --loop'),
+        'info': ('list the contents of recordings: topics, rates, joints and gaps', 'logs/*/'),
+        'demo': ('play the shipped bag into the live node and validate its outputs', ''),
     },
     'measure the real gear': {
         'calibrate': (
             'calibrate the real output from recordings of the encoders at rotor and output',
-            'calibrate encoder/monday encoder/tuesday -o calibration.yaml',
+            'encoder/monday encoder/tuesday -o calibration.yaml',
         ),
         'lost-motion': (
             'measure hysteresis, lost motion, stiffness, play and transmission error',
-            'lost-motion ramps.csv --html ramps.html --max-hysteresis 90',
+            'ramps.csv --html ramps.html --max-hysteresis 90',
         ),
         'loads': (
             'check whether the preload held in recordings, and report the forces at every joint',
-            'loads logs/monday --config actuator.yaml',
+            'logs/monday --config actuator.yaml',
         ),
         'preload': (
             'compute preload, torque limits and torque split, and find the pin holes for them',
-            'preload --wanted-threshold 1 --branch-stiffness 3000 --shaft-stiffness 1000',
+            '--wanted-threshold 1 --branch-stiffness 3000 --shaft-stiffness 1000',
         ),
     },
     'the mechanism': {
-        'describe': (
-            'report ratio, mobility, vernier and teeth of a gear',
-            'describe --html gear.html',
-        ),
+        'describe': ('report ratio, mobility, vernier and teeth of a gear', '--html gear.html'),
         'index': (
             'find the pin holes for a turn of the ring gear (for a preload: gearkin preload)',
-            'index --degrees 0.15',
+            '--degrees 0.15',
         ),
         'plot': (
             'draw figures: kinematic scheme, roses, slides, output over time',
-            'plot output output.svg --bag logs/monday',
+            'output output.svg --bag logs/monday',
         ),
-        'animate': ('animate the mechanism as a GIF', 'animate servo.gif --bag logs/monday'),
-        'urdf': ('print the URDF, and write its meshes', 'urdf --meshes meshes > gear.urdf'),
+        'animate': ('animate the mechanism as a GIF', 'servo.gif --bag logs/monday'),
+        'urdf': ('print the URDF, and write its meshes', '--meshes meshes > gear.urdf'),
         'mjcf': (
             'write the gear with its springs, play, preload and friction as a model of MuJoCo',
-            'mjcf --measured ramps.json -o gear.xml',
+            '--measured ramps.json -o gear.xml',
         ),
     },
 }
-COMMANDS = {name: about for group in GROUPS.values() for name, about in group.items()}
-"""The subcommands, each with its purpose and an example in a line."""
+"""The subcommands by the headings of --help, each with its purpose and arguments as an example."""
+COMMANDS = {
+    name: (purpose, f'{name} {example}'.rstrip())
+    for group in GROUPS.values()
+    for name, (purpose, example) in group.items()
+}
+"""The subcommands, each with its purpose and an example."""
 
 
 class _Parser(argparse.ArgumentParser):

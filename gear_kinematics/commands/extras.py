@@ -3,33 +3,27 @@
 
 import sys
 
-EXTRAS = {
-    'rclpy': 'ros',
-    'matplotlib': 'plot',
-    'PIL': 'plot',
-    'plotly': 'html',
-    'mapbox_earcut': 'mesh',
-    'mujoco': 'twin',
-    'tornado': 'watch',
-    'scipy': 'measure',
-    'pandas': 'measure',
-    'pyarrow': 'tables',
-    'nptdms': 'tables',
-    'asammdf': 'tables',
-    'h5py': 'tables',
-    'openpyxl': 'tables',
-    'rainflow': 'measure',
-    'rosbags': 'rosbags',
-    'distributed': 'cluster',
+_EXTRAS = {
+    'ros': {'rclpy'},
+    'plot': {'matplotlib', 'PIL'},
+    'html': {'plotly'},
+    'mesh': {'mapbox_earcut'},
+    'twin': {'mujoco'},
+    'watch': {'tornado'},
+    'measure': {'scipy', 'pandas', 'rainflow'},
+    'tables': {'pyarrow', 'nptdms', 'asammdf', 'h5py', 'openpyxl'},
+    'rosbags': {'rosbags'},
+    'cluster': {'distributed'},
 }
-"""The extra that installs a package; setup.py defines the extras."""
+"""Packages by the extras that install them; setup.py defines the extras."""
 _MESSAGES = '_msgs', '_srvs', '_interfaces'  # endings of further packages of the extra `ros`
 
 
 def remedy(error: ImportError) -> str:
     """Describe in one line what is missing and how to install it."""
     package = (error.name or '').partition('.')[0]
-    extra = EXTRAS.get(package) or ('ros' if package.endswith(_MESSAGES) else None)
+    of_ros = 'ros' if package.endswith(_MESSAGES) else None
+    extra = next((extra for extra, of in _EXTRAS.items() if package in of), of_ros)
     if 'librmw_' in str(error):
         wheel = 'ros-jazzy-rclpy[fastrtps]'  # or that of another distribution
         return f"rclpy has no middleware: install it with the extra, as in pip install '{wheel}'"
