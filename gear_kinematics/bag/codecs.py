@@ -75,8 +75,7 @@ class ReadLimits:
     """
 
     max_record = 2**30  # largest record on disk, bytes
-    max_descriptions = 2**25
-    """Largest descriptions of topics and types together, bytes; all are kept in memory."""
+    max_descriptions = 2**25  # largest descriptions of topics and types together, bytes
     chunk_expansion, file_expansion = 20, 100
     """Greatest expansion of a chunk or message, and of a file."""
     spare_size, spare_total = 2**25, 2**30

@@ -80,8 +80,7 @@ class Storage:
         self.limits = limits
         self.read = 0  # number of messages that the caller has taken from `pieces`
         self.any_encoding = False  # whether messages are read that are not CDR, too
-        self.publish_times = False
-        """Whether messages are `Published` where the file knows when they were."""
+        self.publish_times = False  # whether messages are `Published` if the file has the times
 
     def topics(self) -> list[Topic]:
         """Return the topics of the file."""

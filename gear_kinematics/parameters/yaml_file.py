@@ -23,8 +23,7 @@ class Loader(getattr(yaml, 'CSafeLoader', yaml.SafeLoader)):  # type: ignore[mis
     many as in a calibration of 60 coefficients, the largest that is ever fitted."""
     aliases: ClassVar[bool] = False
     """Whether aliases are allowed: text written from their values can expand without end."""
-    tags: ClassVar[bool] = True
-    """Whether tags other than !!str are allowed: ROS before Lyrical ignores them."""
+    tags: ClassVar[bool] = True  # whether others than !!str are allowed: old ROS ignores them
 
     def flatten_mapping(self, node: yaml.MappingNode) -> None:
         """Leave merge keys (`<<`), which can expand without end, to be refused as unknown."""

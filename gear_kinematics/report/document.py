@@ -79,8 +79,7 @@ class Table:
 
     columns: tuple[str, ...]
     rows: tuple[tuple[Cell, ...], ...]
-    words: tuple[str, ...] = ('',)
-    """Columns of words, of which '' is the first; all others hold numbers."""
+    words: tuple[str, ...] = ('',)  # columns of words, '' for the first; others hold numbers
     layout: Layout = Layout.ROWS
 
     @classmethod
@@ -211,8 +210,7 @@ class Figure:
 
     panels: tuple[Panel, ...]
     stacked: bool = False
-    columns: int | None = None
-    """Greatest number of panels side by side in an image; None for all of them."""
+    columns: int | None = None  # most panels side by side in an image; None for all of them
 
     @property
     def shape(self) -> tuple[int, int]:

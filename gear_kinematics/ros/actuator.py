@@ -35,8 +35,7 @@ class Actuator:
         self.state = GearState(parameters, calibration)
         if parameters.preload:
             self.state.preload_monitor = PreloadMonitor(parameters)
-        self.referenced: bool | None = None
-        """Whether the turns are known, as it was published last."""
+        self.referenced: bool | None = None  # whether turns are known, as last published
         self._seen = 0.0  # time of the last valid input; s of a steady clock
         self._speed = 0.0  # of the rotor, rad/s, by its positions
         self._segment, self._due = -1, 0  # of these, and the stamp of the next measurement, ns

@@ -14,8 +14,7 @@ from gear_kinematics.ros.workarounds.private import pass_message_info, with_info
 from gear_kinematics.state.losses import Losses
 from gear_kinematics.state.monitors import DriverFacts
 
-DEPTH = 2000
-"""Messages in the queue on either side of a topic, for a driver at several kHz and a busy node."""
+DEPTH = 2000  # queued messages on either side, for a driver at several kHz and a busy node
 
 
 class DriverInput:

@@ -88,8 +88,7 @@ class GearSimulator(PublishingNode):
         gears = ', '.join(gear.title for gear in self._gears)
         self.get_logger().info(f'simulating {gears} at {rate:g} Hz')
         self._offset = 0  # lead of the node's clock over the steady clock, ns
-        self._due = time.monotonic_ns() + self._period
-        """When the next state is due, ns of a steady clock."""
+        self._due = time.monotonic_ns() + self._period  # when the next state is due, ns (steady)
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(self._period / SECOND, self._step, clock=steady)
 

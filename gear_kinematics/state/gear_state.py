@@ -65,8 +65,7 @@ class GearState:
         self.output_encoder = OutputEncoder(parameters, TurnReference(self.input))
         self.monitor = InputMonitor(self.input, self.output_encoder)
         self.encoder_monitor = EncoderMonitor(self.output_encoder)
-        self.preload_monitor: PreloadMonitor | None = None
-        """Set where samples are noted for reports on the preload."""
+        self.preload_monitor: PreloadMonitor | None = None  # if the preload is reported on
 
     def apply(self, parameters: NodeParameters, calibration: Calibration | None) -> None:
         """Change the parameters; all counts go on, and so do turns if their encoders are the same.

@@ -8,8 +8,7 @@ class Losses:
     def __init__(self) -> None:
         self.missing = 0
         self.numbered = True  # whether all messages had numbers, which not every middleware gives
-        self.next: int | None = None
-        """The number that the next message should have; None before the first."""
+        self.next: int | None = None  # number of the next message; None before the first
 
     def note(self, number: int | None) -> None:
         """Take the number of the next message."""

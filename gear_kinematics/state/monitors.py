@@ -76,8 +76,7 @@ class InputMonitor(DriverMonitor):
         self._input, self._encoder = rotor_input, encoder
         self.unreferenced = 0  # valid inputs while the turns were not known
         self.withheld = 0  # those of them without outputs
-        self.zero_kept: Fact | None = None
-        """Where `rotor_zero` is kept until the next start, or why it is not."""
+        self.zero_kept: Fact | None = None  # where `rotor_zero` is kept, or why it is not
         self._reported, self._rate, self._received = 0.0, 0.0, 0
 
     def report(self, now: float, connections: Connections) -> GearReport:

@@ -32,8 +32,7 @@ class OutputEncoder:
         self.comparison = TransmissionError()
         """Counts the measured angles that were compared and, by cause, those that were not."""
         self._turn_reference = reference
-        self.direction_checked = False
-        """Whether both encoders have moved in the same sense; at rest, any direction fits."""
+        self.direction_checked = False  # whether both encoders moved in the same sense
         self.parameters = parameters
         self.configure(parameters)
 

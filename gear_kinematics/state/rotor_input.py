@@ -55,21 +55,16 @@ class RotorInput:
     def __init__(self, parameters: NodeParameters) -> None:
         self.received = 0
         self.rejected: Counter[str] = Counter()
-        self.of_others = 0
-        """Messages without the joint beside others with it, as of a shared /joint_states."""
+        self.of_others = 0  # messages of other joints only, as of a shared /joint_states
         self.duplicates = 0
         self.zero_stamps = 0
-        self.unnormalised_stamps = 0
-        """Stamps with 10⁹ or more nanoseconds, which are carried over to the seconds."""
+        self.unnormalised_stamps = 0  # stamps with a second or more of nanoseconds, normalised
         self.resets = 0
-        self.missing_joint = ''
-        """Which joints there are in the first message without the rotor's, if any."""
+        self.missing_joint = ''  # which joints the first message without the rotor's has
         self.last: RotorSample | None = None
-        self.zero = split_turns(parameters.rotor_zero)
-        """The position in use: `rotor_zero`, or what a reference put in its place."""
+        self.zero = split_turns(parameters.rotor_zero)  # zero in use; a reference can replace it
         self.origin: Fact | None = None  # source of the turn count: homing or the output's encoder
-        self._restarts = 0
-        """Counts homing, references by the output, and changes of the encoders' parameters."""
+        self._restarts = 0  # by homing, references and changed parameters of encoders
         self.rezeroed = 0  # number of these that gave the same motion another zero
         self._disorder = Disorder()
         speed, acceleration, period = limits = _limits(parameters)

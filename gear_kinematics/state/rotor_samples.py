@@ -22,8 +22,7 @@ class RotorSamples(NamedTuple):
     effort: Array  # N·m; NaN if the message has none
     row: Array  # index of the message
     received: Array  # time of reception, ns
-    segment: Array
-    """Number that rises where the rotor's turn count restarts, is uncertain or is referenced."""
+    segment: Array  # rises where the turn count restarts, is uncertain or is referenced
     referenced: Array  # whether the rotor's turns are known
     rejected: Array  # (m,), ns: the stamps of rejected messages that have one
 

@@ -14,8 +14,7 @@ class Slip(NamedTuple):
     """A lasting movement of the output against the rotor."""
 
     stamp: int  # ns: the first error beyond the tolerance
-    angle: float
-    """rad, at the output: by how much the measured angle has moved, by the latest errors."""
+    angle: float  # by which the measured output angle has moved, as of the latest errors, rad
 
 
 class _Block(NamedTuple):

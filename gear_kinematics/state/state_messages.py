@@ -44,8 +44,7 @@ class OutputMessages:
             for velocity in (False, True)
             for effort in (False, True)
         }
-        self.angle = self._output_states[False, False]
-        """Template of a message with an angle of the output joint alone."""
+        self.angle = self._output_states[False, False]  # of messages with an angle alone
 
     def encode(
         self, sample: RotorSample, topics: Iterable[str] | None = None

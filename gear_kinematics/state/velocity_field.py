@@ -56,8 +56,7 @@ class VelocityField:
             VelocityMeaning.OPPOSITE: -1.0,
         }
         self.finding = VelocityMeaning.UNDECIDED
-        self.factor = math.nan
-        """The velocities in the messages as a multiple of the slope of the positions."""
+        self.factor = math.nan  # ratio of velocities in messages to the slope of positions
         self.contradicts = False  # whether the velocities contradict the positions
         self.decided: int | None = None  # ns, the stamp of the reading that decided first
         self._candidate = VelocityMeaning.UNDECIDED

@@ -49,8 +49,7 @@ class JoinedMessages:
         )
         self._needed = self._set_of(needed)
         self._inputs = np.zeros((2, 0), self._bits.dtype)  # stamps and sets of the latest inputs
-        self._waiting = self._inputs
-        """Stamps and sets of messages whose inputs may come with the next batch."""
+        self._waiting = self._inputs  # those of messages whose inputs may be in the next batch
         self._faults: defaultdict[_Fault, Occurrences] = defaultdict(Occurrences)
 
     def take(self, messages: JointStateBatch, stamps: Array, valid: Array) -> None:

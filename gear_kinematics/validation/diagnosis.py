@@ -35,8 +35,7 @@ class AngleFit:
         self.count = 0
         self.lowest_error, self.highest_error = math.inf, -math.inf
         self._origin = (0.0, 0.0)
-        self._sums: list[Array] = []
-        """Sums of 1, x, y, x², xy and the error over parts of the batches."""
+        self._sums: list[Array] = []  # sums of 1, x, y, x², xy and error over parts of batches
 
     def update(self, rotor_angle: Array, recorded: Array, error: Array) -> None:
         """Add samples (n,), rad; `error` is recorded minus recomputed."""

@@ -80,10 +80,8 @@ class FieldSamples(NamedTuple):
     error: Array
     """(n,): recorded minus expected, or its magnitude; infinite where the recorded value is not
     finite, NaN where the field is absent."""
-    one_sided: Array = np.zeros(0, np.intp)
-    """(m,): indices of the messages with the field in input or output only."""
-    recorded: Array = np.zeros(0)
-    """(n,), the recorded value, where a field is one number; NaN where it is absent."""
+    one_sided: Array = np.zeros(0, np.intp)  # (m,), messages with it in input or output only
+    recorded: Array = np.zeros(0)  # (n,), values of a field of one number; NaN if absent
     expected: Array = np.zeros(0)  # (n,), the expected value; NaN as in `recorded`
 
 

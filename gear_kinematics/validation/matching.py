@@ -209,10 +209,8 @@ class OutputTopic:
         """Faults by what is wrong, and the name of the joint or the frame."""
         self.late = list[bytes]()  # messages that wait for their inputs
         self._late_received = np.zeros(0, np.int64)
-        self.unstamped = False
-        """Whether the node gave its own time to some inputs, which had no stamp."""
-        self.shared = False
-        """Whether its messages have the joints of several actuators: NaN is an absent value."""
+        self.unstamped = False  # whether the node gave its own time to inputs without a stamp
+        self.shared = False  # whether messages have joints of several actuators, NaN if absent
 
     def take(
         self,

@@ -42,8 +42,7 @@ class Missing:
 
     def __init__(self) -> None:
         self.inputs = Occurrences()  # the stamps of inputs without their output
-        self.left_out: Counter[str] = Counter()
-        """Numbers of missing outputs that are not judged, by cause."""
+        self.left_out: Counter[str] = Counter()  # missing outputs that are not judged, by cause
         self.ended_early: float | None = None
         """s from the last input with an output to the last input, if that is too long."""
         self._after = Occurrences()  # inputs after the last one with an output
@@ -172,8 +171,7 @@ class RecordedInputs:
         self._strict = strict
         self._ages: tuple[int, ...] = ()
         """Time of reception - stamp of the first input since each reset, ns."""
-        self._known = deque[Array]()
-        """The latest stamps, moved so that those of two clocks are far apart, ns."""
+        self._known = deque[Array]()  # latest stamps, ns, those of two clocks far apart
         self._count = 0  # of these
         self._last: int | None = None
 

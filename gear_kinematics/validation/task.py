@@ -38,15 +38,12 @@ class Task:
     strict: bool = False
     """Whether to judge all missing and extra messages, even if the recorder may have caused them
     (see `recorder`), and to fail a recording with another rotor_zero, as after homing."""
-    independent: bool = False
-    """Whether to compare by the matrix method as well, with code that the node does not run."""
-    only_joint: bool = True
-    """Whether the only joint on the rotor's topic is the rotor, if the configured one is not."""
+    independent: bool = False  # whether to compare by code that the node does not run, too
+    only_joint: bool = True  # whether the only joint on the rotor topic may be the rotor
     rotor_topic: str | None = None  # each topic that is None is found by type and name
     output_topic: str | None = None
     poses_topic: str | None = None
     namespace: str | None = None  # that of the node, to choose among several sets of topics
-    calibration: Calibration | None = None
-    """That of `parameters.calibration`; without it, the corrected output is not judged."""
+    calibration: Calibration | None = None  # needed to judge the corrected output
     actuators: 'tuple[Task, ...]' = ()  # one for each actuator of an arm; empty for one gear
     debug: bool = False  # whether to print tracebacks of unexpected errors to stderr

@@ -100,8 +100,7 @@ class GearNode:
         self.arm: Mapping[str, NodeParameters] = {}  # of all actuators, once they are known
         self.seen = False  # whether it has ever run
         self.running = False
-        self.revision = next(_revisions)
-        """Number that a command repeats; each start or change of parameters has a new one."""
+        self.revision = next(_revisions)  # repeated by commands; new after each start or change
         self.parameters: NodeParameters | None = None  # until it reports them after its start
         self.fault = ''  # why the reported parameters cannot be used
         self.earlier: dict[str, Any] = {}  # parameters before their last change that was seen
