@@ -199,12 +199,10 @@ class GearState:
                     if topic != rotor:
                         continue
                     sample = self.rotor(data, partial(int, received))
-                    motion = *sample.position, sample.velocity, sample.effort
-                    state = row, received, self.segment, self.referenced
-                    rows.append((sample.stamp, *motion, *state))
+                    rows.append((sample, row, received, self.segment, self.referenced))
                     corrections += [self.correction] if self.correction else []
                     errors += self.errors
-            samples = RotorSamples.of(rows, np.zeros(0, np.int64))
+            samples = RotorSamples.of(rows)
             if self.corrector:
                 columns = np.array(corrections, float).reshape(-1, len(Correction._fields)).T
                 correction = Correction(*columns)

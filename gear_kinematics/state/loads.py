@@ -20,6 +20,7 @@ from gear_kinematics.kinematics.motion import BranchPosition, closed_form
 from gear_kinematics.kinematics.preload import Pair
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.rotor_samples import RotorSamples
+from gear_kinematics.state.rotor_samples import Row as SampleRow
 from gear_kinematics.state.state_messages import Row
 from gear_kinematics.state.statuses import Condition, GearReport
 from gear_kinematics.wire.batches import Array, encode
@@ -182,16 +183,15 @@ class PreloadMonitor:
 
     def __init__(self, parameters: NodeParameters) -> None:
         self._loads, self._preload = LoadEstimator(parameters), abs(parameters.preload)
-        self._rows: list[tuple[Any, ...]] = []
+        self._rows = list[SampleRow]()
 
     def follow(self, sample: RotorSample, segment: int) -> None:
         """Take the next sample and the number of its segment; only the report uses them."""
-        stamp, position, velocity, effort = sample
-        self._rows.append((stamp, *position, velocity, effort, 0, 0, segment, True))
+        self._rows.append((sample, 0, 0, segment, True))
 
     def report(self) -> GearReport:
         """Report on the time since the last report."""
-        samples = RotorSamples.of(self._rows, np.zeros(0, np.int64))
+        samples = RotorSamples.of(self._rows)
         self._rows.clear()
         torques = self._loads.follow_batch(samples).torque
         known = np.isfinite(torques)

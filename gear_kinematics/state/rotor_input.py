@@ -5,7 +5,6 @@ import math
 from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from gear_kinematics.parameters import PARAMETERS, NodeParameters
 from gear_kinematics.state.disorder import Disorder, order
 from gear_kinematics.state.effort_field import EffortField
 from gear_kinematics.state.plausibility import BELIEVED, Belief, Plausibility
-from gear_kinematics.state.rotor_samples import RotorSamples
+from gear_kinematics.state.rotor_samples import RotorSamples, Row
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.state.velocity_field import VelocityField
 from gear_kinematics.wire.batches import Array, decode_joint_states
@@ -255,8 +254,8 @@ class RotorInput:
     def _one_by_one(
         self, rows: Array, stamps: Array, values: Array, received: Array, rejected: Array
     ) -> RotorSamples:
-        taken: list[tuple[Any, ...]] = []
-        disordered: list[int] = []
+        taken = list[Row]()
+        disordered = list[int]()
         for row, stamp, numbers, now in zip(
             rows.tolist(), stamps.tolist(), values.tolist(), received.tolist(), strict=True
         ):
@@ -266,9 +265,8 @@ class RotorInput:
                 self.rejected[str(rejection)] += 1
                 disordered.append(stamp)
                 continue
-            motion = *sample.position, sample.velocity, sample.effort
-            taken.append((sample.stamp, *motion, row, now, self.segment, self.referenced))
-        return RotorSamples.of(taken, np.append(rejected, np.array(disordered, np.int64)))
+            taken.append((sample, row, now, self.segment, self.referenced))
+        return RotorSamples.of(taken, [*rejected.tolist(), *disordered])
 
     def _take_row(self, stamp: int, row: Sequence[float]) -> RotorSample:
         velocity, effort = (None if math.isnan(other) else other for other in row[1:])

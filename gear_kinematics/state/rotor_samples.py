@@ -2,14 +2,17 @@
 """The states of a rotor that were found valid, as arrays."""
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.wire.batches import Array
 
 _COLUMNS = np.dtype('i8, f8, f8, f8, f8, i8, i8, i8, ?')
 """Types of the fields of `RotorSamples`, without the last one."""
+Row = tuple[RotorSample, int, int, int, bool]  # a sample, and its fields from `row` on
 
 
 class RotorSamples(NamedTuple):
@@ -27,7 +30,9 @@ class RotorSamples(NamedTuple):
     rejected: Array  # (m,), ns: the stamps of rejected messages that have one
 
     @classmethod
-    def of(cls, rows: Sequence[tuple[Any, ...]], rejected: Array) -> Self:
-        """Make them of samples one by one; None becomes NaN."""
-        table = np.array(rows, _COLUMNS)
-        return cls._make([*(table[name].copy() for name in table.dtype.names or ()), rejected])
+    def of(cls, rows: Sequence[Row], rejected: ArrayLike = ()) -> Self:
+        """Join single samples; None becomes NaN."""
+        columns = [(s.stamp, *s.position, s.velocity, s.effort, *others) for s, *others in rows]
+        table = np.array(columns, _COLUMNS)
+        values = (table[name].copy() for name in table.dtype.names or ())
+        return cls._make([*values, np.array(rejected, np.int64)])
