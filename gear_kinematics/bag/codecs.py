@@ -90,12 +90,12 @@ class ReadLimits:
 
     @classmethod
     def expanded_chunk(cls, size: int) -> int:
-        """The size, bytes, to which a compressed chunk or message may expand."""
+        """Return the size, bytes, to which a compressed chunk or message may expand."""
         return cls.spare_size + cls.chunk_expansion * size
 
     @classmethod
     def expanded_file(cls, size: int) -> int:
-        """The size, bytes, to which a compressed file may expand."""
+        """Return the size, bytes, to which a compressed file may expand."""
         return cls.spare_size + cls.file_expansion * size
 
     def count(self, expanded: int) -> None:
@@ -132,7 +132,7 @@ CODECS: Mapping[str, Codec] = {
 
 
 def codec_of(data: bytes) -> Codec | None:
-    """Find how data are compressed by their first bytes; None if they are not."""
+    """Recognise how data are compressed by the first bytes; None if they are not."""
     return next((codec for codec in CODECS.values() if data.startswith(codec.magic)), None)
 
 

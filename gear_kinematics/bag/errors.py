@@ -35,7 +35,7 @@ def cause(error: BaseException) -> str:
         library = (error.name or '').partition('.')[0]
         if library in _REMEDIES:
             return f'needs {library}: {_REMEDIES[library]}'
-    # Some OSErrors are raised by libraries, without this text.
+    # OSErrors that libraries raise may lack this text.
     text = str(getattr(error, 'strerror', None) or error)
     text = _MEANINGS.get(text, text)
     return ' '.join(text.split()) or type(error).__name__

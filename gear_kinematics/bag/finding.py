@@ -59,7 +59,7 @@ def find_bags(patterns: Iterable[str]) -> Found:
 
 
 def _recording(path: Path) -> Path:
-    """The folder of a recording that is given by its metadata.yaml; else the path itself."""
+    """Return the folder of a metadata.yaml, or else the path itself."""
     return path.parent if path.name == _METADATA and path.is_file() else path
 
 
@@ -71,7 +71,7 @@ def is_recording(path: Path) -> bool:
 
 
 def table_format(path: Path) -> str:
-    """Return the format of a table by its name, one of `TABLES`; '' if it is none."""
+    """Return which of `TABLES` a file is by its name; '' if it is no table."""
     *_, inner, last = '', '', *(end.lower() for end in path.suffixes)
     return TABLES.get(inner if last in COMPRESSED and inner in _TEXTS else last, '')
 
@@ -117,7 +117,7 @@ def _in_order(files: list[Path]) -> list[Path]:
 
 
 def _leads_astray(path: Path) -> bool:
-    """Whether it is a link to a folder that is not a bag: such links can form cycles."""
+    """Return whether a path is a link to a folder that is no bag: such links can form cycles."""
     return path.is_symlink() and path.is_dir() and not (path / _METADATA).exists()
 
 
@@ -144,7 +144,7 @@ def find_contents(path: Path) -> Contents:
     if metadata.exists():
         with bag_errors(metadata):
             return _listed_contents(path, read_yaml(metadata, BagError, _Loader))
-    # A recorder that is killed writes no metadata.
+    # A recorder that was killed has written no metadata.
     files = [file for file in path.iterdir() if _STORAGE_NAME.match(file.name)]
     if not files:
         raise ValueError('the folder holds neither metadata.yaml nor a .mcap or .db3 file')

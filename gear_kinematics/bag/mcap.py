@@ -68,7 +68,7 @@ class Mcap(Storage):
         return list(self._channels.values())
 
     def pieces(self, topics: Collection[str]) -> Iterator[list[Message]]:
-        """Read messages, sorted by their chunks or pieces; UnsortedError if that does not do."""
+        """Read messages, sorted within chunks or pieces; UnsortedError if that is not enough."""
         self._read_summary()
         chunks = self._overlapping_chunks()
         if chunks:

@@ -102,7 +102,7 @@ class Bag:
         self._readings.close()
 
     def messages(self, topics: Collection[str]) -> Iterator[Message]:
-        """Read raw messages in the order of their reception, those of ROS 1 as CDR.
+        """Read raw messages in the order of reception; messages of ROS 1 are converted to CDR.
 
         Raises:
             BagError: if no message can be read.

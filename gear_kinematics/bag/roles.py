@@ -38,7 +38,7 @@ class Topics(NamedTuple):
 
     @classmethod
     def in_namespace_of(cls, rotor: str) -> Self:
-        """The topics of the node in the namespace of the rotor's topic."""
+        """Return the topics of the node in the namespace of the rotor's topic."""
         return cls(rotor, *in_namespace([OUTPUT_STATE, BODY_POSES], rotor).values())
 
 
@@ -134,7 +134,7 @@ def joints_on(bag: Bag, topics: Sequence[str]) -> dict[str, list[str]]:
 
 
 def find_encoder_topic(bag: Bag, rotor: str, given: str | None = None) -> str:
-    """Return the output encoder's topic: given, or by name, best beside the rotor's; '' if none.
+    """Return the output encoder's topic, given or by name, near the rotor's if possible, or ''.
 
     Raises BagError if the given one is missing, or several in other namespaces have the name.
     """
@@ -162,7 +162,7 @@ def in_namespace(names: Iterable[str], other: str = Topics().output) -> dict[str
 
 
 def find_in_namespace(bag: Bag, names: Iterable[str], output: str) -> dict[str, str]:
-    """Return those of `in_namespace` that a bag has."""
+    """Return the topics of `in_namespace` that a bag has."""
     return {
         name: topic
         for name, topic in in_namespace(names, output).items()
@@ -209,7 +209,7 @@ def _only(
 
 
 def described(joints: Sequence[str], most: int = 10) -> str:
-    """Write the joints of a topic behind its name, at most some of them."""
+    """Return the joints of a topic in words, to follow its name; only some if there are many."""
     if len(joints) == 1:
         return f' (joint {joints[0]})'
     return f' (joints {listed(joints, most=most)})' if joints else ''

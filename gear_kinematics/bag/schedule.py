@@ -52,7 +52,7 @@ def count_due(source: Bag, topics: Collection[str]) -> int | None:
 
 
 def _one_round(source: Bag, topics: Collection[str]) -> Iterator[tuple[int, Message]]:
-    """Yield messages with the time since the first of them, ns."""
+    """Yield messages with the time since the first one, ns."""
     begin = None
     for message in source.messages(topics):
         _, received, _ = message

@@ -110,7 +110,7 @@ def summarise(
 
 
 def _has_joint(reader: JointReader | None, data: bytes) -> bool:
-    """Whether a message has the joint of a reader, or there is none to look for."""
+    """Return whether a message has the joint of a reader, if there is a reader."""
     try:
         if reader:
             reader.read(data)

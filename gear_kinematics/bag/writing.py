@@ -176,7 +176,7 @@ class BagWriter:
             many = f'more than {_MAX_ENTRIES} topics and QoS profiles'
             raise BagError(f'{self.path}: {many}; --topics says which to copy')
         writer = self._writer
-        # By `Writer.add_connection`, every type would need a definition and a hash.
+        # `Writer.add_connection` would need a definition and a hash of every type.
         connection = Connection(
             len(writer.connections) + 1,
             topic.name,

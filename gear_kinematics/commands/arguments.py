@@ -145,7 +145,7 @@ def load_config(options: argparse.Namespace, bag: Path | None = None) -> NodePar
 def load_configs(
     options: argparse.Namespace, bag: Path | None = None
 ) -> dict[str, NodeParameters]:
-    """Load the parameters of all actuators, or of the chosen one, by name; '' is that of one gear.
+    """Load the parameters of all actuators, or the chosen one, by name; a single gear has ''.
 
     Options replace some of them. Raises ValueError for values that the node would refuse, and for
     options that would replace a parameter of several actuators.

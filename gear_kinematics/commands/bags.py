@@ -58,7 +58,7 @@ def add_calibration(parser: argparse.ArgumentParser) -> None:
 def calibration_path(
     options: argparse.Namespace, config: NodeParameters, bag: Path | None
 ) -> Path | None:
-    """Choose the given calibration, that of the parameters, or for one gear that of the folder."""
+    """Choose the calibration given, in the parameters, or of a single gear in the folder."""
     if given := options.calibration or config.calibration:
         return Path(given)
     return arguments.in_bag_folder(bag, CALIBRATION) if bag and not config.actuator else None

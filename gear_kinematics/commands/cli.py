@@ -93,12 +93,12 @@ class _Parser(argparse.ArgumentParser):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        # By its own pattern, -58/3 would be an unknown option.
+        # By the pattern of argparse, -58/3 would be an unknown option.
         self._negative_number_matcher = re.compile(r'-\d+(/\d+)?$|-\d*\.\d+$')
         self.set_defaults(parser=self)  # that of the innermost subcommand remains
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
-        """Name the nearest choice in the error as well."""
+        """Suggest the nearest choice in the error."""
         if action.choices is not None and value not in action.choices:
             choices = list(map(str, action.choices))
             hint = among(str(value), choices, most=len(choices))
@@ -173,7 +173,7 @@ def make_parser(*called: str) -> argparse.ArgumentParser:
         command = import_module(f'{__package__}.{name.replace("-", "_")}')
         command.add_arguments(added)
         added._action_groups.sort(key=lambda group: group.title == 'output')  # noqa: SLF001
-        # Named in the line on an unexpected error, and of no use before.
+        # Hidden: the line on an unexpected error names it, and it is of no use before.
         added.add_argument('--debug', action='store_true', help=argparse.SUPPRESS)
         added.set_defaults(run=command.run)
     return parser

@@ -86,7 +86,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _read(options: argparse.Namespace, request: analysis.Request) -> analysis.Commissioning:
-    # Positions as they are, whose wraps no limit of the speed rules out.
+    # Take positions as they are: no limit of the speed may rule out their wraps.
     parameters = replace(NodeParameters.load(), max_rotor_speed=1e6, max_rotor_acceleration=1e9)
     known = replace(sources(options), as_recorded=True)
     recordings = []

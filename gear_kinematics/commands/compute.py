@@ -81,7 +81,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 def _print_summary(out: Path, result: ComputeResult) -> None:
     inputs = result.inputs
-    # A message of other joints is one of another actuator, if there are several.
+    # Of an arm, a message without an actuator's joint is one for other actuators.
     states = max(rotor.received - rotor.of_others * ('' in inputs) for rotor in inputs.values())
     rejected = ', '.join(
         labelled(name, f'{cause} {number}')

@@ -122,6 +122,6 @@ def _ratios(options: argparse.Namespace, joints: Sequence[str]) -> dict[str, Gea
 
 
 def _actuator(joint: str) -> str:
-    """Name an actuator after its joint, with characters that parameters and topics can have."""
+    """Name an actuator after its joint, with characters allowed in parameters and topics."""
     name = re.sub(r'\W', '_', joint, flags=re.ASCII)
     return name if name[:1].isalpha() else f'joint_{name}'

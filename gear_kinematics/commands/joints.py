@@ -14,12 +14,12 @@ from gear_kinematics.wire.topics import OUTPUT_ENCODER, ROTOR_STATE, TOPICS, bas
 
 
 def can_ask() -> bool:
-    """Whether a person is at a terminal."""
+    """Return whether a person is at a terminal."""
     return sys.stdin.isatty() and sys.stdout.isatty()
 
 
 def ask(question: str) -> str:
-    """Return the answer to a question; ValueError where the input ends, as by Ctrl-D."""
+    """Return the answer to a question; raises ValueError if the input ends, as by Ctrl-D."""
     try:
         return input(question).strip()
     except EOFError as error:

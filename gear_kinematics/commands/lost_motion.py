@@ -85,7 +85,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _names(paths: Sequence[Path]) -> list[str]:
-    """Name recordings by their files, or by their paths if files have equal names."""
+    """Name recordings by file name, or by path if several files have the same name."""
     known = Counter(path.name for path in paths)
     return [path.name if known[path.name] == 1 else str(path) for path in paths]
 

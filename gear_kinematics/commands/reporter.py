@@ -67,7 +67,7 @@ class Reporter:
             ModuleNotFoundError: if a form needs a package that is not installed.
         """
         self._options = options
-        # Other reports have nothing that could be left out.
+        # Reports without `--verbose` have nothing to leave out.
         self._brief = not getattr(options, 'verbose', True)
         self._forms = {form: target for form in _FORMS if (target := getattr(options, form, None))}
         given = {f'--{form}': target for form, target in self._forms.items()}
@@ -114,7 +114,7 @@ class Reporter:
         return _EXIT_CODES[document.verdict]
 
     def _origin(self, configs: Iterable[Path]) -> Origin:
-        """Record the time, the command and its parameter files, each of them once."""
+        """Record the time, the command, and each of its parameter files once."""
         digests = {path: hashlib.sha256(path.read_bytes()).hexdigest() for path in configs}
         return Origin(
             version(),

@@ -83,7 +83,7 @@ def as_file(actuators: Iterable[NodeParameters], node: str = '/**') -> str:
 
 
 def arm_urdf(actuators: Mapping[str, NodeParameters]) -> tuple[str, list[str]]:
-    """Write the URDF of all actuators whose bodies are known, side by side, and name the others.
+    """Write the URDF of all actuators with known bodies, side by side; return the others' names.
 
     Raises:
         ValueError: if only the ratios are known, or there is no such mechanism.
@@ -109,7 +109,7 @@ def labelled(actuator: str, text: str) -> str:
 
 
 def faults_in(given: Mapping[str, Any], others: Iterable[str] = ()) -> list[str]:
-    """List the faults of values by names in ROS, and of these names; the node has `others` too."""
+    """List the faults of values and names of parameters in ROS; the node may have `others`."""
     names = given.get('actuators', [])
     if fault := PARAMETERS['actuators'].fault('actuators', names):
         return [fault]

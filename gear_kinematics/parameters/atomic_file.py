@@ -24,7 +24,7 @@ def replace_file(path: Path, content: bytes, *, new: bool = False) -> None:
     if path.is_symlink() and not path.exists():
         raise OSError(errno.ELOOP, 'it is a link to nothing')
     path = Path(os.path.realpath(path))
-    # Never too long a name, and another one than of a process that was killed.
+    # This name is never too long, and differs from that of a process that was killed.
     unfinished = path.with_name(f'.gearkin.{os.getpid()}.{secrets.token_hex(4)}.tmp')
 
     def write(opened: Path, flags: int) -> None:

@@ -26,7 +26,7 @@ BRANCH_PARAMETERS: Mapping[str, Parameter] = {
 
 
 def branch_parameters(branches: Iterable[str]) -> dict[str, Parameter]:
-    """The parameters of the named branches, by name in ROS."""
+    """Return the parameters of the named branches, by name in ROS."""
     return {
         f'{branch}.{key}': parameter
         for branch in branches

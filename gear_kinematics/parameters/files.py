@@ -99,7 +99,7 @@ def _check_strays(path: Path, name: str, blocks: Sequence[tuple[str, dict[str, A
 
 
 def _mistyped(pattern: str, name: str) -> bool:
-    """Whether a node's name is nearly that of another one, without its namespace."""
+    """Return whether the names of two nodes, without namespace, differ by a typing error."""
     given, own = (each.rpartition('/')[2] for each in (pattern, name))
     shorter, longer = sorted((given, own), key=len)
     numbered = re.fullmatch(r'_?\d+|_\w+', longer.removeprefix(shorter))
@@ -117,7 +117,7 @@ def _full_name(path: Path, node: str, blocks: Iterable[tuple[str, object]]) -> s
 
 
 def _applies(pattern: str, name: str) -> bool:
-    """Whether a block of a parameter file is for a node, as rclpy and rclcpp see it."""
+    """Return whether a block of a parameter file is for a node, as in rclpy and rclcpp."""
     return re.fullmatch(pattern.replace('/*', r'(/\w+)'), name, re.ASCII) is not None
 
 

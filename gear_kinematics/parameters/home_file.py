@@ -16,7 +16,7 @@ from gear_kinematics.parameters.yaml_file import Dumper, read_yaml
 
 
 def write_home(path: Path, actuators: Mapping[str, NodeParameters], node: str) -> None:
-    """Write the zeros of the actuators of a node, given by its full name; '' is the only one.
+    """Write the zeros of all actuators of the node with a full name; a single one has ''.
 
     Raises:
         OSError: if they cannot be written. Older zeros are removed, as they would be wrong at the

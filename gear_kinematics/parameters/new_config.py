@@ -26,7 +26,7 @@ def new_config(
     Without the `teeth` of ring and satellite, only the ratio of the gear is known.
     """
     values = _gear(joint, ratio, teeth)
-    # The head of the default file is about the default file.
+    # Leave out the head, which describes the default file itself.
     body = re.sub(r'\A(#.*\n)+', '', default_config().read_text('utf-8'))
     line = rf'(?m)^( +({"|".join(values)}): ).*'
     body = re.sub(line, lambda match: match[1] + values[match[2]], body)

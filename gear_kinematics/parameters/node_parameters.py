@@ -207,7 +207,7 @@ class NodeParameters:
         return values
 
     def only_zero_differs(self, other: Self) -> bool:
-        """Whether the same motion is counted from another zero at most, as after homing."""
+        """Return whether at most `rotor_zero` differs, as after homing."""
         return replace(self, rotor_zero=other.rotor_zero) == other
 
     def as_file(self) -> str:
@@ -301,7 +301,7 @@ _LISTS = [name for name, each in PARAMETERS.items() if each.kind is list and nam
 
 @cache
 def default_config() -> Path:
-    """The installed config/actuator.yaml."""
+    """Return the installed config/actuator.yaml."""
     return share_directory() / 'config' / 'actuator.yaml'
 
 

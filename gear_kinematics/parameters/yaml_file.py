@@ -61,7 +61,7 @@ def read_yaml(path: Path, error_type: type[ValueError], loader: type[Loader] = L
             status = os.fstat(file.fileno())
             if not stat.S_ISREG(status.st_mode):
                 raise error_type(f'{path}: not a regular file')
-            # As much is allocated; files of /proc have no size.
+            # read() allocates as much as it may read; files of /proc have no size.
             data = file.read(min(status.st_size or loader.max_bytes, loader.max_bytes) + 1)
         if len(data) > loader.max_bytes:
             raise error_type(f'{path}: longer than {loader.max_bytes} bytes')

@@ -25,7 +25,7 @@ def _add_suite(root: ET.Element, section: Section, package: str, number: int, st
     suite = ET.SubElement(
         root,
         'testsuite',
-        # The order of elements and the attributes are those that Ant's schema asks for.
+        # Ant's schema asks for these attributes and this order of elements.
         name=section.name,
         id=str(number),
         package=package,
@@ -43,7 +43,7 @@ def _add_suite(root: ET.Element, section: Section, package: str, number: int, st
     # A dot would split the name into package and class.
     classname = section.name.replace('.', '_')
     for k, case in enumerate(section.cases):
-        # All cases are judged in one pass; the first is given its time.
+        # All cases are judged in one pass, whose time is given to the first.
         time = f'{0.0 if k else section.elapsed:.3f}'
         element = ET.SubElement(suite, 'testcase', name=case.name, classname=classname, time=time)
         if case.faults:

@@ -18,7 +18,7 @@ _POLICIES = 'reliability', 'durability', 'deadline', 'liveliness', 'liveliness_l
 
 
 def diagnostic_array(node: Node, reports: Mapping[str, GearReport]) -> DiagnosticArray:
-    """Return the message for reports, given by their subjects."""
+    """Return the message for reports by subject."""
     name = node.get_fully_qualified_name()
     message = DiagnosticArray()
     message.header.stamp = node.get_clock().now().to_msg()

@@ -21,7 +21,7 @@ class Display:
     """Publishes the URDF after every change, and the markers while they have viewers."""
 
     def __init__(self, node: PublishingNode, actuators: Mapping[str, NodeParameters]) -> None:
-        """Show the actuators with these parameters, whose bodies are known."""
+        """Show actuators with known bodies, by name."""
         self._node, self._description = node, ''
         node.open_output(topics.ROBOT_DESCRIPTION, latched())
         self.markers = {
@@ -56,7 +56,7 @@ class MarkerOutput:
 
     def _on_viewers(self, event: QoSPublisherMatchedInfo) -> None:
         """Run the timer of the markers while there are subscribers; resend for a new one."""
-        # Not the change of the count: some executors report 0 for an earlier subscriber.
+        # Do not use the change of the count: some executors report 0 for an earlier subscriber.
         if event.current_count:
             self.shown.repeat()
             self.timer.reset()

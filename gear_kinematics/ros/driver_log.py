@@ -40,7 +40,7 @@ class DriverLog:
         self.awaited = False  # whether it was logged that the driver is missing or silent
 
     def _warn_of_missing(self) -> None:
-        """Name once each joint of an arm that messages with others have lacked for too long."""
+        """Warn once of each joint of an arm that has been missing for too long beside others."""
         lacking = defaultdict[str, dict[str, str]](dict)  # joints by actuators, by what is there
         for name, each in self._inputs.items():
             own, before = each.received - each.of_others, self._own[name]

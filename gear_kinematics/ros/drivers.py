@@ -73,7 +73,7 @@ class DriverInput:
         losses, facts, before = self._losses, self._facts, self._facts.publishers
         drivers = self.subscription.get_publisher_count()
         several = max(before, drivers) > 1
-        # The first number of a driver in place of one that has ended says nothing.
+        # If a driver has replaced one that ended, its first number says nothing of losses.
         replaced = before == 0 < drivers and self._heard
         if several:
             losses.next = None

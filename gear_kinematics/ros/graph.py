@@ -52,7 +52,7 @@ class Graph:
         return {bytes(end.endpoint_gid) for end in ends if full_name(end) == gear}
 
     def drivers(self) -> list[str]:
-        """Find the topics that nodes other than those of gears publish."""
+        """Find the topics that other nodes than those of gears publish."""
         return sorted(
             topic
             for topic, publishers in self._publishers.items()

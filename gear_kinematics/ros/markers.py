@@ -31,7 +31,7 @@ class Markers:
     """Shows the mechanism; the message is created on first use."""
 
     def __init__(self, mechanism: Mechanism, *, module: float, frame_prefix: str) -> None:
-        """Set the mechanism to show; the module is that of the teeth, m."""
+        """Set the mechanism to show, and the module of its teeth, m."""
         self._mechanism = mechanism
         self._module = module
         self._frame_prefix = frame_prefix

@@ -47,7 +47,7 @@ class GearStatePublisher(PublishingNode):
     _known = PARAMETERS  # until the names of the actuators are known
 
     def __init__(self, *, parameter_files: Collection[Path] = (), **options: Any) -> None:
-        """Declare the parameters, of which the files must have some, and open the topics.
+        """Declare the parameters, some of which must be in the files, and open the topics.
 
         Raises:
             ParameterException: if a parameter is refused.

@@ -77,7 +77,7 @@ class PublishingNode(Node):  # type: ignore[misc]  # rclpy has no types
 
     def send(self, messages: Iterable[tuple[str, bytes]]) -> None:
         """Publish serialised messages, given with their topics, and report failures."""
-        # All are encoded first: a listener is still awake at the second if it follows at once.
+        # Encode all first: a listener is still awake for a second message that follows at once.
         for topic, message in list(messages):
             try:
                 self._senders[topic](message)

@@ -55,7 +55,7 @@ class GearSimulator(PublishingNode):
         self.add_on_set_parameters_callback(_check_parameters)
         if fault := _check_parameters([self.get_parameter('use_sim_time')]).reason:
             raise ValueError(fault)
-        # What a file leaves out is as in gear_state_publisher with that file.
+        # With a file, the defaults are those that gear_state_publisher has with the same file.
         shared = default_value if parameter_files else twin.default_value
         actuators = declared_actuators(
             self,

@@ -59,7 +59,7 @@ class ArmState:
 
     @property
     def topics(self) -> dict[str, str]:
-        """All topics that can be chosen, and their names without that of an actuator."""
+        """All topics that can be chosen, with their names without the actuator."""
         return {
             topic_of(name, topic): topic
             for name, state in self.actuators.items()

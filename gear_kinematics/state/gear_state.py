@@ -48,7 +48,7 @@ class GearState:
 
     messages: OutputMessages  # encodes the states, once topics are chosen
 
-    # The results of the latest valid message of the rotor. A tuple of them would take longer.
+    # Results of the latest valid message of the rotor; returning a tuple would take longer.
     sample: RotorSample
     segment = -1  # as in `RotorSamples`
     referenced = False  # whether the rotor's turns were known when it came

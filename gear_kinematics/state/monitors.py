@@ -71,7 +71,7 @@ class InputMonitor(DriverMonitor):
     """Monitors the rotor input."""
 
     def __init__(self, rotor_input: RotorInput, encoder: OutputEncoder) -> None:
-        """Monitor an input, whose turns the encoder at the output may find."""
+        """Monitor an input and the encoder at the output, which may find its turns."""
         super().__init__()
         self._input, self._encoder = rotor_input, encoder
         self.unreferenced = 0  # valid inputs while the turns were not known

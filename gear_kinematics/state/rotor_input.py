@@ -126,7 +126,7 @@ class RotorInput:
 
     @property
     def why_rejected(self) -> str:
-        """The causes with their counts, and which joints there are if that is one of them."""
+        """The causes with their counts, and the joints there are if the wanted one is missing."""
         causes = ', '.join(f'{cause} {count}' for cause, count in self.rejected.items())
         hint = f'{self.missing_joint}; give the right --config or --joint'
         return f'{causes}: {hint}' if self.missing_joint else causes

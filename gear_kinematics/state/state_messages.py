@@ -170,7 +170,7 @@ class StateMessages(OutputMessages):
         self, output_angle: Any, branches: Sequence[BranchPosition], xp: ModuleType
     ) -> list[Any]:
         """Return the numbers of body_poses: floats or arrays."""
-        # These bodies all have the angle φ5; within the turn, its quaternion has w >= 0.
+        # All these bodies turn by φ5, whose quaternion has w >= 0 within the turn.
         sine, cosine = xp.sin(0.5 * output_angle), xp.cos(0.5 * output_angle)
         centres = [branch.satellite for branch in branches]
         centres += [branch.oldham for branch in branches]
@@ -198,7 +198,7 @@ class StateMessages(OutputMessages):
 
 
 def state_messages(parameters: NodeParameters) -> OutputMessages:
-    """Return the messages of a gear, with those of its bodies unless only the ratio is known.
+    """Return the messages of a gear, including its bodies unless only the ratio is known.
 
     Raises ValueError if a name is empty, not printable, or that of two joints.
     """

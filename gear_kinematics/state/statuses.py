@@ -178,7 +178,7 @@ class GearReport(NamedTuple):
 
     @classmethod
     def of(cls, facts: Iterable[Fact], values: Mapping[str, Any]) -> Self:
-        """Report facts in any order; those of the same level keep theirs."""
+        """Sort facts by level; those of the same level stay in their order."""
         return cls(sorted(facts, key=lambda fact: -fact.condition.level), values)
 
     @property

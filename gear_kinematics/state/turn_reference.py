@@ -87,7 +87,7 @@ def nearest_turns(ratio: GearRatio, error: float) -> tuple[int, float]:
     Returns the turns to add to the rotor's count, and what they leave of the error, rad.
     """
     n = abs(ratio.numerator)
-    # One step of the output angle is so many turns of the rotor; pow(..., 1) is 0.
+    # Turns of the rotor by which the output angle changes by one step; pow(..., 1) is 0.
     turns_per_step = pow(ratio.denominator if ratio > 0 else -ratio.denominator, -1, n)
     steps = math.floor(error * n / TURN + 0.5)
     turns = steps * turns_per_step % n
@@ -196,7 +196,7 @@ class TurnReference:
         return self.decision is not None and self.decision.budget < self.decision.margin
 
     def follow(self, samples: Sequence[ErrorSample]) -> Sequence[ErrorSample]:
-        """Take the next errors of the present count; returns those of known turns.
+        """Take the next errors of the present count; returns the errors of known turns.
 
         It can begin a new segment, whose errors are yet to come.
         """

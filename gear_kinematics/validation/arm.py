@@ -95,7 +95,7 @@ class JoinedMessages:
                 self._faults[None, FindingCause.NAN_FOR_ALL, field, joints].add(stamp[empty])
 
     def _compare(self, outputs: Array, waited: int) -> None:
-        """Look for messages that lack joints of an input, and are those of no other input."""
+        """Find messages that lack joints of their input and answer no other input."""
         stamps, sets = outputs
         self._waiting = outputs[:, :0]
         if not len(stamps):

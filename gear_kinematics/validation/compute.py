@@ -128,7 +128,7 @@ def compute(
 
 
 def _choose(gears: Mapping[str, GearState], topics: Topics) -> dict[str, str]:
-    """Choose the topics that the gears encode; return them in the bag by their node names."""
+    """Choose topics that the gears encode; return their names in the bag by name in the node."""
     given = {OUTPUT_STATE: topics.output, BODY_POSES: topics.poses}
     names: dict[str, str] = {}
     for actuator, gear in gears.items():

@@ -118,7 +118,7 @@ def _bag(report: BagReport) -> dict[str, Any]:
 
 def _cases(report: BagReport) -> Iterator[Case]:
     """Yield the test cases of JUnit: the bag, its input, and each topic and field."""
-    # Even without a finding, the suite must not look as if it passed.
+    # Even without a finding, an unusable bag must not look as if it had passed.
     texts = tuple(one.text for one in findings(report)) or (f'the bag {OUTCOME[report.verdict]}',)
     unusable = report.verdict == Verdict.UNUSABLE
     yield Case('bag', () if report.passed else texts, 'error' if unusable else 'failure')

@@ -70,7 +70,7 @@ def sentence(found: Finding, report: BagReport | None = None) -> str:
 
 
 def _in_words(value: Any) -> Any:
-    """List names, or numbers of messages by their topics; leave other values as they are."""
+    """List names, or counts of messages by topic; leave other values unchanged."""
     if isinstance(value, Mapping):
         value = [f'{counted(count, "message")} of {topic}' for topic, count in value.items()]
     return ', '.join(value) if isinstance(value, list) else value

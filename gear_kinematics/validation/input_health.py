@@ -97,7 +97,7 @@ def _periods(
 
 
 def repeats_stamps(rotor: InputReport) -> bool:
-    """Whether so many stamps repeat that they do not tell outputs and inputs apart."""
+    """Return whether too many stamps repeat to match outputs with inputs by them."""
     return rotor.duplicates > _MANY_REPEATED * rotor.valid
 
 

@@ -32,7 +32,7 @@ class LoadTopic(OutputTopic):
         super().__init__(name, '', expectation, _UNITS[topic])
 
     def answered(self, samples: Window) -> Array:
-        """Whether each of the oldest samples of the window has its message, or needs none."""
+        """Return which of the oldest samples have their message, or need none, (n,)."""
         return np.asarray(super().answered(samples) | np.isnan(samples['acceleration']))
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:

@@ -272,7 +272,7 @@ class OutputTopic:
         """Decide by messages, (n,), whether open fields of their samples count."""
 
     def answered(self, samples: Window) -> Array:
-        """Whether each of the oldest samples of the window has its message, or needs none."""
+        """Return which of the oldest samples have their message, or need none, (n,)."""
         return self.matcher.matched[: len(samples)]
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:

@@ -67,7 +67,7 @@ class Missing:
         self._after.add(stamp[end:])
 
     def close(self, last: int, *, strict: bool, lost: int) -> None:
-        """Judge the inputs after the last output, of which the `last` was received at a time, ns.
+        """Judge the inputs after the last output; the `last` input was received at this time, ns.
 
         According to the recorder, it `lost` so many messages of the topic.
         """

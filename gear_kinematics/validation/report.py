@@ -161,14 +161,14 @@ class BagReport:
     actuators: 'tuple[BagReport, ...]' = ()  #: of an arm; the verdict is the worst of theirs
 
     def adding(self, *findings: Finding) -> Self:
-        """Return the report with further findings, each of which may fail it."""
+        """Return the report with further findings, which may fail it."""
         fails = self.passed and any(finding.fails for finding in findings)
         verdict = Verdict.FAIL if fails else self.verdict
         return replace(self, verdict=verdict, findings=(*self.findings, *findings))
 
     @property
     def every_topic(self) -> tuple[TopicReport, ...]:
-        """The topics, and those of all actuators."""
+        """The topics of the report and of all its actuators."""
         return (*self.topics, *(topic for each in self.actuators for topic in each.topics))
 
     @property

@@ -68,7 +68,7 @@ def validate(
 
 
 def of_arm(tasks: Sequence[Task]) -> Task:
-    """Return the task of one gear itself, or those of the actuators of an arm as one."""
+    """Return the task of a single gear, or join the tasks of an arm's actuators in one."""
     first, *_ = tasks
     return replace(first, actuators=tuple(tasks)) if first.parameters.actuator else first
 

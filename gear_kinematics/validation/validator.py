@@ -252,7 +252,7 @@ class Validator:
                 self._window[name][-len(segments) :] = values
 
     def _drop(self, count: int) -> None:
-        """Drop the oldest samples, whose outputs are there or count as missing."""
+        """Drop the oldest samples, which have their outputs or whose outputs count as missing."""
         oldest = self._window.take(slice(count))
         withheld = self._withheld(oldest)
         for group, outputs in self._groups:
@@ -321,7 +321,7 @@ class Validator:
 
 
 def agrees(task: Task, topics: Topics, batches: Iterable[MessagesByTopic]) -> bool:
-    """Whether the outputs in batches, up to any damage, are those of a task."""
+    """Return whether the outputs in batches, up to any damage, agree with a task."""
     validator = Validator(task, topics)
     with suppress(BagError):
         validator.feed(batches)

@@ -40,7 +40,7 @@ class LiveCommissioning:
     """Messages of both encoders of a gear, analysed in a separate thread."""
 
     def __init__(self, request: Request) -> None:
-        """Start with the joints of a request, whose ratio can be replaced at any time."""
+        """Start with a request; its ratio can be replaced at any time."""
         self.request, self.shown = request, Guide(GUIDE)
         self._topics = request.rotor.topic, request.output.topic
         rotor, output = request.rotor.joint, request.output.joint

@@ -68,7 +68,7 @@ class Answer(NamedTuple):
 
     @classmethod
     def of(cls, response: Trigger.Response) -> Self:
-        """The result of `~/home`."""
+        """Return the result of `~/home`."""
         return cls(f'{response.message}.', response.success)
 
 
@@ -177,7 +177,7 @@ class GearNode:
         return None
 
     def _is_own(self, topic: str, data: bytes) -> bool:
-        """Whether a message has the output's joint: other gears may share the topic."""
+        """Return whether a message has the output's joint: other gears may share the topic."""
         if not (parameters := self.parameters):
             return True
         with suppress(MalformedMessageError):
@@ -190,7 +190,7 @@ class GearNode:
         return False
 
     def hears(self, topic: str) -> bool:
-        """Whether the node subscribes to a topic."""
+        """Return whether the node subscribes to a topic."""
         ends = self._node.get_subscriptions_info_by_topic(topic)
         return any(full_name(end) == self.name for end in ends)
 
@@ -204,7 +204,7 @@ class GearNode:
         self.homing.call_async(Trigger.Request()).add_done_callback(take)
 
     def set(self, values: Mapping[str, Any], done: str, answer: 'futures.Future[Answer]') -> None:
-        """Set parameters, all or none of them; answer with success or the reason of failure."""
+        """Set all or none of some parameters; answer with success or the reason of the failure."""
 
         def take(answered: Future) -> None:
             result = answered.result().result

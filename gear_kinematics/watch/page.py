@@ -52,7 +52,7 @@ placeholder="shoulder"></label>
 
 
 def watch_page(server: str) -> str:
-    """Write the page of a server, by its address for WebSockets: `ws://host:port`."""
+    """Write the page of a server with an address for WebSockets, `ws://host:port`."""
     style, script = (
         files(__package__).joinpath(f'watch.{kind}').read_text('utf-8') for kind in ('css', 'js')
     )

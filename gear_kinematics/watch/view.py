@@ -72,7 +72,7 @@ class View:
 def view_of(
     gear: GearNode | None, gears: Collection[GearNode] = (), *, looking: bool = False
 ) -> View:
-    """Compose the view of a gear, and of all that run, some of which may not be found yet."""
+    """Compose the view of a gear among all that run; while `looking`, some may yet be found."""
     nodes = tuple(map(_choice, gears))
     state, message = _state_of(gear, [gear.name for gear in gears])
     if looking and state == 'no node':

@@ -166,7 +166,7 @@ class Watcher:
                 raise ValueError('This command is not possible now.')
 
     def _actuator_of(self, live: LiveCommissioning) -> str:
-        """Return the actuator whose rotor it is, if a node of an arm hears it; else ''."""
+        """Return the actuator of the rotor, if the node of an arm hears it; else ''."""
         rotor = live.request.rotor
         arms = (gear for gear in self._gears if len(gear.arm) > 1 and gear.hears(rotor.topic))
         named = (name for gear in arms for name in gear.arm
@@ -187,5 +187,5 @@ class Watcher:
 
 
 def _place(gear: GearNode) -> tuple[str, int]:
-    """The place of a gear in a list: by its node, and in the order of the actuators."""
+    """Return the place of a gear in a list: by its node, and in the order of the actuators."""
     return gear.name, [*gear.arm, gear.actuator].index(gear.actuator)
