@@ -62,12 +62,8 @@ def add_config(
 ) -> None:
     """Add the options for the parameters of a node; `chosen` replaces the help on `--node`."""
     gear = group(parser, 'gear')
-    gear.add_argument(
-        '--config',
-        type=Path,
-        metavar='FILE',
-        help=f'parameters of the node as YAML (default: {default})',
-    )
+    text = f'parameters of the node as YAML (default: {default})'
+    gear.add_argument('--config', type=Path, metavar='FILE', help=text)
     gear.add_argument(
         '--node',
         default=node,
@@ -101,12 +97,8 @@ def add_running(parser: argparse.ArgumentParser, node: str, actuator: str) -> No
 
 def add_quiet(parser: argparse.ArgumentParser) -> None:
     """Add the option for less output."""
-    group(parser, 'output').add_argument(
-        '-q',
-        '--quiet',
-        action='store_true',
-        help='print only what failed, and neither progress nor results',
-    )
+    text = 'print only what failed, and neither progress nor results'
+    group(parser, 'output').add_argument('-q', '--quiet', action='store_true', help=text)
 
 
 def add_verbose(
@@ -192,13 +184,11 @@ def in_bag_folder(bag: Path, name: str) -> Path | None:
 
 def add_ratio(parser: argparse.ArgumentParser) -> None:
     """Add the option that replaces the parameter `gear_ratio`; `load_config` applies it."""
-    group(parser, 'gear').add_argument(
-        '--ratio',
-        type=ratio_text,
-        metavar='I',
-        help='exact gear ratio, such as -19 or 1457/26 (default: the parameter gear_ratio, or '
-        'from the teeth; gearkin commission finds it)',
+    text = (
+        'exact gear ratio, such as -19 or 1457/26 (default: the parameter gear_ratio, or '
+        'from the teeth; gearkin commission finds it)'
     )
+    group(parser, 'gear').add_argument('--ratio', type=ratio_text, metavar='I', help=text)
 
 
 def ratio_text(text: str) -> str:

@@ -25,23 +25,18 @@ def add_rotor(parser: argparse.ArgumentParser, *, configured: bool = True) -> No
     In a command that is not `configured` by parameters, the joint only finds the topic.
     """
     group = arguments.group(parser, 'recording')
-    group.add_argument(
-        '--rotor-topic',
-        metavar='NAME',
-        help="topic of the rotor's joint states (default: found by type, name and joint)",
-    )
+    text = "topic of the rotor's joint states (default: found by type, name and joint)"
+    group.add_argument('--rotor-topic', metavar='NAME', help=text)
     text = ' (default: the parameter rotor_joint)' if configured else ', to find its topic'
     group.add_argument('--joint', metavar='NAME', help=f'joint of the rotor{text}')
 
 
 def add_outputs(parser: argparse.ArgumentParser) -> None:
     """Add the options for the names of the node's topics in a bag."""
+    group = arguments.group(parser, 'recording')
     for topic, content in ('output', 'output joint states'), ('poses', 'body poses'):
-        arguments.group(parser, 'recording').add_argument(
-            f'--{topic}-topic',
-            metavar='NAME',
-            help=f'topic of the {content} (default: found by type and name)',
-        )
+        text = f'topic of the {content} (default: found by type and name)'
+        group.add_argument(f'--{topic}-topic', metavar='NAME', help=text)
 
 
 def add_calibration(parser: argparse.ArgumentParser) -> None:
@@ -94,18 +89,10 @@ def files_of(
 
 def add_jobs(ways: argparse._MutuallyExclusiveGroup) -> None:
     """Add the options that distribute many recordings; see `results`."""
-    ways.add_argument(
-        '--jobs',
-        type=arguments.between(1, kind=int),
-        default=1,
-        metavar='N',
-        help='number of processes (default: 1)',
-    )
-    ways.add_argument(
-        '--scheduler',
-        metavar='ADDRESS',
-        help='scheduler of a Dask cluster that does the work, such as tcp://HOST:8786',
-    )
+    count, text = arguments.between(1, kind=int), 'number of processes (default: 1)'
+    ways.add_argument('--jobs', type=count, default=1, metavar='N', help=text)
+    text = 'scheduler of a Dask cluster that does the work, such as tcp://HOST:8786'
+    ways.add_argument('--scheduler', metavar='ADDRESS', help=text)
 
 
 def results(

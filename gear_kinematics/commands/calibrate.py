@@ -23,19 +23,10 @@ from gear_kinematics.parameters import NodeParameters
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_recordings(parser, 'rotor', 'output', 'torque')
     output = arguments.group(parser, 'output')
-    output.add_argument(
-        '-o',
-        '--output',
-        default='calibration.yaml',
-        metavar='FILE',
-        help='calibration to write (default: %(default)s); it replaces only a calibration',
-    )
-    output.add_argument(
-        '--check',
-        type=Path,
-        metavar='FILE',
-        help='judge this calibration by other recordings, and write none',
-    )
+    text = 'calibration to write (default: %(default)s); it replaces only a calibration'
+    output.add_argument('-o', '--output', default='calibration.yaml', metavar='FILE', help=text)
+    text = 'judge this calibration by other recordings, and write none'
+    output.add_argument('--check', type=Path, metavar='FILE', help=text)
     arguments.add_verbose(parser)
     add_report_forms(parser)
 

@@ -36,22 +36,17 @@ from gear_kinematics.wire.topics import JOINT_STATE
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_recordings(parser, 'rotor', 'output', configured=False)
     recording = arguments.group(parser, 'recording')
-    recording.add_argument(
-        '--live',
-        action='store_true',
-        help='listen to the drivers while you turn the output by hand as advised; Enter ends it',
-    )
+    text = 'listen to the drivers while you turn the output by hand as advised; Enter ends it'
+    recording.add_argument('--live', action='store_true', help=text)
     recording.add_argument('--encoder-joint', metavar='NAME', help='joint of the output encoder')
     gear = arguments.group(parser, 'gear')
     known = add_known_ratio(parser, 'ratio to confirm, such as -19')
     known.add_argument('--check', type=Path, metavar='FILE', help='judge this parameter file')
-    gear.add_argument(
-        '--zero-here',
-        type=_moment,
-        metavar='START|END|STAMP',
-        help='moment of the last recording at which the output angle is 0; a stamp or a time, s '
-        "(default: where the output's encoder reads 0)",
+    text = (
+        'moment of the last recording at which the output angle is 0; a stamp or a time, s '
+        "(default: where the output's encoder reads 0)"
     )
+    gear.add_argument('--zero-here', type=_moment, metavar='START|END|STAMP', help=text)
     add_new_config(parser)
     arguments.add_verbose(parser)
     add_report_forms(parser)

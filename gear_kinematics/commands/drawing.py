@@ -26,12 +26,9 @@ def add_image(parser: argparse.ArgumentParser, formats: str) -> None:
     recording.add_argument(
         '--duration', type=arguments.positive, metavar='S', help='time to show (default: all)'
     )
-    arguments.group(parser, 'motion').add_argument(
-        '--torque',
-        type=arguments.finite,
-        metavar='N·m',
-        help='torque that the branches give the output; draws the forces on the satellite',
-    )
+    motion = arguments.group(parser, 'motion')
+    text = 'torque that the branches give the output; draws the forces on the satellite'
+    motion.add_argument('--torque', type=arguments.finite, metavar='N·m', help=text)
     arguments.add_mechanism(parser, sizes=True)
     add_force(parser)
     arguments.add_quiet(parser)

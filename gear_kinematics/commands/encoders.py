@@ -35,11 +35,8 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: boo
     parser.add_argument('recordings', nargs=number, type=Path, metavar='BAG|TABLE', help=text)
     add_rotor(parser, configured=configured)
     recording = arguments.group(parser, 'recording')
-    recording.add_argument(
-        '--encoder-topic',
-        metavar='NAME',
-        help='topic of the output encoder (default: found by type and name)',
-    )
+    text = 'topic of the output encoder (default: found by type and name)'
+    recording.add_argument('--encoder-topic', metavar='NAME', help=text)
     arguments.group(parser, 'gear')  # before the columns, also where the command adds to it
     if configured:
         arguments.add_config(parser)
@@ -54,18 +51,14 @@ def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
     )
     for role in ('time', *roles):
         group.add_argument(f'--{role}-column', metavar='NAME', help=_COLUMNS[role])
-    group.add_argument(
-        '--angle-unit',
-        choices=ANGLE_UNITS,
-        help='unit of all angles (default: by name, or rad unless something contradicts it)',
-    )
+    text = 'unit of all angles (default: by name, or rad unless something contradicts it)'
+    group.add_argument('--angle-unit', choices=ANGLE_UNITS, help=text)
     if 'torque' in roles:
-        group.add_argument(
-            '--on-rotor',
-            action='store_true',
-            help='take angle and torque as those of the rotor, unless a column is named after '
-            'the output',
+        text = (
+            'take angle and torque as those of the rotor, unless a column is named after '
+            'the output'
         )
+        group.add_argument('--on-rotor', action='store_true', help=text)
     of_rotor = (
         'the encoder of the rotor, or of the angle column, where angles are counts, as in '
         'motor_inc (default: from the readings)'
@@ -84,12 +77,8 @@ def add_known_ratio(
         known.add_argument('--ratio', nargs='+', type=_named_ratio, metavar='I', help=purpose)
     else:
         known.add_argument('--ratio', type=arguments.ratio_text, metavar='I', help=purpose)
-    known.add_argument(
-        '--teeth',
-        type=teeth,
-        metavar='ZK/ZS',
-        help='give the ratio by the numbers of teeth of ring and satellite',
-    )
+    text = 'give the ratio by the numbers of teeth of ring and satellite'
+    known.add_argument('--teeth', type=teeth, metavar='ZK/ZS', help=text)
     return known
 
 
@@ -109,20 +98,13 @@ def ratio_of_teeth(numbers: tuple[int, int]) -> GearRatio:
 def add_new_config(parser: argparse.ArgumentParser) -> None:
     """Add the options for the parameter file to write, and the actuator of an arm in it."""
     output = arguments.group(parser, 'output')
-    output.add_argument(
-        '-o',
-        '--output',
-        default=default_config().name,
-        metavar='FILE',
-        help='parameter file to create (default: %(default)s); it must not exist, unless '
-        'an actuator is added to the file of an arm',
+    text = (
+        'parameter file to create (default: %(default)s); it must not exist, unless '
+        'an actuator is added to the file of an arm'
     )
-    output.add_argument(
-        '--actuator',
-        default='',
-        metavar='NAME',
-        help='write the gear to FILE, new or existing, as this actuator of an arm',
-    )
+    output.add_argument('-o', '--output', default=default_config().name, metavar='FILE', help=text)
+    text = 'write the gear to FILE, new or existing, as this actuator of an arm'
+    output.add_argument('--actuator', default='', metavar='NAME', help=text)
 
 
 def teeth(text: str) -> tuple[int, int]:

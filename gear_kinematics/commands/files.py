@@ -22,11 +22,8 @@ _REPLACEABLE = {'-o': ('calibration', is_calibration)}
 
 def add_force(parser: argparse.ArgumentParser) -> None:
     """Add the option to replace files other than reports."""
-    group(parser, 'output').add_argument(
-        '--force',
-        action='store_true',
-        help='replace FILE even if gearkin did not write it, but never a recording',
-    )
+    text = 'replace FILE even if gearkin did not write it, but never a recording'
+    group(parser, 'output').add_argument('--force', action='store_true', help=text)
 
 
 def check_targets(options: argparse.Namespace, targets: Mapping[str, str | None]) -> None:

@@ -35,11 +35,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         'shoulder=-101 elbow=-51',
         several=True,
     )
-    arguments.group(parser, 'gear').add_argument(
-        '--arm',
-        action='store_true',
-        help='set up all joints of the topic as actuators of an arm, named like the joints',
-    )
+    text = 'set up all joints of the topic as actuators of an arm, named like the joints'
+    arguments.group(parser, 'gear').add_argument('--arm', action='store_true', help=text)
     add_new_config(parser)
 
 

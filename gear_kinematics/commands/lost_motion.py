@@ -23,12 +23,9 @@ from gear_kinematics.measurement.wording import ARC_MINUTES
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_recordings(parser, 'angle', 'torque', 'rotor', 'output')
-    arguments.group(parser, 'gear').add_argument(
-        '--rated-torque',
-        type=arguments.positive,
-        metavar='N·m',
-        help='rated torque at the output (default: the amplitude of the largest ramps)',
-    )
+    gear = arguments.group(parser, 'gear')
+    text = 'rated torque at the output (default: the amplitude of the largest ramps)'
+    gear.add_argument('--rated-torque', type=arguments.positive, metavar='N·m', help=text)
     limits = parser.add_argument_group(
         'limits', 'exit code 1 if a limit is exceeded, or cannot be shown to hold'
     )
@@ -39,12 +36,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--min-stiffness', type=arguments.positive, metavar='N·m/rad', help='least stiffness'
     )
     several = parser.add_argument_group('several recordings')
-    several.add_argument(
-        '--group',
-        action='append',
-        metavar='PATTERN',
-        help='glob of the names of a group of recordings to compare (repeat the option for each)',
-    )
+    text = 'glob of the names of a group of recordings to compare (repeat the option for each)'
+    several.add_argument('--group', action='append', metavar='PATTERN', help=text)
     add_report_forms(parser, junit=True)
     arguments.add_verbose(parser)
 

@@ -21,12 +21,8 @@ from gear_kinematics.twin.parameters import NODE, default_config
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     arguments.add_config(parser, NODE, 'config/simulated_actuator.yaml')
     gear = arguments.group(parser, 'gear')
-    gear.add_argument(
-        '--calibration',
-        type=Path,
-        metavar='FILE',
-        help='calibration with the kinematic errors (default: the parameter calibration)',
-    )
+    text = 'calibration with the kinematic errors (default: the parameter calibration)'
+    gear.add_argument('--calibration', type=Path, metavar='FILE', help=text)
     gear.add_argument(
         '--measured',
         type=Path,
@@ -36,11 +32,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='take stiffness and preload from a report of gearkin preload, or springs and '
         'friction from one of gearkin lost-motion (repeat the option for both)',
     )
-    gear.add_argument(
-        '--single-precision',
-        action='store_true',
-        help='write softer loops, for MuJoCo Warp: 0.04 %% of the compliance instead of 0.0001 %%',
-    )
+    text = 'write softer loops, for MuJoCo Warp: 0.04 %% of the compliance instead of 0.0001 %%'
+    gear.add_argument('--single-precision', action='store_true', help=text)
     arguments.group(parser, 'output').add_argument(
         '-o', '--output', default='-', metavar='FILE', help='model to write (default: stdout)'
     )

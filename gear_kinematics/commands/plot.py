@@ -20,13 +20,12 @@ _OF_ONE = {'degrees': 'scheme', 'torque': 'scheme', 'speed': 'slides', 'bag': 'o
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        'figure',
-        choices=_FIGURES,
-        help='output: angle and rate of the output shaft in a recording; roses: the paths of the '
+    text = (
+        'output: angle and rate of the output shaft in a recording; roses: the paths of the '
         'centres of the Oldham couplings; scheme: the bodies of a branch and their centres; '
-        'slides: slides and sliding speeds of the Oldham couplings',
+        'slides: slides and sliding speeds of the Oldham couplings'
     )
+    parser.add_argument('figure', choices=_FIGURES, help=text)
     drawing.add_image(parser, '.png, .svg or .pdf')
     motion = arguments.group(parser, 'motion')
     for name, unit, text in (

@@ -47,19 +47,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         ('threshold', 'load up to which both branches stay in mesh'),
     ):
         turns.add_argument(f'--wanted-{name}', type=float, metavar='N·m', help=text)
-    turns.add_argument(
-        '--from',
-        dest='recording',
-        type=Path,
-        metavar='RECORDING',
-        help='recording of loads under which both branches have to stay in mesh',
-    )
-    arguments.group(parser, 'turn of a ring gear').add_argument(
-        '--margin',
-        type=arguments.positive,
-        default=1.2,
-        metavar='FACTOR',
-        help='safety factor of the least preload for a recording (default: %(default)g)',
+    text = 'recording of loads under which both branches have to stay in mesh'
+    turns.add_argument('--from', dest='recording', type=Path, metavar='RECORDING', help=text)
+    turn = arguments.group(parser, 'turn of a ring gear')
+    text = 'safety factor of the least preload for a recording (default: %(default)g)'
+    turn.add_argument(
+        '--margin', type=arguments.positive, default=1.2, metavar='FACTOR', help=text
     )
     group = parser.add_argument_group('stiffness', 'torsional, at the output')
     group.add_argument(
@@ -78,13 +71,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='N·m/rad',
         help='stiffness of the shaft between the arms',
     )
-    group.add_argument(
-        '--backlash',
-        type=float,
-        default=0.0,
-        metavar='RAD',
-        help='play of the output before the ring is turned, which the turn has to close first',
-    )
+    text = 'play of the output before the ring is turned, which the turn has to close first'
+    group.add_argument('--backlash', type=float, default=0.0, metavar='RAD', help=text)
     arguments.add_mechanism(parser)
     add_report_forms(parser)
 

@@ -20,20 +20,17 @@ from gear_kinematics.wire.nearest import listed
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     arguments.add_config(parser, actuator='print only this actuator of an arm (default: all)')
     output = arguments.group(parser, 'output')
-    output.add_argument(
-        '--macro',
-        action='store_true',
-        help='print a xacro macro that fixes the actuator to a link of a robot; its prefix takes '
-        'the place of the parameter frame_prefix',
+    text = (
+        'print a xacro macro that fixes the actuator to a link of a robot; its prefix takes '
+        'the place of the parameter frame_prefix'
     )
-    output.add_argument(
-        '--meshes',
-        type=Path,
-        metavar='DIR',
-        help='write the bodies with their teeth to this folder as STL, and refer to them in the '
+    output.add_argument('--macro', action='store_true', help=text)
+    text = (
+        'write the bodies with their teeth to this folder as STL, and refer to them in the '
         'URDF, by the URI of the parameter meshes if it has one; an arm has a folder for each '
-        'actuator',
+        'actuator'
     )
+    output.add_argument('--meshes', type=Path, metavar='DIR', help=text)
 
 
 def run(options: argparse.Namespace) -> ExitCode:

@@ -39,23 +39,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             metavar=unit.upper(),
             help=f'greatest accepted error of each {quantity} (default: %(default)g)',
         )
-    limits.add_argument(
-        '--strict',
-        action='store_true',
-        help='judge all messages, even where the recorder may have lost some, and fail a node '
-        'that was homed',
+    text = (
+        'judge all messages, even where the recorder may have lost some, and fail a node '
+        'that was homed'
     )
-    limits.add_argument(
-        '--independent',
-        action='store_true',
-        help='compare with the matrix method as well, by code that the node does not run',
-    )
+    limits.add_argument('--strict', action='store_true', help=text)
+    text = 'compare with the matrix method as well, by code that the node does not run'
+    limits.add_argument('--independent', action='store_true', help=text)
     sources = arguments.group(parser, 'several recordings').add_mutually_exclusive_group()
-    sources.add_argument(
-        '--live',
-        action='store_true',
-        help='play the recorded inputs to a live node, and validate its outputs instead',
-    )
+    text = 'play the recorded inputs to a live node, and validate its outputs instead'
+    sources.add_argument('--live', action='store_true', help=text)
     bags.add_jobs(sources)
     add_report_forms(parser, junit=True)
     arguments.add_verbose(parser, 'print all counts and errors, not only findings')

@@ -8,11 +8,8 @@ from gear_kinematics.commands.output import Console, stopped_by_signals, warn_of
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        '--text',
-        action='store_true',
-        help='show text in the terminal, or lines in a pipe, instead of a page',
-    )
+    text = 'show text in the terminal, or lines in a pipe, instead of a page'
+    parser.add_argument('--text', action='store_true', help=text)
     arguments.add_running(parser, 'the first one running', 'the first')
 
 
