@@ -134,7 +134,7 @@ class Contents(NamedTuple):
 
 
 def find_contents(path: Path) -> Contents:
-    """Find the files of a recording, a folder or a file; raises any Exception if it is none."""
+    """Find the files of a recording, a folder or a file; any Exception if it is none."""
     path = _recording(path)
     if path.is_file():
         return Contents([path], {}, None)

@@ -87,7 +87,7 @@ class Storage:
         raise NotImplementedError
 
     def pieces(self, topics: Collection[str]) -> Iterator[list[Message]]:
-        """Read messages on topics in the order of reception; an error is raised after the last."""
+        """Read messages in the order of reception; an error comes after the last readable one."""
         raise NotImplementedError
 
     def close(self) -> None:

@@ -91,7 +91,7 @@ class BagWriter:
         storage: Literal['mcap', 'sqlite3'] = 'mcap',
         compression: Literal['none', 'zstd'] = 'none',
     ) -> None:
-        """Define a new folder for `__enter__` to create; zstd is for chunks, or a sqlite3 file."""
+        """Define a folder that `__enter__` creates; zstd compresses chunks, or a sqlite3 file."""
         self.path = Path(path)
         self._storage = StoragePlugin[storage.upper()]
         modes = {'mcap': CompressionMode.STORAGE, 'sqlite3': CompressionMode.FILE}

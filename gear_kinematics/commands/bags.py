@@ -53,7 +53,7 @@ def add_calibration(parser: argparse.ArgumentParser) -> None:
 def calibration_path(
     options: argparse.Namespace, config: NodeParameters, bag: Path | None
 ) -> Path | None:
-    """Choose the calibration given, in the parameters, or of a single gear in the folder."""
+    """Choose the calibration given, in the parameters or, of a single gear, in the folder."""
     if given := options.calibration or config.calibration:
         return Path(given)
     return arguments.in_bag_folder(bag, CALIBRATION) if bag and not config.actuator else None
@@ -101,7 +101,7 @@ def results(
     tasks: Sequence[Any],
     unit: str,
 ) -> dict[tuple[Path, str], processes.Report]:
-    """Return the reports on tasks by `key`, from several processes or machines if the options say.
+    """Return the reports on tasks by `key`, computed by several processes if options say so.
 
     These have one progress bar, in the unit; otherwise, each recording has its own.
     """

@@ -43,7 +43,7 @@ def force_at(options: argparse.Namespace, config: NodeParameters) -> float:
 
 
 def recording(options: argparse.Namespace, config: NodeParameters) -> Trajectory | None:
-    """Read the part of the rotor's motion that the options select; None without them and a bag."""
+    """Read the part of a recorded motion that the options select; None without `--bag`."""
     if not options.bag:
         for name in ('rotor_topic', 'joint', 'start_offset', 'duration'):
             if getattr(options, name) is not None:

@@ -27,7 +27,7 @@ _FEW_SENTENCES = 6  # most remarks, or findings after the first, that are not fo
 
 
 def to_html(document: Document) -> str:
-    """Write a report as a self-contained page; figures need plotly, or ModuleNotFoundError."""
+    """Write a report as a self-contained page; ModuleNotFoundError if its figures lack plotly."""
     scripts, body = [], ''.join(_body(document.in_order()))
     if any(section.figure for section in document.sections):
         from plotly.offline import get_plotlyjs  # noqa: PLC0415, an extra

@@ -82,7 +82,7 @@ def _format(path: Path) -> str:
 
 @contextmanager
 def canvas(size: tuple[float, float]) -> Iterator[Any]:
-    """Open a figure of matplotlib in our style, of a size in inches, to encode within."""
+    """Open a figure of matplotlib in our style, of a size in inches, to encode in the block."""
     with chdir(_FOLDER):
         from matplotlib import rc_context  # noqa: PLC0415, an extra
         from matplotlib.figure import Figure  # noqa: PLC0415, an extra

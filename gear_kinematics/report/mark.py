@@ -11,7 +11,7 @@ _SEARCHED = 2**16  # number of bytes at either end of a file that are searched f
 
 
 def is_report(path: Path) -> bool:
-    """Return whether gearkin wrote a file: a report, a figure or an animation; or OSError."""
+    """Return whether gearkin wrote a file; raises OSError if it cannot be read."""
     with path.open('rb') as file:
         start = file.read(_SEARCHED)
         file.seek(max(len(start), path.stat().st_size - _SEARCHED))
