@@ -116,15 +116,7 @@ def _counted(rotor: InputReport) -> Iterator[Finding]:
             yield Finding(FindingCause[name.upper()], values={'rotor': rotor})
 
 
-_NOTED = (
-    'jumps',
-    'jumped',
-    'velocity_is',
-    'beyond_limits',
-    'overspeed',
-    'of_others',
-    'zero_stamps',
-)
+_NOTED = 'jumps', 'jumped', 'velocity_is', 'beyond_limits', 'overspeed', 'of_others', 'zero_stamps'
 """Fields of `InputReport` that are noted; their causes have the same names."""
 
 CHECKS: Sequence[Callable[[InputReport], Iterator[Finding]]] = (_mostly_rejected, _counted)

@@ -85,8 +85,8 @@ def view_of(
     statuses = tuple(status_entry(s, time.monotonic()) for s in gear.statuses.values())
     percent = _number(_diagnostic(gear, 'preload', 'margin (% of the preload)'))
     margin = None if percent is None else percent / 100.0
-    view = replace(view, values=tuple(values_of(gear)), diagnostics=statuses, margin=margin)
-    view = replace(view, arm=tuple(_angles(gear)))
+    values, arm = tuple(values_of(gear)), tuple(_angles(gear))
+    view = replace(view, values=values, arm=arm, diagnostics=statuses, margin=margin)
     output, parameters = gear.joint(topics.OUTPUT_STATE), gear.parameters
     if state != 'connected' or not (output and parameters):
         return view
