@@ -108,6 +108,11 @@ class VelocityField:
 
     def _add(self, velocities: Array) -> None:
         """Add velocities of messages between readings, NaN for none, with the result of `add`."""
+        if not self._total and len(velocities):
+            total = float(velocities.cumsum()[-1])
+            if not math.isnan(total):  # as nearly always; -0.0 becomes 0.0, as in a sum
+                self._total, self._count = total + 0.0, self._count + len(velocities)
+                return
         given = velocities[~np.isnan(velocities)]
         self._total = float(np.cumsum(np.append(self._total, given))[-1])
         self._count += len(given)

@@ -11,6 +11,7 @@ from gear_kinematics.kinematics import Gear, Mechanism
 from gear_kinematics.kinematics.gear_ratio import tooth_pairs
 from gear_kinematics.statistics.uncertainty import Component, Estimate, jackknife
 from gear_kinematics.validation.causes import FindingCause
+from gear_kinematics.validation.fields import product
 from gear_kinematics.validation.report import Finding
 
 Array = NDArray[np.float64]
@@ -167,7 +168,7 @@ class FactorFit:
         if not usable.all():
             x, y = x[usable], y[usable]
         with np.errstate(over='ignore'):
-            self._sums += (x @ x, x @ y, y @ y)
+            self._sums += (product(x, x), product(x, y), product(y, y))
 
     def factor(self) -> float | None:
         """Return recorded / expected; None if it is 1, or not constant, or for garbage."""

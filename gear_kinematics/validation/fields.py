@@ -15,6 +15,7 @@ from gear_kinematics.wire.cdr import SECOND
 
 Array = NDArray[Any]
 
+_PART = 10_000  # numbers, up to which OpenBLAS computes in one thread
 _MAX_SAMPLES = 2000  # samples of the record, which is halved when there are more
 
 
@@ -74,6 +75,15 @@ class Occurrences:
         self.count += others.count
 
 
+def product(one: Array, other: Array) -> float:
+    """Return the scalar product of vectors, (n,), in parts.
+
+    For longer ones, BLAS starts threads, which wait for each other on a busy machine.
+    """
+    parts = range(0, len(one), _PART)
+    return float(sum(one[k : k + _PART] @ other[k : k + _PART] for k in parts))
+
+
 class FieldSamples(NamedTuple):
     """A field of compared messages."""
 
@@ -107,7 +117,7 @@ class FieldErrors:
         if not len(error):
             return
         self._compared += len(error)
-        self._squares += float(error @ error)
+        self._squares += product(error, error)
         worst = int(np.argmax(error))
         if error[worst] > self._worst.max_error:
             self._worst = replace(

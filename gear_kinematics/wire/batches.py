@@ -287,17 +287,33 @@ def _tables(
             except MalformedMessageError:
                 rows, table = rows[1:], table[1:]
                 continue
+            if _all_alike(table, layout):
+                yield rows, layout, table
+                break
             fixed = np.zeros(layout.fixed[-1][1], np.uint8)
             for span in layout.fixed:
                 fixed[slice(*span)] = 255
-            differing = table[:, : len(fixed)] ^ table[0, : len(fixed)]
-            differing &= fixed
-            if not differing.max():  # faster than `any`
-                yield rows, layout, table
-                break
-            alike = ~differing.any(axis=1)
+            alike = ~((table[:, : len(fixed)] ^ table[0, : len(fixed)]) & fixed).any(axis=1)
             yield rows[alike], layout, table[alike]
             rows, table = rows[~alike], table[~alike]
+
+
+def _all_alike(table: Array, layout: MessageLayout) -> bool:
+    """Whether messages have the layout of the first one, and the same padding between strings."""
+    spans = [layout.fixed[0]]
+    for start, end in layout.fixed[1:]:
+        before, last = spans[-1]
+        if start == last + -last % 4:
+            spans[-1] = before, end
+        else:
+            spans.append((start, end))
+    for start, end in spans:
+        part = table[:, start:end]
+        if end - start in {2, 4}:
+            part = part.view(f'u{end - start}')  # one comparison for each message
+        if not (part == part[0]).all():
+            return False
+    return True
 
 
 def _stamps(table: Array, layout: MessageLayout) -> tuple[Array, Array]:
