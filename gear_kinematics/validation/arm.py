@@ -125,8 +125,8 @@ class ArmValidator:
     def __init__(self, validators: Sequence[Validator]) -> None:
         self._validators = validators
         self.topics = {topic for each in validators for topic in each.topics}
-        """Names of all topics, among them '' for those that are not recorded."""
-        self._rotor = validators[0].topics[0]
+        """Names of all topics."""
+        self._rotor = validators[0].given.rotor
         self._messages = 0
         joints: defaultdict[str, dict[bytes, int]] = defaultdict(dict)
         needed: defaultdict[str, set[int]] = defaultdict(set)

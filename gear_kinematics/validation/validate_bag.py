@@ -15,7 +15,6 @@ from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.bag.roles import (
     Topics,
     find_encoder_topic,
-    find_in_namespace,
     find_topics,
     in_namespace,
     joints_on,
@@ -89,10 +88,7 @@ def validate_bag(
     begun = time.monotonic()
     try:
         with Bag(task.bag) as bag:
-            if task.actuators:
-                report = _judged_arm(task, bag, progress)
-            else:
-                report = _judged(task, bag, progress, play)
+            report = _played(task, bag, progress, play) if play else _judged(task, bag, progress)
     except BagError as error:
         report = unusable(task.bag, str(error), task.config)
     except Exception as error:
@@ -103,109 +99,103 @@ def validate_bag(
     return replace(report, elapsed=time.monotonic() - begun)
 
 
-def _judged(
-    task: Task,
-    bag: Bag,
-    progress: ReportProgress | None,
-    play: Callable[..., Iterable[Message]] | None,
-) -> BagReport:
-    """Validate what is recorded, or what a live node publishes for the recorded rotor states."""
-    joint, known = task.parameters.rotor_joint, isinstance(task.parameters.gear, Mechanism)
+def _judged(task: Task, bag: Bag, progress: ReportProgress | None) -> BagReport:
+    """Validate what is recorded of one gear, or of the actuators of an arm."""
     topics = find_topics(
         bag,
         {'rotor': task.rotor_topic, 'output': task.output_topic, 'poses': task.poses_topic},
-        outputs=not play,
-        poses=known,
-        joints=[joint],
+        poses=not task.actuators and isinstance(task.parameters.gear, Mechanism),
+        joints=[each.parameters.rotor_joint for each in task.actuators or (task,)],
         namespace=task.namespace,
     )
-    encoder = find_encoder_topic(bag, topics.rotor) if task.parameters.absolute else ''
-    found = only_joint(bag, topics.rotor, joint) if task.only_joint and joint else joint
-    task = replace(task, parameters=replace(task.parameters, rotor_joint=found))
-    names: Sequence[str] = ()
-    batches: Iterable[MessagesByTopic]
-    if play:
-        total = count_due(bag, [topics.rotor]) if progress else None
-        messages = play(
-            bag,
-            task.parameters,
-            rotor_topic=topics.rotor,
-            encoder_topic=encoder,
-            progress=lambda sent, _: progress and progress(sent, total),
-        )
-        further = in_namespace(CORRECTED_TOPICS) if task.calibration else {}
-        live = replace(task, strict=True)  # nothing is lost by a recorder here
-        own = Topics() if known else Topics(poses='')
-        validator = Validator(live, own, further, encoder=encoder and f'/{OUTPUT_ENCODER}')
-        lists = in_batches(messages, _BATCH)
-        batches = (MessagesByTopic(validator.topics, messages) for messages in lists)
-    else:
-        judged = *CORRECTED_TOPICS, *(_OF_BODIES if known else ())
-        further = find_in_namespace(bag, judged, topics.output)
-        names = (*topics, *further.values(), *filter(None, [encoder]))
-        if not known:  # poses are not judged, which is said
-            poses = find_in_namespace(bag, [BODY_POSES], topics.output)
-            topics = topics._replace(poses=poses.get(BODY_POSES, ''))
-        validator = Validator(task, topics, further, encoder=encoder)
-        batches = bag.by_topic(names, progress)
-    proof = Independent(task, Topics() if play else topics) if task.independent else None
+    own, taken = (task, ()) if task.actuators else _of_only_joint(task, bag, topics.rotor)
+    tasks = task.actuators or (own,)
+    validators = [_validator(each, bag, topics) for each in tasks]
+    arm = ArmValidator(validators) if task.actuators else None
+    known = {topic for each in validators for topic in each.topics}
+    judged = sorted(known.difference(each.unjudged for each in validators))
+    batches: Iterable[MessagesByTopic] = bag.by_topic(judged, progress)
+    proofs = [Independent(v.task, v.given) if task.independent else None for v in validators]
+    for proof in filter(None, proofs):
+        batches = _seen(proof, batches)
+    damage = None
+    try:
+        (arm or validators[0]).feed(batches)
+    except BagError as error:
+        damage = str(error)
+    lost = _recorded_losses(bag)
+    reports = arm.reports(damage, lost) if arm else [validators[0].report(damage, lost)]
+    reports = [
+        _explained(with_proof(report, proof), each, bag, topics)
+        for report, proof, each in zip(reports, proofs, tasks, strict=True)
+    ]
+    report = arm.report(task, reports) if arm else reports[0]
+    report = replace(report, findings=(*taken, *report.findings))
+    actuators = [each.parameters.actuator for each in tasks]
+    left_out = _not_compared(bag, topics, known, actuators)
+    return report.adding(*_losses(lost, judged), *left_out)
+
+
+def _validator(task: Task, bag: Bag, topics: Topics) -> Validator:
+    """Prepare the validation of a gear by what is recorded of it."""
+    parameters = task.parameters
+    bodies = _OF_BODIES if isinstance(parameters.gear, Mechanism) else ()
+    namespace, _, _ = topics.output.rpartition('/')
+    names = {
+        name: f'{namespace}/{topic_of(parameters.actuator, name)}'
+        for name in (BODY_POSES, *CORRECTED_TOPICS, *bodies)
+    }
+    further = {n: topic for n, topic in names.items() if bag.topics.get(topic) == TOPICS[n].type}
+    poses = further.pop(BODY_POSES, '')
+    topics = topics._replace(poses=topics.poses or task.poses_topic or poses)
+    encoder = find_encoder_topic(bag, topics.rotor) if parameters.absolute else ''
+    return Validator(task, topics, further, encoder=encoder)
+
+
+def _of_only_joint(task: Task, bag: Bag, rotor: str) -> tuple[Task, Sequence[Finding]]:
+    """Take the only joint on the rotor's topic, if the task allows it, and say so."""
+    joint = task.parameters.rotor_joint
+    found = only_joint(bag, rotor, joint) if task.only_joint and joint else joint
+    if found == joint:
+        return task, ()
+    taken = Finding(FindingCause.ONLY_JOINT, values={'joint': found, 'topic': rotor})
+    return replace(task, parameters=replace(task.parameters, rotor_joint=found)), (taken,)
+
+
+def _played(
+    task: Task,
+    bag: Bag,
+    progress: ReportProgress | None,
+    play: Callable[..., Iterable[Message]],
+) -> BagReport:
+    """Validate what a live node publishes for the recorded rotor states."""
+    given, joints = {'rotor': task.rotor_topic}, [task.parameters.rotor_joint]
+    rotor, *_ = find_topics(bag, given, outputs=False, joints=joints, namespace=task.namespace)
+    encoder = find_encoder_topic(bag, rotor) if task.parameters.absolute else ''
+    task, taken = _of_only_joint(task, bag, rotor)
+    total = count_due(bag, [rotor]) if progress else None
+    messages = play(
+        bag,
+        task.parameters,
+        rotor_topic=rotor,
+        encoder_topic=encoder,
+        progress=lambda sent, _: progress and progress(sent, total),
+    )
+    further = in_namespace(CORRECTED_TOPICS) if task.calibration else {}
+    topics = Topics() if isinstance(task.parameters.gear, Mechanism) else Topics(poses='')
+    strict = replace(task, strict=True)  # nothing is lost by a recorder here
+    validator = Validator(strict, topics, further, encoder=encoder and f'/{OUTPUT_ENCODER}')
+    proof = Independent(task, Topics()) if task.independent else None
+    batches: Iterable[MessagesByTopic] = (
+        MessagesByTopic(validator.topics, batch) for batch in in_batches(messages, _BATCH)
+    )
     damage = None
     try:
         validator.feed(_seen(proof, batches) if proof else batches)
     except BagError as error:
         damage = str(error)
-    lost = Counter[str]() if play else _recorded_losses(bag)
-    report = with_proof(validator.report(damage, lost), proof).adding(*_losses(lost, names))
-    if found != joint:
-        taken = Finding(FindingCause.ONLY_JOINT, values={'joint': found, 'topic': topics.rotor})
-        report = replace(report, findings=(taken, *report.findings))
-    elif not play:
-        report = _explained(report, task, bag, topics)
-    return report if play else report.adding(*_not_compared(bag, topics, validator.topics))
-
-
-def _judged_arm(task: Task, bag: Bag, progress: ReportProgress | None) -> BagReport:
-    """Validate what is recorded of several actuators."""
-    topics = find_topics(
-        bag,
-        {'rotor': task.rotor_topic, 'output': task.output_topic},
-        poses=False,
-        joints=[each.parameters.rotor_joint for each in task.actuators],
-        namespace=task.namespace,
-    )
-    namespace, _, _ = topics.output.rpartition('/')
-    validators, proofs = list[Validator](), list[Independent | None]()
-    for each in task.actuators:
-        parameters = each.parameters
-        bodies = _OF_BODIES if isinstance(parameters.gear, Mechanism) else ()
-        names = {
-            name: f'{namespace}/{topic_of(parameters.actuator, name)}'
-            for name in (BODY_POSES, *CORRECTED_TOPICS, *bodies)
-        }
-        own = {n: topic for n, topic in names.items() if bag.topics.get(topic) == TOPICS[n].type}
-        of = topics._replace(poses=each.poses_topic or own.pop(BODY_POSES, ''))
-        encoder = find_encoder_topic(bag, topics.rotor) if parameters.absolute else ''
-        validators.append(Validator(each, of, own, encoder=encoder))
-        proofs.append(Independent(each, of) if task.independent else None)
-    arm, damage = ArmValidator(validators), None
-    recorded = sorted(arm.topics - {''})
-    batches: Iterable[MessagesByTopic] = bag.by_topic(recorded, progress)
-    for proof in filter(None, proofs):
-        batches = _seen(proof, batches)
-    try:
-        arm.feed(batches)
-    except BagError as error:
-        damage = str(error)
-    lost = _recorded_losses(bag)
-    reports = [
-        _explained(with_proof(report, proof), each, bag, topics)
-        for report, proof, each in zip(
-            arm.reports(damage, lost), proofs, task.actuators, strict=True
-        )
-    ]
-    actuators = [each.parameters.actuator for each in task.actuators]
-    left_out = _not_compared(bag, topics, recorded, *actuators)
-    return arm.report(task, reports).adding(*_losses(lost, recorded), *left_out)
+    report = with_proof(validator.report(damage), proof)
+    return replace(report, findings=(*taken, *report.findings))
 
 
 def _explained(report: BagReport, task: Task, bag: Bag, topics: Topics) -> BagReport:
@@ -231,9 +221,9 @@ def _losses(lost: Counter[str], topics: Iterable[str]) -> Iterator[Finding]:
 
 
 def _not_compared(
-    bag: Bag, topics: Topics, compared: Collection[str], *actuators: str
+    bag: Bag, topics: Topics, known: Collection[str], actuators: Iterable[str]
 ) -> Iterator[Finding]:
-    """Yield which recorded topics of the node are not compared."""
+    """Yield which recorded topics of the node are not compared, of which nothing else is said."""
     names = {
         topic_of(actuator, name): topic.type
         for actuator in ('', *actuators)
@@ -242,7 +232,7 @@ def _not_compared(
     }
     own = zip(in_namespace(names, topics.output).values(), names.values(), strict=True)
     recorded = (topic for topic, kind in own if bag.topics.get(topic) == kind)
-    if left := dict.fromkeys(base_name(topic) for topic in recorded if topic not in compared):
+    if left := dict.fromkeys(base_name(topic) for topic in recorded if topic not in known):
         yield Finding(FindingCause.NOT_COMPARED, values={'topics': list(left)})
 
 

@@ -56,9 +56,11 @@ class Validator:
         """
         self.task = task
         self._parameters = parameters = task.parameters
-        self._topics, self._further, self._encoder = topics, further, encoder
-        self.topics = *topics, *further.values(), encoder
-        """Names of all topics that it takes; empty ones are not recorded."""
+        self.given = topics
+        """Names of the topics of the rotor, the output and the poses; '' if not recorded."""
+        self._further, self._encoder = further, encoder
+        self.topics = {*topics, *further.values(), encoder} - {''}
+        """Names of all topics that may be in the messages."""
         self._corrected = [name for topic, name in further.items() if topic in CORRECTED]
         self._gear = gear = parameters.gear
         self._state = GearState(parameters, task.calibration)
@@ -79,6 +81,8 @@ class Validator:
         if isinstance(gear, Mechanism) and topics.poses:
             frame = parameters.frame_prefix + _FRAME
             self.poses = BodyPoses(topics.poses, frame, gear, self._expectation)
+        self.unjudged = '' if self.poses else topics.poses
+        """The topic of the poses, if they are recorded and the gear has no bodies."""
         self._why_unjudged = why_unjudged(task.calibration, parameters)
         self._unbroken, self._corrector, self._loads = Unbroken(), None, None
         columns: list[Any] = list(SAMPLES)
@@ -134,13 +138,13 @@ class Validator:
             why = 'the zero of the rotor changes during the recording'
             self._corrector, self._why_unjudged = None, self._why_unjudged or why
         unjudged = () if self._corrector else self._corrected
-        judged = {*self._topics, *self._further.values()}.difference(unjudged)
-        rotor = self._health.report(self._state.input, self._topics.rotor)
+        judged = {*self.given, *self._further.values()}.difference(unjudged)
+        rotor = self._health.report(self._state.input, self.given.rotor)
         topics = tuple(
             output.report()
             for output in self.outputs
             # Without a calibration, the node publishes nothing on the topics of the correction.
-            if (output.matcher.messages or output.name in self._topics) and output.name in judged
+            if (output.matcher.messages or output.name in self.given) and output.name in judged
         )
         if error is None and not rotor.valid:
             error = f'no usable rotor states: {self._state.input.why_rejected or "no messages"}'
@@ -202,7 +206,7 @@ class Validator:
 
     def _add_samples(self, batch: MessagesByTopic) -> Array:
         """Add the rotor's samples to the window, and return their unbroken segments, (n,)."""
-        messages = batch[self._topics.rotor]
+        messages = batch[self.given.rotor]
         field = self._state.input.effort_field
         was_real = field.real
         self.samples = samples = self._state.samples(messages.data, messages.received)
@@ -300,9 +304,9 @@ class Validator:
 
     def _found(self) -> Iterator[Finding]:
         """Yield what the outputs are compared with, what explains their faults, and the rest."""
-        rotor = self._topics.rotor
-        if self._topics.poses and not self.poses:
-            yield Finding(FindingCause.POSES_UNJUDGED, values={'poses': self._topics.poses})
+        rotor = self.given.rotor
+        if self.unjudged:
+            yield Finding(FindingCause.POSES_UNJUDGED, values={'poses': self.unjudged})
         elif isinstance(self._gear, Mechanism) and self.outputs == [self.output]:
             yield Finding(FindingCause.NO_POSES, values={'output': self.output.name})
         yield from self._findings
