@@ -3,6 +3,7 @@
 
 import argparse
 from collections.abc import Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 
@@ -38,12 +39,23 @@ def run(options: argparse.Namespace) -> ExitCode:
     from gear_kinematics.bag.writing import BagWriter  # noqa: PLC0415, an extra
 
     with stopped_by_signals() as stopped, BagWriter(options.out) as bag:
-        with replay_node('') as node:
+        # At the end, a node that was homed would have another zero than its first outputs.
+        answers: dict[str, Future[Mapping[str, NodeParameters]]] = {}
+        with replay_node('') as node, replay_node('') as asking, ThreadPoolExecutor(1) as thread:
+
+            def ask(gear: str) -> None:
+                answers[gear] = thread.submit(parameters_of, asking, gear)
+
             loads = bool(options.config and any(each.preload for each in configs.values()))
-            recorder = Recorder(node, bag, options.node, loads=loads)
+            found = (lambda _: None) if files else ask
+            recorder = Recorder(node, bag, options.node, loads=loads, found=found)
             show_recording(recorder, Console(), stopped)
             gears = sorted(recorder.gears)
-            files = files or kept(options, {gear: parameters_of(node, gear) for gear in gears})
+            running = {
+                gear: answers[gear].result() or parameters_of(node, gear)
+                for gear in sorted(answers)
+            }
+            files = files or kept(options, running)
         for name, content in files.items():
             bag.add_file(name, content)
         heard = recorder.heard

@@ -1,6 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Records what gear nodes hear and publish, as their topics are named."""
 
+from collections.abc import Callable
 from contextlib import suppress
 from operator import itemgetter
 from typing import TYPE_CHECKING
@@ -28,12 +29,20 @@ class Recorder:
     """Records the topics of gear nodes, also those of drivers that have yet to start."""
 
     def __init__(
-        self, node: Node, bag: 'BagWriter', wanted: str = NODE, *, loads: bool = False
+        self,
+        node: Node,
+        bag: 'BagWriter',
+        wanted: str = NODE,
+        *,
+        loads: bool = False,
+        found: Callable[[str], None] = lambda _: None,
     ) -> None:
         """Record all gear nodes, or the one with a full name, into an open bag.
 
-        The `loads` are recorded only if asked for, as a node computes them for listeners alone.
+        The topics of the loads, which a node computes for listeners alone, need `loads`.
+        `found` is called with the full name of each gear node.
         """
+        self._found = found
         self._left_out = {topics.JOINT_STATES, *(() if loads else topics.LOAD_TOPICS)}
         self.heard: dict[str, Polled] = {}  # the topics on which messages have come
         self.gears: set[str] = set()  # full names of the gear nodes
@@ -50,7 +59,9 @@ class Recorder:
         """Look for topics, and write the messages that have arrived; to be called often."""
         for gear in Graph(self._node).gears:
             if gear == self._wanted or not self._wanted:
-                self.gears.add(gear)
+                if gear not in self.gears:
+                    self.gears.add(gear)
+                    self._found(gear)
                 self._look(*gear.rpartition('/')[::2])
         messages: list[Message] = []
         for topic, (kind, polled) in self._open.items():

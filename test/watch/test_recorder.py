@@ -5,6 +5,7 @@ import argparse
 import contextlib
 import re
 from dataclasses import replace
+from threading import Event
 from types import SimpleNamespace
 from unittest.mock import MagicMock
 
@@ -102,6 +103,30 @@ def test_the_parameters_of_each_node_that_answers_are_kept(tmp_path):
     (path := tmp_path / 'actuator.yaml').write_bytes(files.pop('actuator.yaml'))
     assert not files
     assert {name: NodeParameters.load(path, name).gear_ratio for name in ratios} == ratios
+
+
+def test_a_node_that_is_homed_meanwhile_is_recorded_with_its_first_zero(tmp_path, monkeypatch):
+    default, zeros, asked = NodeParameters.load(default_config()), [0.0], Event()
+
+    def answer(_node, _name):
+        found = {'': replace(default, rotor_zero=zeros[-1])}
+        asked.set()
+        return found
+
+    def show(recorder, *_):
+        recorder.poll()
+        assert asked.wait(10.0)
+        zeros.append(1.5)  # rad, by ~/home
+        recorder.inputs.add(MOTOR)
+        recorder.heard[MOTOR] = SimpleNamespace(count=1, mean_rate=0.0, lost=0)
+
+    monkeypatch.setattr(module, 'Graph', lambda _: SimpleNamespace(gears=['/gear']))
+    monkeypatch.setattr(Recorder, '_look', lambda *_: None)
+    monkeypatch.setattr(gear, 'parameters_of', answer)
+    monkeypatch.setattr('gear_kinematics.watch.text.show_recording', show)
+    monkeypatch.setattr('gear_kinematics.ros.live.replay_node', lambda _: contextlib.nullcontext())
+    assert main(['record', str(tmp_path / 'monday')]) == 0
+    assert NodeParameters.load(tmp_path / 'monday' / 'actuator.yaml').rotor_zero == 0.0
 
 
 def test_a_node_that_has_ended_is_not_asked_for_its_parameters(monkeypatch):
