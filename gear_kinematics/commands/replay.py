@@ -27,6 +27,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     playing.add_argument(
         '--no-wait', action='store_true', help='do not wait for a subscriber before the start'
     )
+    arguments.add_config(
+        parser, default='the topic is found by type and name alone', actuator=arguments.ALL
+    )
     arguments.group(parser, 'output').add_argument(
         '--as',
         dest='published',
@@ -73,9 +76,13 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _topic(bag: Bag, options: argparse.Namespace) -> str:
-    """Return the rotor's topic, which must have the given joint if there is one."""
-    topic = find_rotor_topic(bag, options.rotor_topic, options.joint or '')
-    if options.joint and options.joint not in (joints := joints_on(bag, [topic])[topic]):
-        hint = among(options.joint, joints)
-        raise ValueError(f'{bag.path}: {topic}: no joint {options.joint!r} in it{hint}')
+    """Return the rotor's topic, which must have a given joint, or one of the parameters'."""
+    configs = arguments.load_configs(options).values() if options.config else ()
+    wanted = [each.rotor_joint for each in configs if each.rotor_joint]
+    wanted = wanted or [options.joint] * bool(options.joint)
+    topic = find_rotor_topic(bag, options.rotor_topic, *wanted)
+    joints = joints_on(bag, [topic])[topic]
+    if wanted and not {*wanted}.intersection(joints):
+        hint = among(wanted[0], joints)
+        raise ValueError(f'{bag.path}: {topic}: no joint {wanted[0]!r} in it{hint}')
     return topic

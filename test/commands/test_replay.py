@@ -4,7 +4,13 @@
 import re
 
 import pytest
+from arm_recordings import RATIOS, config
 from blocked_bags import gearkin, refusal
+from live import rotor_bytes
+from shipped_bags import JOINT_STATE, write_bag
+
+from gear_kinematics.commands.cli import main
+from gear_kinematics.ros.replay import Played
 
 SAMPLES = 300
 
@@ -31,3 +37,23 @@ def test_a_replay_that_cannot_be_done_gets_one_line_and_code_2(
 ):
     monkeypatch.chdir(bags)
     assert cause in refusal('replay', '--no-wait', *arguments)
+
+
+def test_the_file_of_an_arm_finds_the_topic_of_its_rotors(tmp_path, monkeypatch):
+    states = {'/arm/motors': ['shoulder', 'elbow'], '/hand/motors': ['thumb', 'finger']}
+    messages = [(topic, 1, rotor_bytes(1, names, [0.0, 0.0])) for topic, names in states.items()]
+    bag = write_bag(tmp_path / 'bag', messages, dict.fromkeys(states, JOINT_STATE))
+    arguments = ['replay', str(bag), '--no-wait', '--config']
+    played = []
+
+    def play(_bag, topic, *_, **__):
+        played.append(topic)
+        return Played()
+
+    monkeypatch.setattr('gear_kinematics.ros.replay.play', play)
+    assert main([*arguments, str(config(tmp_path / 'arm.yaml'))]) == 0
+    assert played == ['/arm/motors']
+    other = config(
+        tmp_path / 'other.yaml', **{f'{name}.rotor_joint': name.upper() for name in RATIOS}
+    )
+    assert main([*arguments, str(other), '--rotor-topic', '/arm/motors']) == 2
