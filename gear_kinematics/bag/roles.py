@@ -53,10 +53,10 @@ def find_topics(
 ) -> Topics:
     """Find the topics by type and name; those in the namespace of the rotor's topic come first.
 
-    The names of some parts may be given. The rotor's topic is that with most of the `joints`, and
-    the `namespace` of the node, or else of a given output, chooses among several sets of topics.
-    Without `outputs`, only the rotor's topic must exist. Poses that are neither recorded nor given
-    have an empty name.
+    The names of some parts may be given. The rotor's topic is the one with most of the `joints`; of
+    several that are alike, it is the one whose namespace has the outputs. The `namespace` of the
+    node, or else of a given output, chooses among several sets of topics. Without `outputs`, only
+    the rotor's topic must exist. Poses that are neither recorded nor given have an empty name.
 
     Raises:
         BagError: if a topic is missing or ambiguous.
@@ -74,7 +74,7 @@ def find_topics(
     if namespace is None and (output := found.get('output') or found.get('poses')):
         namespace = output.rpartition('/')[0]
     if 'rotor' not in found:
-        found['rotor'] = _find_topic(bag, left, ROTOR_STATE, joints, namespace)
+        found['rotor'] = _find_topic(bag, left, ROTOR_STATE, joints, namespace, outputs=outputs)
         del left[found['rotor']]
     chosen = found['rotor'] if namespace is None else f'{namespace}/{ROTOR_STATE}'
     expected = Topics.in_namespace_of(chosen)._asdict()
@@ -176,6 +176,8 @@ def _find_topic(
     name: str,
     wanted: Collection[str] = (),
     namespace: str | None = None,
+    *,
+    outputs: bool = False,
 ) -> str:
     of_type = _of_type(available, TOPICS[name].type)
     candidates = [topic for topic in of_type if base_name(topic) == name] or [
@@ -190,6 +192,11 @@ def _find_topic(
         count = {topic: len({*wanted}.intersection(there)) for topic, there in joints.items()}
         if most := max(count.values()):
             candidates = [topic for topic in joints if count[topic] == most]
+        if outputs and len(candidates) > 1:
+            # In the root there may be states of anything.
+            spaces = {t.removesuffix(OUTPUT_STATE) for t in of_type} - {'/', *of_type}
+            beside = [t for t in candidates if f'{t.rpartition("/")[0]}/' in spaces]
+            candidates = beside if len(beside) == 1 else candidates
     return _only(bag.path, candidates, name, joints)
 
 

@@ -53,6 +53,13 @@ def bag_with(joint_states: str, pose_arrays: str = '') -> SimpleNamespace:
             {'output': '/old/output_state'},
             Topics('/rotor_state', '/old/output_state', '/body_poses'),
         ),
+        # Two drivers: the one beside the outputs.
+        (
+            '/left/m /right/m /left/output_state',
+            '',
+            {},
+            Topics('/left/m', '/left/output_state', ''),
+        ),
         # Two nodes: those beside the one that is named.
         (
             '/left/rotor_state /left/output_state /right/rotor_state /right/output_state',
@@ -84,6 +91,7 @@ NO_POSES += 'there are: '
 WHICH_OUTPUT = 'which topic is output_state? /left/output_state, /output_state; name it with '
 WHICH_OUTPUT += '--output-topic, or its node with --node'
 WHICH_ROTOR = 'which topic is rotor_state? /left/rotor_state, /right/rotor_state; name it with '
+WHICH_ROOT = 'which topic is rotor_state? /a/m, /m; name it with '
 BOTH = '/rotor_state /output_state'
 LEFT = '/output_state, /rotor_state, /body_poses, /rosout'
 
@@ -96,6 +104,7 @@ LEFT = '/output_state, /rotor_state, /body_poses, /rosout'
         ('/arm/m /left/output_state /output_state', '/p', {}, WHICH_OUTPUT),
         ('/left/rotor_state /right/rotor_state /o', '/p', {}, f'{WHICH_ROTOR}--rotor-topic'),
         ('/b /a', '/p', {}, 'which topic is rotor_state? /a, /b; name it with --rotor-topic'),
+        ('/m /a/m /output_state', '/p', {}, f'{WHICH_ROOT}--rotor-topic'),
         (BOTH, '/body_poses', {'rotor': '/motor'}, NO_MOTOR + LEFT),
         (BOTH, '/body_poses', {'rotor': '/rotor_stat'}, NEARLY + LEFT),
         (
