@@ -20,11 +20,14 @@ import numpy as np
 from gear_kinematics.bag import MessagesByTopic
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.kinematics import Mechanism, matrix_method
+from gear_kinematics.validation.independent_bodies import ERRORS_OF, own_joints
 from gear_kinematics.validation.task import Task
 
-_KEPT = 20_000  # inputs, outputs and poses that wait for each other
+_KEPT = 100_000  # inputs, outputs, poses and joints that wait for each other
 _UNITS = {'position': 'rad', 'velocity': 'rad/s', 'effort': 'N·m'}
 _UNITS |= {'position of bodies': 'm', 'orientation of bodies': 'rad'}
+_UNITS |= {'position of joints': 'rad', 'slide of joints': 'm'}
+_UNITS |= {'velocity of joints': 'rad/s', 'slide velocity of joints': 'm/s'}
 _State = tuple[int, float, float, float]  # stamp, ns, position, velocity, effort; NaN for absent
 
 
@@ -32,10 +35,10 @@ _State = tuple[int, float, float, float]  # stamp, ns, position, velocity, effor
 class IndependentReport:
     """The result of the independent comparison."""
 
-    compared: int  # messages of the output and of the poses whose input is there
+    compared: int  # messages of the output, the poses and the joints whose input is there
     not_compared: int
     turns_taken: int  # how often the turns, or another zero, were taken from the outputs
-    errors: dict[str, float]  # greatest errors by field, in rad, rad/s, N·m and m
+    errors: dict[str, float]  # greatest errors by field, in rad, rad/s, N·m, m, m/s
     first_wrong: int | None
     passed: bool
 
@@ -75,11 +78,14 @@ class _Cdr:
         (count,) = self._take('I')
         return self._take('d', size * count) if count else ()
 
+    def joints(self) -> tuple[list[str], list[tuple[float, ...]]]:
+        """Read the names and the arrays of a JointState."""
+        return [self._text() for _ in range(self._take('I')[0])], [self.array() for _ in range(3)]
+
     def joint(self, name: str) -> _State:
         """Read a JointState, and select a joint by name, by index, or '' as the only one."""
-        names = [self._text() for _ in range(self._take('I')[0])]
+        names, arrays = self.joints()
         index = names.index(name) if name in names else int(name or len(names) - 1)
-        arrays = [self.array() for _ in range(3)]
         position, *others = (a[index] if index < len(a) else math.nan for a in arrays)
         velocity, effort = (value if math.isfinite(value) else math.nan for value in others)
         return self.stamp, position, velocity, effort
@@ -88,26 +94,33 @@ class _Cdr:
 class Independent:
     """Compares outputs with what their inputs mean, in one pass over a recording."""
 
-    def __init__(self, task: Task, topics: Topics) -> None:
-        """Prepare for a recording; where the task is strict, outputs of another zero are wrong."""
+    def __init__(self, task: Task, topics: Topics, joint_states: str = '') -> None:
+        """Prepare for a recording; where the task is strict, outputs of another zero are wrong.
+
+        `joint_states` is the topic of the joints of the mechanism, if recorded.
+        """
         self._parameters = parameters = task.parameters
-        self._topics, self._strict = topics, task.strict
+        self._topics, self._joint_states, self._strict = topics, joint_states, task.strict
         self._ratio, self._direction = parameters.gear.gear_ratio, parameters.rotor_direction
         self._joint = parameters.output_name if parameters.actuator else ''  # the only one
-        self._limits = {name: task.tolerances.of(unit) for name, unit in _UNITS.items()}
+        units = _UNITS | {'slide velocity of joints': 'rad/s'}  # with the tolerance of velocities
+        self._limits = {name: task.tolerances.of(unit) for name, unit in units.items()}
         self._errors: dict[str, float] = {}
         self._wrong: list[int] = []
         self._inputs: dict[int, list[_State]] = defaultdict(list)
-        self._angles: dict[int, float] = {}  # of the rotor, rad, by the stamps of outputs
-        self._outputs, self._poses = list[_State](), list[tuple[int, Any]]()
+        self._motions: dict[int, tuple[float, float]] = {}
+        """Angle and velocity of the rotor, rad and rad/s, by the stamps of outputs."""
+        self._outputs = list[_State]()
+        self._bodies: dict[str, list[tuple[int, Any]]] = {topics.poses: [], joint_states: []}
         self._last: tuple[int, float] | None = None  # stamp and position of the last output
         self._offset: float | None = None  # rad, from positions to rotor angles
         self._given = self._compared = self._taken = 0
 
     def take(self, messages: MessagesByTopic) -> None:
         """Take the next messages of each topic, in the order of their reception."""
-        for topic, data in ((of, data) for of in self._topics for data in messages[of].data):
-            self._given += topic in (self._topics.output, self._topics.poses)
+        topics = dict.fromkeys((*self._topics, self._joint_states))
+        for topic, data in ((of, data) for of in topics for data in messages[of].data):
+            self._given += topic != self._topics.rotor
             with suppress(ValueError, IndexError, struct.error):  # it cannot be decoded
                 cdr = _Cdr(data)
                 if topic == self._topics.rotor:
@@ -115,10 +128,14 @@ class Independent:
                 elif topic == self._topics.output:
                     self._outputs.append(cdr.joint(self._joint))
                 elif topic == self._topics.poses:
-                    self._poses.append((cdr.stamp, cdr.array(7)))
+                    self._bodies[topic].append((cdr.stamp, cdr.array(7)))
+                else:
+                    joints = own_joints(self._parameters, *cdr.joints())
+                    self._bodies[topic].append((cdr.stamp, joints))
         self._compare()
-        self._outputs, self._poses = self._outputs[-_KEPT:], self._poses[-_KEPT:]
-        for kept in (self._inputs, self._angles):
+        self._outputs = self._outputs[-_KEPT:]
+        self._bodies = {topic: kept[-_KEPT:] for topic, kept in self._bodies.items()}
+        for kept in (self._inputs, self._motions):
             for stamp in list(kept)[:-_KEPT]:
                 del kept[stamp]
 
@@ -129,16 +146,16 @@ class Independent:
         return IndependentReport(*counts, self._errors, first, count > 0 and first is None)
 
     def _compare(self) -> None:
-        """Compare the outputs and poses whose inputs have arrived."""
+        """Compare the outputs, poses and joints whose inputs have arrived."""
         known = [each for each in self._outputs if each[0] in self._inputs]
         self._outputs = [each for each in self._outputs if each[0] not in self._inputs]
         inputs = (self._inputs[stamp] for stamp, *_ in known)
         rows = [each.pop(0) if len(each) > 1 else each[0] for each in inputs]
         angles = [self._angle(*pair) for pair in zip(rows, known, strict=True)]
         stamps = [stamp for stamp, *_ in known]
-        self._angles.update(zip(stamps, angles, strict=True))
         recorded, given = (np.reshape([each[1:] for each in x], (-1, 3)) for x in (known, rows))
         rate = self._direction * given[:, 1]
+        self._motions |= zip(stamps, zip(angles, rate.tolist(), strict=True), strict=True)
         expected = [np.array(angles) / float(self._ratio), rate / float(self._ratio)]
         gear = self._parameters.gear
         if isinstance(gear, Mechanism):
@@ -149,10 +166,14 @@ class Independent:
         for k, name in enumerate(('position', 'velocity', 'effort')):
             withheld = np.isnan(recorded[:, k]) & (k > 0)
             self._note(name, stamps, np.where(withheld, 0.0, np.abs(recorded[:, k] - expected[k])))
-        poses = [each for each in self._poses if each[0] in self._angles]
-        self._poses = [each for each in self._poses if each[0] not in self._angles]
-        if isinstance(gear, Mechanism) and poses:
-            self._compare_poses(gear, *zip(*poses, strict=True))
+        for topic, waiting in self._bodies.items():
+            found = [each for each in waiting if each[0] in self._motions]
+            waiting[:] = [each for each in waiting if each[0] not in self._motions]
+            if isinstance(gear, Mechanism) and found:
+                motions = np.transpose([self._motions[stamp] for stamp, _ in found])
+                errors_of = ERRORS_OF['poses' if topic == self._topics.poses else 'joints']
+                for name, errors in errors_of(gear, motions, [each for _, each in found]).items():
+                    self._note(name, [stamp for stamp, _ in found], errors)
 
     def _angle(self, given: _State, output: _State) -> float:
         """Return the rotor angle of an input, whose turns or zero may come from the output."""
@@ -171,21 +192,6 @@ class Independent:
             self._offset = whole if self._strict or abs(missing - whole) <= known else missing
             self._taken += self._offset != 0.0
         return angle + self._offset
-
-    def _compare_poses(self, gear: Mechanism, stamps: Sequence[int], rows: Iterable[Any]) -> None:
-        state = matrix_method.solve(gear, [self._angles[stamp] for stamp in stamps])
-        centres = np.concatenate([state.satellite_centre, state.oldham_centre], axis=1)
-        bodies, axial = centres.shape[1], [each.axial_position for each in gear.branches] * 2
-        fit = [row if len(row) == 7 * bodies else (math.nan,) * 7 * bodies for row in rows]
-        recorded = np.reshape(fit, (-1, bodies, 7))
-        apart = np.hypot(*np.moveaxis(recorded[..., :2] - centres, -1, 0))
-        apart = np.hypot(apart, recorded[..., 2] - axial)
-        x, y, z, w = np.moveaxis(recorded[..., 3:], -1, 0)
-        turned = 2.0 * np.arctan2(z, w) - state.output_angle[:, np.newaxis]
-        turned -= math.tau * np.round(turned / math.tau)
-        turned = np.hypot(turned, 2.0 * np.hypot(x, y)) + np.abs(np.hypot(z, w) - 1.0)
-        self._note('position of bodies', stamps, apart.max(axis=1))
-        self._note('orientation of bodies', stamps, turned.max(axis=1))
 
     def _note(self, name: str, stamps: Sequence[int], errors: Any) -> None:
         errors = np.where(np.isnan(errors), math.inf, errors)

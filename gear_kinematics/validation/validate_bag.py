@@ -115,7 +115,10 @@ def _judged(task: Task, bag: Bag, progress: ReportProgress | None) -> BagReport:
     known = {topic for each in validators for topic in each.topics}
     judged = sorted(known.difference(each.unjudged for each in validators))
     batches: Iterable[MessagesByTopic] = bag.by_topic(judged, progress)
-    proofs = [Independent(v.task, v.given) if task.independent else None for v in validators]
+    proofs = [
+        Independent(v.task, v.given, v.further.get(JOINT_STATES, '')) if task.independent else None
+        for v in validators
+    ]
     for proof in filter(None, proofs):
         batches = _seen(proof, batches)
     damage = None

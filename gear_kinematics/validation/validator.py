@@ -58,7 +58,7 @@ class Validator:
         self._parameters = parameters = task.parameters
         self.given = topics
         """Names of the topics of the rotor, the output and the poses; '' if not recorded."""
-        self._further, self._encoder = further, encoder
+        self.further, self._encoder = further, encoder
         self.topics = {*topics, *further.values(), encoder} - {''}
         """Names of all topics that may be in the messages."""
         self._corrected = [name for topic, name in further.items() if topic in CORRECTED]
@@ -138,7 +138,7 @@ class Validator:
             why = 'the zero of the rotor changes during the recording'
             self._corrector, self._why_unjudged = None, self._why_unjudged or why
         unjudged = () if self._corrector else self._corrected
-        judged = {*self.given, *self._further.values()}.difference(unjudged)
+        judged = {*self.given, *self.further.values()}.difference(unjudged)
         rotor = self._health.report(self._state.input, self.given.rotor)
         topics = tuple(
             output.report()

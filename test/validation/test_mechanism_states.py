@@ -1,6 +1,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """mechanism_joint_states in recordings: the node's pass, and each joint that differs is found."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import replaying
@@ -67,6 +69,34 @@ def test_one_bit_of_any_joint_is_found(name, joint, config):
     assert wrong == [names['oldham' in JOINTS[joint]]]
 
 
+@pytest.mark.parametrize('prefix', ['', 'left_'])
+@pytest.mark.parametrize(
+    ('field', 'joint', 'differing'),
+    [
+        ('position', None, ''),
+        ('position', 'oldham_a', 'slide of joints'),
+        ('velocity', 'output_shaft', 'velocity of joints'),
+    ],
+)
+def test_joints_are_compared_independently(field, joint, differing, prefix, config, tmp_path):
+    def off(message) -> None:
+        if joint and len(values := getattr(message, field)):
+            values[JOINTS.index(joint)] += 1e-6
+
+    own, topics = replace(config, frame_prefix=prefix), [OUTPUT[1:], STATES]
+    rotor = [message for message in read_bag(BAGS / 'driver_faults') if message[0] == ROTOR]
+    messages = [
+        (topic, received, replaying.edited(data, JOINT_STATE, off) if topic == TOPIC else data)
+        for topic, received, data in answered(own, rotor, topics=topics)
+    ]
+    bag = write_bag(tmp_path / 'bag', messages, dict.fromkeys((ROTOR, OUTPUT, TOPIC), JOINT_STATE))
+    found = validate(bag, config, independent=True).independent
+    assert found.passed == (not differing)
+    assert found.compared > 2000
+    beyond = [name for name, error in found.errors.items() if error > 1e-12]
+    assert beyond == [differing] * bool(differing)
+
+
 def arm(path, edit=lambda _, data: data):
     """A recording of an arm of two mechanisms and a ratio, with two topics of other kinds."""
     actuators = {'shoulder.gear_ratio': '', 'elbow.gear_ratio': '', 'elbow.ring_teeth': 90}
@@ -83,7 +113,8 @@ def arm(path, edit=lambda _, data: data):
     types = dict.fromkeys((ROTOR, OUTPUT, TOPIC, ERRORS), JOINT_STATE) | {
         MARKERS: 'visualization_msgs/msg/MarkerArray'
     }
-    return validate(write_bag(path / 'bag', messages, types), path / 'arm.yaml')
+    bag = write_bag(path / 'bag', messages, types)
+    return validate(bag, path / 'arm.yaml', independent=True)
 
 
 def test_joints_of_an_arm_are_compared_each_and_other_topics_are_named(tmp_path):
@@ -95,6 +126,8 @@ def test_joints_of_an_arm_are_compared_each_and_other_topics_are_named(tmp_path)
         for each in report.actuators
     ]
     assert compared == [[40], [40], []]
+    assert [each.independent.compared for each in report.actuators] == [80, 80, 40]
+    assert all(max(each.independent.errors.values()) < 1e-13 for each in report.actuators)
 
 
 @pytest.mark.parametrize('edit', ['a bit', 'no joint'])
@@ -115,3 +148,5 @@ def test_a_fault_of_one_joint_of_an_arm_is_that_of_its_actuator(edit, tmp_path):
     text = explain(report.actuators[1])
     assert TOPIC in text
     assert ('slide velocity: error' if edit == 'a bit' else 'the joint is missing') in text
+    passed = [each.independent.passed for each in report.actuators]
+    assert passed == [True, edit == 'no joint', True]
