@@ -53,10 +53,10 @@ def find_topics(
 ) -> Topics:
     """Find the topics by type and name; those in the namespace of the rotor's topic come first.
 
-    The names of some parts may be given. The rotor's topic is the one with most of the `joints`; of
-    several that are alike, it is the one whose namespace has the outputs. The `namespace` of the
-    node, or else of a given output, chooses among several sets of topics. Without `outputs`, only
-    the rotor's topic must exist. Poses that are neither recorded nor given have an empty name.
+    The names of some parts may be given. The rotor's topic is the one with most of the `joints`;
+    of several that are alike, it is the one whose namespace has the outputs. The `namespace` of
+    the node, or else of a given output, chooses among several sets of topics. Without `outputs`,
+    only the rotor's topic must exist. Poses neither recorded nor given have an empty name.
 
     Raises:
         BagError: if a topic is missing or ambiguous.

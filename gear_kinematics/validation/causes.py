@@ -67,6 +67,11 @@ class FindingCause(Enum):
     ENCODER_UNKNOWN = (
         'the reference is not judged: no recorded output_encoder determines the turns'
     )
+    ERRORS_AGREE = 'as the encoders of rotor and output have it: {messages}'
+    ERRORS_DIFFER = (
+        'error {error} rad against the encoders of rotor and output exceeds the tolerance of the '
+        'angle, {tolerance} rad: {messages}' + _FIRST
+    )
     # The rotor's topic
     JUMPS = (
         '{rotor.jumps} gaps of {rotor.topic} could hide a turn of the rotor: after each, its '

@@ -10,7 +10,7 @@ are kept up to 10⁷ rad of the rotor. Inputs without an output are not judged.
 import math
 import struct
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
@@ -23,7 +23,7 @@ from gear_kinematics.kinematics import Mechanism, matrix_method
 from gear_kinematics.validation.independent_bodies import ERRORS_OF, own_joints
 from gear_kinematics.validation.task import Task
 
-_KEPT = 100_000  # inputs, outputs, poses and joints that wait for each other
+_KEPT = 20_000  # inputs, outputs, poses and joints that wait for each other
 _UNITS = {'position': 'rad', 'velocity': 'rad/s', 'effort': 'N·m'}
 _UNITS |= {'position of bodies': 'm', 'orientation of bodies': 'rad'}
 _UNITS |= {'position of joints': 'rad', 'slide of joints': 'm'}

@@ -15,6 +15,7 @@ from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.bag.roles import (
     Topics,
     find_encoder_topic,
+    find_in_namespace,
     find_topics,
     in_namespace,
     joints_on,
@@ -40,6 +41,7 @@ from gear_kinematics.wire.topics import (
     LOAD_TOPICS,
     OUTPUT_ENCODER,
     TOPICS,
+    TRANSMISSION_ERROR,
     base_name,
     topic_of,
 )
@@ -134,6 +136,8 @@ def _judged(task: Task, bag: Bag, progress: ReportProgress | None) -> BagReport:
     ]
     report = arm.report(task, reports) if arm else reports[0]
     report = replace(report, findings=(*taken, *report.findings))
+    if not any(each.errors and each.errors.compared for each in validators):
+        known -= {each.further.get(TRANSMISSION_ERROR, '') for each in validators}
     actuators = [each.parameters.actuator for each in tasks]
     left_out = _not_compared(bag, topics, known, actuators)
     return report.adding(*_losses(lost, judged), *left_out)
@@ -146,12 +150,14 @@ def _validator(task: Task, bag: Bag, topics: Topics) -> Validator:
     namespace, _, _ = topics.output.rpartition('/')
     names = {
         name: f'{namespace}/{topic_of(parameters.actuator, name)}'
-        for name in (BODY_POSES, *CORRECTED_TOPICS, *bodies)
+        for name in (BODY_POSES, *CORRECTED_TOPICS, TRANSMISSION_ERROR, *bodies)
     }
     further = {n: topic for n, topic in names.items() if bag.topics.get(topic) == TOPICS[n].type}
     poses = further.pop(BODY_POSES, '')
     topics = topics._replace(poses=topics.poses or task.poses_topic or poses)
     encoder = find_encoder_topic(bag, topics.rotor) if parameters.absolute else ''
+    if TRANSMISSION_ERROR in further and not encoder:
+        encoder = find_in_namespace(bag, [OUTPUT_ENCODER], topics.output).get(OUTPUT_ENCODER, '')
     return Validator(task, topics, further, encoder=encoder)
 
 

@@ -22,6 +22,7 @@ from gear_kinematics.validation import input_health
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.corrected_topics import CORRECTED, Unbroken, why_unjudged
 from gear_kinematics.validation.count_changes import CountChanges, first_number
+from gear_kinematics.validation.encoder_errors import EncoderErrors
 from gear_kinematics.validation.fields import Array, Window
 from gear_kinematics.validation.load_topics import LoadTopic
 from gear_kinematics.validation.matching import SAMPLES, WINDOW, Expectation, OutputTopic
@@ -31,7 +32,7 @@ from gear_kinematics.validation.report import BagReport, Finding
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.turn_references import TurnReferences
 from gear_kinematics.wire.cdr import MalformedMessageError
-from gear_kinematics.wire.topics import JOINT_STATES, LOAD_TOPICS
+from gear_kinematics.wire.topics import JOINT_STATES, LOAD_TOPICS, TRANSMISSION_ERROR
 
 _FRAME = 'stator'
 _TOPICS = Topics()
@@ -50,9 +51,9 @@ class Validator:
     ) -> None:
         """Prepare for a recording; raises ValueError if the parameters describe no gear.
 
-        `further` has the recorded ones of CORRECTED_TOPICS, LOAD_TOPICS and JOINT_STATES with
-        their names in the recording, and `encoder` is the topic of an encoder at the output that
-        references the rotor. The names of other topics that are not recorded are empty.
+        `further` has other recorded topics by their keys in TOPICS, and `encoder` is the topic of
+        an encoder at the output, if recorded. Names of other topics that are not recorded are
+        empty.
         """
         self.task = task
         self._parameters = parameters = task.parameters
@@ -84,6 +85,9 @@ class Validator:
         self.unjudged = '' if self.poses else topics.poses
         """The topic of the poses, if they are recorded and the gear has no bodies."""
         self._why_unjudged = why_unjudged(task.calibration, parameters)
+        errors = further.get(TRANSMISSION_ERROR)
+        self.errors = EncoderErrors(errors, parameters, angle) if encoder and errors else None
+        """Judge of transmission errors, if they and the encoder are recorded."""
         self._unbroken, self._corrector, self._loads = Unbroken(), None, None
         columns: list[Any] = list(SAMPLES)
         if self._corrected and not self._why_unjudged:
@@ -97,7 +101,7 @@ class Validator:
             elif topic == JOINT_STATES and isinstance(gear, Mechanism):
                 names = parameters.joint_names
                 groups.append([MechanismStates(name, names, gear, self._expectation)])
-            elif self._corrector:
+            elif self._corrector and topic in CORRECTED:
                 groups.append([CORRECTED[topic](name, joint, self._expectation)])
         self._groups = []
         """Outputs that are recorded from the same time on: a node publishes the first ones all."""
@@ -236,6 +240,8 @@ class Validator:
         new = Window(columns)
         if self._references and self._encoder:
             self._references.take_encoder(batch[self._encoder])
+        if self.errors:
+            self.errors.take(batch[self._encoder], batch[self.errors.name])
         self._window = self._window.extended(new)
         for output in self.outputs:
             output.matcher.extend(len(new))
@@ -262,9 +268,12 @@ class Validator:
         for group, outputs in self._groups:
             answered = np.array([output.answered(oldest) for output in outputs]) | withheld
             group.update(oldest['received'], oldest['stamp'], answered, self._begun)
+        moved = Window(oldest.columns)
+        self._changes.move(moved)
         if self._references and self._encoder:
-            self._changes.move(oldest)
-            self._references.take_rotor(oldest)
+            self._references.take_rotor(moved)
+        if self.errors:
+            self.errors.take_rotor(oldest, moved, self.output.answered(oldest))
         for output in self.outputs:
             output.matcher.drop(count)
         self._window = self._window.take(slice(count, None))
@@ -313,6 +322,8 @@ class Validator:
         yield from self._changes.notes()
         if self._references:
             yield self._references.finding()
+        if self.errors:
+            yield from self.errors.findings()
         for output in self.outputs:
             yield from output.causes()
         if self._state.input.mostly_rejected and self._state.input.missing_joint:
