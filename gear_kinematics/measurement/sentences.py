@@ -252,6 +252,9 @@ class Observation(Enum):
         '{start:.3f} s' + _NEEDED
     )
     IMPLAUSIBLE = '{answer}; {question}'
+    LOADS_UNKNOWN = (
+        '{answer}; the loads are unknown for {seconds:si} s, the first time from {start:.3f} s on'
+    )
     BRANCH_OUT_OF_MESH = (
         'branch {branch} was out of mesh for {duration:si} s from {start:.3f} s on: {torque:si} '
         'N·m beyond the preload'

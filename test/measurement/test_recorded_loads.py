@@ -150,6 +150,19 @@ def test_effort_that_is_0_throughout_the_motion_tells_no_loads(tmp_path, config,
     assert 'the effort on /rotor_state is 0 throughout the motion' in told.err
 
 
+@pytest.mark.parametrize(
+    ('first', 'count', 'code'), [(8000, 4000, 1), (0, 4000, 1), (16_000, 4000, 1), (8000, 99, 0)]
+)
+def test_no_recording_passes_whose_loads_are_unknown_for_a_time(
+    tmp_path, config, capsys, first, count, code
+):
+    bag = record(tmp_path, overloads=[(first, count, math.nan)])
+    failed, found = report(capsys, bag, '--config', config)
+    assert (failed, found['verdict']) == (code, 'fail' if code else 'pass')
+    assert ('the loads are unknown for 4 s' in found['answer']) == bool(code)
+    assert found['left_out'] == {'effort missing': count}
+
+
 def test_current_in_place_of_a_torque_is_questioned(shared_path, tmp_path, capsys):
     """±1000 mA; a factor of 0.05 N·m/A makes ±0.05 N·m of it, 0.95 at the output."""
     bag, config = shared_path('data/faults/effort_is_current_in_mA.mcap'), tmp_path / 'factor.yaml'

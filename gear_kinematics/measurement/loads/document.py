@@ -27,6 +27,7 @@ from gear_kinematics.report.mechanism import MovingMechanism
 
 _LEVELS = 'greatest force', '99.9 % of the forces are below', 'mean force'
 _MOST_MOMENTS = 10  # number shown in sentences and as links; the JSON has all
+_MOST_UNKNOWN = 0.01  # share of the time: with more of it, a preload cannot be shown to have held
 _FRAMES = 1000  # of the moving mechanism
 _AROUND = 50  # further frames before and after the beginning of each moment
 
@@ -80,14 +81,17 @@ def _report(task: LoadTask, loads: RecordedLoads) -> LoadReport:
     answer, loss = _answer(loads, moments, source), loads.slot_loss(task.slot_friction)
     if question := loads.question:
         answer = Observation.IMPLAUSIBLE(answer=answer, question=question)
-    if preload and (moments or not question):
-        verdict = doc.Verdict.FAIL if moments else doc.Verdict.PASS
+    unknown, start = loads.unknown
+    if gaps := unknown > _MOST_UNKNOWN * loads.time[-1]:
+        answer = Observation.LOADS_UNKNOWN(answer=answer, seconds=unknown, start=start)
+    if preload and (moments or gaps or not question):
+        verdict = doc.Verdict.FAIL if moments or gaps else doc.Verdict.PASS
     name, actuator = printable(task.bag.name), task.parameters.actuator
     section = doc.Section(
         f'{name}: {actuator}' if actuator else name,
         (_table(forces),),
         verdict,
-        tuple(_findings(answer.sentence, moments)),
+        tuple(_findings(answer.sentence, moments, failed=verdict is doc.Verdict.FAIL)),
         tuple(map(str, _remarks(task, loads, loss))),
         doc.Figure((_over_time(loads),), stacked=True),
         _moving(loads, [moment.stamp for moment in moments[:_MOST_MOMENTS]]),
@@ -128,8 +132,8 @@ def _answer(loads: RecordedLoads, moments: Sequence[Moment], source: str) -> Obs
     return Observation.OUT_OF_MESH(**known, count=count, total=total, start=start)
 
 
-def _findings(answer: str, moments: Sequence[Moment]) -> Iterator[doc.Sentence]:
-    yield doc.Sentence('error' if moments else 'finding', answer)
+def _findings(answer: str, moments: Sequence[Moment], *, failed: bool) -> Iterator[doc.Sentence]:
+    yield doc.Sentence('error' if failed else 'finding', answer)
     for moment in moments[:_MOST_MOMENTS]:
         found = Observation.BRANCH_OUT_OF_MESH(
             branch=moment.branch,

@@ -33,6 +33,8 @@ _JOINTS = 'mesh', 'cam', 'slot'
 _BEARING_EXPONENT = 3.0  # of ball bearings, ISO 281:2007, 4; roller bearings last longer
 _STEPS = 64  # levels of the range of a force; cycles within a level are not counted
 _LONGEST_STEP = SECOND  # ns, greatest duration of a sample
+_UNKNOWN, _STEPS_APART = SECOND // 10, 3
+"""Between known loads further apart, ns and usual steps, a branch can have been out of mesh."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +96,8 @@ class RecordedLoads:
     """Damage at which reading ended, if any."""
     taken: str = ''
     """Columns that were read from a table."""
+    unknown: tuple[float, float] = 0.0, 0.0
+    """Time in which the loads are unknown, and its beginning since the first sample, s."""
 
     @cached_property
     def time(self) -> Array:
@@ -185,6 +189,7 @@ def read_loads(task: LoadTask, progress: ReportProgress | None = None) -> Record
     batches: Iterable[TopicMessages]
     stamps: list[Array] = []
     tables: list[Array] = []
+    every: list[Array] = []
     with ExitStack() as opened:
         if is_table(task.bag):
             topic, (table, taken) = task.bag.name, _of_table(task)
@@ -205,6 +210,7 @@ def read_loads(task: LoadTask, progress: ReportProgress | None = None) -> Record
                 for _, mesh, cam, _, _, couple, _ in found.branches:
                     rows += np.hypot(*mesh), np.hypot(*cam), np.abs(couple)
                 known = np.isfinite(found.torque)
+                every.append(samples.stamp)
                 stamps.append(samples.stamp[known])
                 tables.append(np.stack(rows)[:, known])
                 if unknown := np.count_nonzero(~known):
@@ -220,16 +226,27 @@ def read_loads(task: LoadTask, progress: ReportProgress | None = None) -> Record
     angle, torque, *forces = np.concatenate(tables, axis=1)
     names = [f'{kind}_{each.name}' for each in parameters.branches for kind in _JOINTS]
     joints = {'output': np.abs(torque), **dict(zip(names, forces, strict=True))}
+    stamp = np.concatenate(stamps)
     return RecordedLoads(
         parameters,
-        np.concatenate(stamps),
+        stamp,
         angle,
         torque,
         joints,
         dict(gear.input.rejected),
         damage,
         taken,
+        _unknown(stamp, np.concatenate(every)),
     )
+
+
+def _unknown(known: Array, every: Array) -> tuple[float, float]:
+    """Return `RecordedLoads.unknown` by the stamps of known loads and of all samples, ns."""
+    ends = np.concatenate([every[:1], known, every[-1:]])
+    steps = np.diff(ends)
+    apart = steps > max(_UNKNOWN, _STEPS_APART * float(np.median(steps)))
+    total, begins = steps[apart].sum(), ends[:-1][apart]
+    return float(total) / SECOND, float((begins[:1] - known[0]).sum()) / SECOND
 
 
 def _of_table(task: LoadTask) -> tuple[TopicMessages, str]:
