@@ -58,6 +58,11 @@ class Condition(Enum):
     LOSSES_UNKNOWN = OK, 'losses unknown', ''
     VELOCITIES_ARE = WARN, _VELOCITIES, _VELOCITY
     VELOCITIES_UNKNOWN = WARN, _VELOCITIES + ', {factor:.3g} times the slope', _VELOCITY
+    POSITIONS_STAND = (
+        WARN,
+        'the velocities contradict the positions, which stand',
+        'Check whether the encoder is stuck, its cable, and whose velocities the driver sends.',
+    )
     EFFORT_TOO_LARGE = OK, _EFFORT, ''  # said of recordings alone
     BEYOND_LIMITS = (
         WARN,

@@ -81,7 +81,9 @@ class VelocityField:
         """What the velocities seem to be, if they contradict the positions."""
         if not self.contradicts:
             return None
-        if self.finding is VelocityMeaning.UNKNOWN and math.isfinite(self.factor):
+        if math.isinf(self.factor):
+            return Condition.POSITIONS_STAND()
+        if self.finding is VelocityMeaning.UNKNOWN:
             return Condition.VELOCITIES_UNKNOWN(meaning=self.finding, factor=self.factor)
         return Condition.VELOCITIES_ARE(meaning=self.finding)
 
