@@ -67,10 +67,15 @@ class Condition(Enum):
     BEYOND_LIMITS = (
         WARN,
         '{which}',
-        'Raise the limit to what the motor can do, or check that positions are in rad.',
+        'Raise the limit to what the motor can do, or check unit and precision of the positions.',
     )
     BEYOND_SPEED = WARN, '{speed:.4g} rad/s exceed max_rotor_speed', ''
     BEYOND_ACCELERATION = WARN, '{acceleration:.4g} rad/s² exceed max_rotor_acceleration', ''
+    BEYOND_PRECISION = (
+        WARN,
+        'the positions are numbers of single precision, in steps of {angle:.3g} rad so far from 0',
+        '',
+    )
     ZERO_STAMPS = (
         WARN,
         'zero stamps {count}',

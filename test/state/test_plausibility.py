@@ -97,6 +97,21 @@ def complaints(rotor) -> tuple:
     return rotor.rejected, judge.jumped, judge.beyond_limits
 
 
+@pytest.mark.parametrize('unit', [1.0, TURN, math.radians(1.0)])
+@pytest.mark.parametrize('start', [3e5, 3e6, -2e6])
+def test_positions_of_single_precision_are_named_where_they_are_coarse(start, unit):
+    """They have 24 bits: beyond 2^20 units a step is an eighth of a unit or more."""
+    times = np.arange(500) / 500.0
+    angles = start * unit + 100.0 * np.sin(times)
+    single = np.float32(angles / unit).astype(float) * unit
+    step = float(np.spacing(np.float32(abs(start)))) * unit
+    for positions, named in ((single, step > 0.05), (angles, False)):
+        rotor, _ = fed(MULTI, messages(times, positions))
+        coarse = Condition.BEYOND_PRECISION(angle=step)
+        found = rotor.plausibility.beyond_limits
+        assert (found.values['which'] if found else []) == [coarse] * named
+
+
 @pytest.mark.parametrize('kind', KINDS)
 @pytest.mark.parametrize('rate', RATES)
 def test_no_motion_within_the_limits_is_doubted(kind, rate):
