@@ -27,6 +27,7 @@ _STEPS = 12.0  # times the 98 % quantile of steps of the error: beyond the error
 _LEAST_STEP = math.radians(0.25)
 _STAYS = 4  # samples in a row that are no stray reading
 _REVERSAL = 4  # samples around a reversal in which the output may lag
+_DELAY = 0.01  # s between the encoders, by which either may be late
 _MOST_LOST = math.radians(5.0)  # lost motion of a usable gear, at most
 _LIKELY, _TRIED, _MOST_OF = 4.0, 8, 0.6
 """Times that quantile from which on a step may be a slip; number of such steps that are tried;
@@ -76,7 +77,8 @@ def gated(recording: Recording) -> Recording:
     if (rest := float(np.ptp(error - line(rotor)))) < NO_ENCODER:
         fault = Observation.COMPUTED(deviation=rest)
         return replace(recording, faults=(*recording.faults, fault))
-    if not (steps := _steps(error, compared.ideal)):
+    period = float(np.median(np.diff(both.seconds)))
+    if not (steps := _steps(error, compared.ideal, period)):
         return recording
     kept, jumps = _followed(error, rows, steps, compared.period)
     at = np.array(jumps, int)
@@ -130,8 +132,11 @@ def _compared(both: Encoders) -> _Compared | None:
     )
 
 
-def _steps(error: Array, ideal: Array) -> _Steps | None:
-    """Find the steps of the error that no gear can make; None if there are too many."""
+def _steps(error: Array, ideal: Array, period: float) -> _Steps | None:
+    """Find the steps of the error that no gear can make; None if there are too many.
+
+    The error and the ideal output angle, (n,) each, are in rad, a period of samples in s.
+    """
     level, moved = usual(error), np.diff(ideal)
     calm = np.diff(level)
     fastest = float(np.quantile(np.abs(np.diff(usual(ideal))), 0.98))
@@ -144,6 +149,11 @@ def _steps(error: Array, ideal: Array) -> _Steps | None:
     # Lost motion lasts until the next reversal; what comes back at once is a stray reading.
     most = min(1.1 * float(np.max(np.abs(calm), where=lost, initial=0.0)), _MOST_LOST)
     lost = _lost_motion(steps, moved, fastest) & (np.abs(steps) <= most)
+    # With a delay, the output reverses earlier or later, by twice the motion meanwhile.
+    delay = _DELAY / period
+    lost |= _reverses(moved, _REVERSAL + math.ceil(delay)) & (
+        np.abs(steps) <= 2.2 * delay * fastest
+    )
     slipped = _slipped(level, ideal, usually)
     return _Steps(((np.abs(steps) > limit) & ~lost) | slipped, slipped, limit)
 
@@ -176,15 +186,24 @@ def _frozen(still: Array, other: Array) -> NDArray[np.bool_]:
 
 
 def _lost_motion(steps: Array, ideal: Array, fastest: float) -> NDArray[np.bool_]:
-    """Find the steps of the error by which the output lags at a reversal of the rotor."""
-    signs = np.concatenate([np.zeros(_REVERSAL), np.sign(ideal), np.zeros(_REVERSAL)])
-    sums = np.convolve(signs, np.ones(_REVERSAL), 'valid')
-    before, after = sums[: len(ideal)], sums[_REVERSAL : _REVERSAL + len(ideal)]
+    """Find the steps of the error, rad, by which the output lags at a reversal of the rotor."""
     most = np.minimum(np.abs(ideal), fastest)
     lag = -steps * np.sign(ideal)
-    late = before * after <= 0.0
-    lost: NDArray[np.bool_] = late & (lag > 0.0) & (lag <= 1.1 * most)
+    lost: NDArray[np.bool_] = _reverses(ideal, _REVERSAL) & (lag > 0.0) & (lag <= 1.1 * most)
     return lost
+
+
+def _reverses(ideal: Array, around: int) -> NDArray[np.bool_]:
+    """Find steps of the ideal output angle, rad, with a reversal in so many samples around.
+
+    A recording may begin and end with one.
+    """
+    signs = np.concatenate([np.zeros(around), np.sign(ideal), np.zeros(around)])
+    sums = np.convolve(signs, np.ones(around), 'valid')
+    before, after = sums[: len(ideal)], sums[around : around + len(ideal)]
+    reverses: NDArray[np.bool_] = before * after <= 0.0
+    reverses[:around] = reverses[-around:] = True
+    return reverses
 
 
 def _slipped(error: Array, ideal: Array, usually: float) -> NDArray[np.bool_]:

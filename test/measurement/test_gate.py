@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from gear_recordings import Gear, creep, ramps, write_csv
-from simulated_encoders import with_play
+from simulated_encoders import ARC_MINUTE, TURN, Drive, even_strokes, with_play
 
 from gear_kinematics.measurement.answer import Limits, answer
 from gear_kinematics.measurement.calibration import fit
@@ -179,6 +179,25 @@ def test_lost_motion_within_a_sample_is_no_fault(gate):
     ideal = np.radians(2.0 * wave)
     output = ideal + np.radians(0.4) * np.sign(np.gradient(wave))
     before, after = gate(np.column_stack([0.04 * np.arange(1200), -19.0 * ideal, output]))
+    assert after is before
+
+
+@pytest.mark.parametrize(
+    ('bits', 'delay', 'degrees', 'seconds', 'play'),
+    [(8, -0.005, 330, 2.5, 20), (8, 0.005, 60, 2.5, 3)],
+)
+def test_a_delay_of_the_output_is_no_slip_at_a_reversal(gate, bits, delay, degrees, seconds, play):
+    """Strokes at one speed, recorded at 200 Hz: a delay steps by twice the way meanwhile."""
+    drive = Drive(
+        play=play * ARC_MINUTE,
+        errors={1.0: 8.0 * ARC_MINUTE, 19.0: 2.0 * ARC_MINUTE},
+        noise=1e-4,
+        delay=delay,
+        rotor_step=TURN / 2**bits,
+        output_step=TURN / 2**17,
+    )
+    strokes = even_strokes(math.radians(degrees), seconds)
+    before, after = gate(np.column_stack(drive.readings(strokes, 10.0, 200.0)))
     assert after is before
 
 
