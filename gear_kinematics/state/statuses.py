@@ -58,6 +58,11 @@ class Condition(Enum):
     LOSSES_UNKNOWN = OK, 'losses unknown', ''
     VELOCITIES_ARE = WARN, _VELOCITIES, _VELOCITY
     VELOCITIES_UNKNOWN = WARN, _VELOCITIES + ', {factor:.3g} times the slope', _VELOCITY
+    VELOCITIES_LATE = (
+        WARN,
+        'the velocities are {delay:.3f} s late',
+        'Let the driver filter them less, or send them with the position of the same time.',
+    )
     POSITIONS_STAND = (
         WARN,
         'the velocities contradict the positions, which stand',

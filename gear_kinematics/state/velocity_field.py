@@ -27,6 +27,9 @@ _TRAVEL = 3.0  # rad, at least, in a comparison
 _NOISES = 10  # of a reading, at least, in a comparison
 _FEWEST = 10  # turns between readings in a comparison of an unsteady motion
 _ALIGNED = 0.95  # the square of a correlation from which a factor explains the velocities
+_LATE, _EXPLAINED = 0.03, 0.9
+"""s, and the square of a correlation, from which a delay is worth a word. Noise of the positions
+looks like half of `SPAN`, but explains a half."""
 
 
 class VelocityMeaning(StrEnum):
@@ -58,6 +61,8 @@ class VelocityField:
         self.finding = VelocityMeaning.UNDECIDED
         self.factor = math.nan  # ratio of velocities in messages to the slope of positions
         self.contradicts = False  # whether the velocities contradict the positions
+        self.delay = 0.0  # s, by which the velocities are late, if it is too long
+        self._may_be_late = False
         self.decided: int | None = None  # ns, the stamp of the reading that decided first
         self._candidate = VelocityMeaning.UNDECIDED
         self._moved = False  # whether there was a velocity other than 0
@@ -75,12 +80,14 @@ class VelocityField:
     def _begin_block(self) -> None:
         self._turns = 0  # between readings, and what is known of them
         self._path = self._squares = self._velocity_squares = self._products = 0.0
+        # Products of what the velocities differ by and what the speed changed by, as travels.
+        self._late = self._off_squares = self._change_squares = 0.0
 
     @property
     def meaning(self) -> Fact | None:
         """What the velocities seem to be, if they contradict the positions."""
         if not self.contradicts:
-            return None
+            return Condition.VELOCITIES_LATE(delay=self.delay) if self.delay else None
         if math.isinf(self.factor):
             return Condition.POSITIONS_STAND()
         if self.finding is VelocityMeaning.UNKNOWN:
@@ -156,7 +163,15 @@ class VelocityField:
         self._squares += turn * turn
         self._velocity_squares += expected * expected
         self._products += turn * expected
+        if len(self._readings) > 2:  # noqa: PLR2004, two travels
+            earlier, origin, _ = self._readings[-3]
+            off = expected - turn
+            change = (start - origin) * (stamp - before) / (before - earlier) - turn
+            self._late += off * change
+            self._off_squares += off * off
+            self._change_squares += change * change
         if self._turns >= _FEWEST and self._path >= travel:
+            self._note_delay()
             least = _ALIGNED * self._squares * self._velocity_squares
             if self._products * self._products >= least > 0.0:
                 factor = self._products / self._squares
@@ -165,6 +180,22 @@ class VelocityField:
             self._begin_block()
         elif self._turns > _READINGS * _STRIDES[-1]:
             self._begin_block()
+
+    def _note_delay(self) -> None:
+        """Say that velocities are late if two blocks in a row show it, until one shows that not.
+
+        By a delay, a velocity is between those of the last two travels, or before.
+        """
+        late, squares = self._late, self._change_squares
+        delay = late / squares * SPAN * 1e-9 if squares else 0.0
+        if delay >= _LATE and late * late >= _EXPLAINED * self._off_squares * squares:
+            if self._may_be_late:
+                self.delay = delay
+            self._may_be_late = True
+            return
+        self._may_be_late = False
+        if self._off_squares < (0.5e9 * _LATE / SPAN) ** 2 * squares:
+            self.delay = 0.0
 
     def _compare(self, travel: float, stride: int) -> bool:
         """Decide on the latest readings; False if they moved by less than `travel`, rad."""

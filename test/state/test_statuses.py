@@ -18,6 +18,7 @@ VALUES = {
     'count': 12,
     'meaning': 'rpm',
     'factor': 9.5493,
+    'delay': 0.0604,
     'which': [
         Condition.BEYOND_SPEED(speed=900.04),
         Condition.BEYOND_ACCELERATION(acceleration=9e4),

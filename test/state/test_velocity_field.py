@@ -14,6 +14,7 @@ from gear_kinematics.state.statuses import Condition
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
 SETTINGS = NodeParameters.load()
+TURN = 2.0 * math.pi
 
 
 def messages(factor, speed=100.0, rate=500, scatter=0.0, duration=1.0) -> list[bytes]:
@@ -114,6 +115,23 @@ def test_velocities_that_are_noise_around_zero_are_not_used():
     samples = [rotor.accept(data, int) for data in messages(0.0, scatter=2.0)]
     assert rotor.velocity_field.contradicts
     assert samples[-1].velocity is None
+
+
+@pytest.mark.parametrize('step', [0.0, TURN / 60.0])
+@pytest.mark.parametrize(('delay', 'named'), [(0.0, False), (0.02, False), (0.06, True)])
+def test_velocities_that_are_late_in_unsteady_motion_are_named(delay, named, step):
+    rotor = RotorInput(SETTINGS)
+    for k in range(5000):
+        time = k / 500
+        position, speed = 40.0 * math.sin(5.0 * time), 200.0 * math.cos(5.0 * (time - delay))
+        position = step * math.floor(position / step) if step else position
+        stamp = SECOND + round(time * SECOND)
+        rotor.accept(rotor_bytes(stamp, position=[position], velocity=[speed]), int)
+    meaning = rotor.velocity_field.meaning
+    assert rotor.last.velocity == pytest.approx(speed)
+    assert (meaning is not None) == named
+    if named:
+        assert meaning == Condition.VELOCITIES_LATE(delay=pytest.approx(delay, abs=3e-3))
 
 
 def test_velocities_of_an_encoder_that_is_stuck_contradict_it():
