@@ -341,6 +341,13 @@ def factor(lines: Lines, size: float) -> None:
     lines.velocity[:] = size * lines.recording.speed
 
 
+def single(lines: Lines, size: float) -> None:
+    """Send positions so far from 0 as numbers of single precision."""
+    lines.true += size
+    lines.position[:] = lines.true.astype(np.float32)
+    lines.further += float(np.spacing(np.float32(size + np.max(np.abs(lines.true)))))
+
+
 def slip(lines: Lines, size: float) -> None:
     """Let the output slip against the rotor."""
     recording, parameters = lines.recording, lines.recording.parameters
@@ -422,6 +429,7 @@ class Kind(NamedTuple):
 _ANGLES = tuple(float(f'{x:.2g}') for x in np.geomspace(0.1, 1000.0, 21))
 _TIMES = tuple(float(f'{x:.2g}') for x in np.geomspace(0.001, 3.0, 15))
 _RANGES = (TURN, 2.0 * TURN, 25.0, 4.0 * TURN, 100.0, 500.0)
+_DISTANCES = tuple(map(float, np.geomspace(1e4, 1e8, 9)))
 _FACTORS = (0.0, -1.0, 0.5 / math.pi, 30.0 / math.pi, 180.0 / math.pi, 1 / -19, 0.5, 1.5, 2.0, 3.0)
 KINDS = (
     Kind('one corrupt reading', 'rad', _ANGLES, corrupt),
@@ -436,6 +444,7 @@ KINDS = (
     Kind('the clock is set back', 's', _TIMES, clock, angles=False),
     Kind('every second stamp is early', 's', _TIMES[:6], early, angles=False),
     Kind('velocities times a factor', '', _FACTORS, factor, angles=False),
+    Kind('positions of single precision', 'rad', _DISTANCES, single, angles=False),
     Kind('arrays of another length', 'values', (0.0, 2.0, 3.0), lengths, angles=False),
     Kind('the output slips', 'rad', (0.003, 0.005, 0.01, 0.02, 0.05, 0.1, 0.3), slip,
          angles=False, dual=True),
@@ -522,7 +531,9 @@ def suits(kind: Kind, recording: Recording) -> bool:
     """Whether a kind of fault can be put into a recording."""
     if kind.dual:
         return recording.output is not None
-    return kind.put is not wrap or not recording.parameters.single_turn
+    if kind.put is single and recording.output is not None:  # which finds another zero
+        return False
+    return kind.put not in {wrap, single} or not recording.parameters.single_turn
 
 
 def trial(task: tuple[Path, int]) -> Outcome:
