@@ -32,7 +32,7 @@ _MOST_LOST = math.radians(5.0)  # lost motion of a usable gear, at most
 _LIKELY, _TRIED, _MOST_OF = 4.0, 8, 0.6
 """Times that quantile from which on a step may be a slip; number of such steps that are tried;
 share of the step that stays."""
-_LEAST_SLIP = math.radians(0.15)
+_LEAST_SLIP = math.radians(0.08)
 _PLACE = math.radians(2.0)  # width of the bins of output angles at which errors are compared
 _FROZEN = math.radians(3.0)  # motion of the output by one encoder while the other stands still
 _LEAST_SHARE = 0.25  # of samples that are used; if it were less, the ratio is not understood
@@ -217,12 +217,25 @@ def _slipped(error: Array, ideal: Array, usually: float) -> NDArray[np.bool_]:
     likely = np.flatnonzero(np.abs(steps) > max(_LIKELY * usually, _LEAST_SLIP))
     if not len(likely):
         return found
-    place = np.round(ideal / _PLACE) + 1j * directions(ideal, _PLACE)
+    way = directions(ideal, _PLACE)
+    place = np.round(ideal / _PLACE) + 1j * way
     for row in likely[np.argsort(-np.abs(steps[likely]))][:_TRIED].tolist():
         shifts = shifted(place, error, slice(0, row + 1), slice(row + 1, len(error)))
         shares = shifts / steps[row]
+        if not len(shares) and way[row] == way[row + 1] != 0:
+            # What the gear does at an angle, it does there on the way back, too.
+            there = np.abs(ideal - ideal[row]) < _PLACE
+            passes = [_rise(error, ideal - ideal[row], there & (way == w)) for w in (-1, 1)]
+            shares = np.diff(passes) / steps[row]
         found[row] = len(shares) > 0 and shares.min() > _MOST_OF and shares.max() < 1.0 / _MOST_OF
     return found
+
+
+def _rise(error: Array, beyond: Array, rows: NDArray[np.bool_]) -> float:
+    """Return the median change of the error in `rows` as the angle passes 0, rad, or NaN."""
+    parts = [error[rows & side] for side in (beyond <= 0.0, beyond > 0.0)]
+    low, high = (float(np.median(part)) if len(part) else math.nan for part in parts)
+    return high - low
 
 
 def _followed(error: Array, rows: Array, steps: _Steps, period: float) -> tuple[Array, list[int]]:

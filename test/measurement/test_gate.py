@@ -8,7 +8,14 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from gear_recordings import Gear, creep, ramps, write_csv
-from simulated_encoders import ARC_MINUTE, TURN, Drive, even_strokes, with_play
+from simulated_encoders import (
+    ARC_MINUTE,
+    TURN,
+    Drive,
+    even_strokes,
+    ramped_strokes,
+    with_play,
+)
 
 from gear_kinematics.measurement.answer import Limits, answer
 from gear_kinematics.measurement.calibration import fit
@@ -145,6 +152,28 @@ def test_a_small_slip_and_a_jump_at_a_reversal_are_named(clean, gate, row, colum
     jump = found.faults[0]
     assert (jump.what, jump.values['moment']) == (Observation.JUMPED, pytest.approx(0.04 * row))
     assert len(found.encoders.measured) == max(row, len(clean) - row)
+
+
+@pytest.mark.parametrize('way', ['there', 'back'])
+@pytest.mark.parametrize(('strokes', 'degrees'), [(2, 0.2), (2, 0.0), (4, 0.12), (4, 0.0)])
+def test_a_slip_of_a_tenth_of_a_degree_is_named_if_only_strokes_beside_it_show_it(
+    gate, strokes, degrees, way
+):
+    """A gear's error at an angle is there on the way back, too."""
+    drive = Drive(
+        errors={1.0: 8.0 * ARC_MINUTE, 4.0: ARC_MINUTE, 19.0: 2.0 * ARC_MINUTE},
+        noise=1e-4,
+        rotor_step=TURN / 2**14,
+        output_step=TURN / 2**17,
+    )
+    profile = ramped_strokes(math.radians(330.0), 10.0 / strokes, 0.3)
+    time, rotor, output = drive.readings(profile, 10.0, 200.0)
+    row = 800 if way == 'there' else 1200
+    output[row:] += math.radians(degrees)
+    _, found = gate(np.column_stack([time, rotor, output]))
+    named = [fault for fault in found.faults if fault.what is Observation.JUMPED]
+    moments = [jump.values['moment'] for jump in named]
+    assert moments == pytest.approx([time[row]] * bool(degrees), abs=0.02)
 
 
 def test_each_of_many_slips_divides_and_is_told(clean, gate):
