@@ -40,15 +40,14 @@ class MujocoModel:
         """Advance the time, to the nearest time step of MuJoCo; see `TwinModel`."""
         self._lock(self._rotor, self._rotor_lock, self.rotor_locked)
         self._lock(self._output, self._output_lock, self.output_locked)
-        self.data.qfrc_applied[self._rotor] = rotor_torque
-        self.data.qfrc_applied[self._output] = load_torque
+        self._applied[self._rotor], self._applied[self._output] = rotor_torque, load_torque
         self._owed += duration
         steps = round(self._owed / self._step)
         self._owed -= steps * self._step
         if self._gear.errors:
             for _ in range(steps):
-                error = self._gear.error(self.data.qpos[self._rotor])
-                self._lengths[self._tendons] = self._springs - error
+                error = self._gear.error(self._angles.item(self._rotor))
+                np.subtract(self._springs, error, out=self._lengths)
                 mujoco.mj_step(self.model, self.data)
         elif steps:
             mujoco.mj_step(self.model, self.data, steps)
@@ -57,27 +56,26 @@ class MujocoModel:
 
     def _bound(self) -> None:
         """Keep the speed within what MuJoCo follows: all velocities at once, as the loops ask."""
-        data, fastest = self.data, _FASTEST / self._step
+        fastest = _FASTEST / self._step
         if any(self._warnings.tolist()):
             self.notice = 'the motion was beyond what MuJoCo follows, and has begun anew'
-            mujoco.mj_resetData(self.model, data)
-        elif (speed := abs(data.qvel[self._rotor])) > fastest:
+            mujoco.mj_resetData(self.model, self.data)
+        elif (speed := abs(self._velocities.item(self._rotor))) > fastest:
             self.notice = f'the rotor is held at the {fastest:.0f} rad/s that MuJoCo follows'
-            data.qvel *= fastest / speed
+            self._velocities *= fastest / speed
 
     def _build(self, gear: TwinGear) -> None:
         self._gear = gear
         self.model = mujoco.MjModel.from_xml_string(mjcf(gear, shown=False))
         self.data = mujoco.MjData(self.model)
         self._step = self.model.opt.timestep
-        # Views of what MuJoCo reads and counts, as each access by name takes longer than its use.
-        self._lengths, self._warnings = self.model.tendon_lengthspring, self.data.warning.number
+        # Views of what MuJoCo reads and writes, as each access by name takes longer than its use.
+        self._angles, self._velocities = self.data.qpos, self.data.qvel
+        self._applied, self._active = self.data.qfrc_applied, self.data.eq_active
+        self._friction, self._warnings = self.model.dof_frictionloss, self.data.warning.number
+        self._lengths = self.model.tendon_lengthspring[int(gear.has_shaft) :]  # of the branches
+        self._springs = self._lengths.copy()
         branches = gear.parameters.branches
-        tendons = range(self.model.ntendon)
-        self._tendons = np.array(
-            [each for each in tendons if self.model.tendon(each).name != 'shaft']
-        )
-        self._springs = self._lengths[self._tendons]
         # Each joint has one coordinate.
         self._rotor, self._output, *self._satellites = (
             self.model.joint(name).id
@@ -90,21 +88,20 @@ class MujocoModel:
 
     def _lock(self, joint: int, equality: int, locked: bool) -> None:  # noqa: FBT001
         """Lock a joint at its present angle, or release it."""
-        if locked and not self.data.eq_active[equality]:
-            self.model.eq_data[equality, 0] = self.data.qpos[joint] - self.model.qpos0[joint]
-            self.data.qvel[joint] = 0.0
-        self.data.eq_active[equality] = locked
+        if self._active.item(equality) != locked:
+            if locked:
+                self.model.eq_data[equality, 0] = self._angles[joint] - self.model.qpos0[joint]
+                self._velocities[joint] = 0.0
+            self._active[equality] = locked
 
     def _read(self) -> None:
-        angles, velocities, gear = self.data.qpos, self.data.qvel, self._gear
-        self.rotor_angle = rotor = float(angles[self._rotor])
-        self.rotor_velocity = float(velocities[self._rotor])
-        self.output_angle = float(angles[self._output])
-        self.output_velocity = float(velocities[self._output])
-        ideal = (1.0 / gear.ratio - 1.0) * rotor + gear.error(rotor)
+        angles, velocities, gear = self._angles.tolist(), self._velocities.tolist(), self._gear
+        self.rotor_angle, self.rotor_velocity = angles[self._rotor], velocities[self._rotor]
+        self.output_angle, self.output_velocity = angles[self._output], velocities[self._output]
+        ideal = (1.0 / gear.ratio - 1.0) * self.rotor_angle + gear.error(self.rotor_angle)
         # The torques change slowly, as the output moves on a spring.
-        self.branch_torques, self.model.dof_frictionloss[self._output] = gear.torques(
-            [ideal - float(angles[joint]) for joint in self._satellites]
+        self.branch_torques, self._friction[self._output] = gear.torques(
+            [ideal - angles[joint] for joint in self._satellites]
         )
 
 
