@@ -9,11 +9,9 @@ from pathlib import Path
 
 sys.path.append(str(Path(__file__).parents[1] / 'test' / 'support'))
 
-from proved_twins import filled, proving
+from proved_twins import all_proved, filled
 
 PAGE = Path(__file__).with_name('twin.md')
 
 if __name__ == '__main__':
-    with proving() as running:
-        proofs = [each.result() for each in running]
-    PAGE.write_text(filled(PAGE.read_text('utf-8'), proofs), encoding='utf-8')
+    PAGE.write_text(filled(PAGE.read_text('utf-8'), all_proved()), encoding='utf-8')

@@ -4,9 +4,7 @@
 import math
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor
-from contextlib import contextmanager
-from multiprocessing import get_context
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -43,8 +41,9 @@ class Proof(NamedTuple):
         )
 
 
+@cache
 def proved(number: int) -> Proof:
-    """Prove one gear on MuJoCo."""
+    """Prove one gear on MuJoCo, once."""
     put_in, braced = drawn(number), drawn(number, braced=True)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -54,11 +53,9 @@ def proved(number: int) -> Proof:
     return Proof(number, put_in, figures, encoded, found, apart, forces_off(braced))
 
 
-@contextmanager
-def proving() -> Iterator[list[Future[Proof]]]:
-    """Prove all gears, on two processors."""
-    with ProcessPoolExecutor(2, get_context('spawn')) as pool:
-        yield [pool.submit(proved, number) for number in range(GEARS)]
+def all_proved() -> list[Proof]:
+    """Prove all gears."""
+    return [proved(number) for number in range(GEARS)]
 
 
 def answer(proofs: Sequence[Proof]) -> str:

@@ -10,23 +10,17 @@ import pytest
 pytest.importorskip('mujoco', reason='MuJoCo is not installed')
 pytest.importorskip('scipy', reason='scipy is not installed')
 from measured_twins import STEP
-from proved_twins import GEARS, filled, proving
+from proved_twins import GEARS, all_proved, filled, proved
 from twins import drawn
 
 PAGE = Path(__file__).parents[2] / 'docs' / 'twin.md'
 pytestmark = pytest.mark.slow
 
 
-@pytest.fixture(scope='module')
-def running():
-    with proving() as started:
-        yield started
-
-
 @pytest.mark.parametrize('number', range(GEARS))
-def test_strokes_loads_and_forces_give_back_what_was_put_in(running, number):
+def test_strokes_loads_and_forces_give_back_what_was_put_in(number):
     """Errors and zeros are known to a step of the encoder at best, however small their ± is."""
-    proof = running[number].result()
+    proof = proved(number)
     encoded, parameters = proof.encoded, proof.put_in.parameters
     assert encoded.ratio == parameters.mechanism.gear_ratio
     assert encoded.senses == parameters.rotor_direction * parameters.output_encoder_direction
@@ -40,11 +34,10 @@ def test_strokes_loads_and_forces_give_back_what_was_put_in(running, number):
     assert proof.forces < 5e-3
 
 
-def test_figures_of_ramps_lie_in_their_intervals(running):
+def test_figures_of_ramps_lie_in_their_intervals():
     """If 95 % hold, fewer than 17 of 20 do once in 60 times."""
-    proofs = [each.result() for each in running]
     by_name = defaultdict(list)
-    for proof in proofs:
+    for proof in all_proved():
         for figure in proof.figures:
             by_name[figure.name].append(figure)
     # Without the stiffness of the range with the play, where there is some.
@@ -52,14 +45,14 @@ def test_figures_of_ramps_lie_in_their_intervals(running):
     for name, figures in by_name.items():
         assert sum(each.holds for each in figures) >= 0.85 * len(figures), name
         assert all(abs(each.deviation) <= 2.0 * each.half for each in figures), name
-    assert all(proof.figures[2].holds for proof in proofs)  # the play
+    assert all(proof.figures[2].holds for proof in all_proved())  # the play
 
 
-def test_page_has_these_numbers(running):
+def test_page_has_these_numbers():
     """To a few units of the last digit, as processors round differently."""
     number = re.compile(r'(?<![\d.])\d+(?:\.\d+)?')
     page = PAGE.read_text('utf-8')
-    now = filled(page, [each.result() for each in running])
+    now = filled(page, all_proved())
     assert number.sub('0', now) == number.sub('0', page)
     for new, old in zip(number.findall(now), number.findall(page), strict=True):
         unit = 10.0 ** -len(old.partition('.')[2])
