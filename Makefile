@@ -44,7 +44,8 @@ simulator: $(VENV)/demo.stamp ## Run a simulated actuator, and the node beside i
 quick: lint ## Check style, and run the tests that need neither a live node nor much time
 	$(BIN)/python $(PYTEST) --hypothesis-profile quick -m 'not live and not slow'
 
-test: lint types docs ## Run every check: ruff, mypy, documentation, pytest
+test: $(VENV)/test.stamp ## Run every check: ruff, mypy, documentation, pytest
+	$(MAKE) --no-print-directory --jobs 2 --output-sync lint types docs
 	$(BIN)/python $(PYTEST)
 
 coverage: $(VENV)/test.stamp ## Measure the coverage of all but the slow tests, which takes them twice as long

@@ -45,6 +45,7 @@ _FOLDERS = ('bags', 'benchmark', 'docs', 'docs/reference', 'docs/reference/geark
 project = 'gear_kinematics'
 root_doc = 'docs/index'
 include_patterns = ['*.md', '*.rst', *(f'{folder}/*.md' for folder in _FOLDERS)]
+exclude_patterns = ['.*', 'build', 'test']  # which are large, and would be searched for pages
 extensions = ['myst_parser', 'sphinx.ext.autodoc', 'sphinxarg.ext']
 default_role = 'code'
 highlight_language = 'none'
