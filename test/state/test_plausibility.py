@@ -33,7 +33,7 @@ def motion(rate: int, count: int, generator) -> tuple[np.ndarray, np.ndarray]:
     for n in range(count * inner):
         if n % 40 == 0:
             acceleration = generator.choice([-1.0, 0.0, 1.0]) * LIMITS[1] * generator.random()
-        faster = float(np.clip(speed + acceleration * step, -LIMITS[0], LIMITS[0]))
+        faster = max(-LIMITS[0], min(speed + acceleration * step, LIMITS[0]))
         angle += 0.5 * (speed + faster) * step
         speed = faster
         if n % inner == 0:
