@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import scipy
 from gear_recordings import Gear, creep, ramps
-from scipy import stats
 
 from gear_kinematics.measurement.changes import (
     Change,
@@ -40,11 +40,11 @@ def test_two_groups_are_compared_by_students_test_of_logarithms():
     values = [1.0, 1.3, 1.1, 1.9, 2.2, 1.8, 2.5]
     groups = [Group('a', (0, 1, 2)), Group('b', (3, 4, 5, 6))]
     (change,) = changes_of(exact('a', *values), groups)
-    expected = stats.ttest_ind(np.log(values[3:]), np.log(values[:3]))
+    expected = scipy.stats.ttest_ind(np.log(values[3:]), np.log(values[:3]))
     assert change.probability == pytest.approx(expected.pvalue)
     assert np.log(change.interval) == pytest.approx(list(expected.confidence_interval()))
-    assert change.before == pytest.approx(stats.gmean(values[:3]))
-    assert change.after == pytest.approx(stats.gmean(values[3:]))
+    assert change.before == pytest.approx(scipy.stats.gmean(values[:3]))
+    assert change.after == pytest.approx(scipy.stats.gmean(values[3:]))
 
 
 def test_the_scatter_is_pooled_over_all_groups():
@@ -68,7 +68,7 @@ def test_without_repeats_the_scatter_is_that_within_recordings():
     # Relative standard uncertainties of 5 % and 10 %, by Welch and Satterthwaite.
     standard = math.hypot(0.05, 0.1)
     degrees = math.floor(standard**4 / (0.05**4 / 4.0 + 0.1**4 / 2.0))
-    half = stats.t.ppf(0.975, degrees) * standard
+    half = scipy.stats.t.ppf(0.975, degrees) * standard
     assert np.log(known.interval) == pytest.approx([math.log(1.5) - half, math.log(1.5) + half])
     assert (unknown.interval, unknown.probability) == ((), None)
     assert not known.repeated
