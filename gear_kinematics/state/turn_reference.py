@@ -88,7 +88,7 @@ def nearest_turns(ratio: GearRatio, error: float) -> tuple[int, float]:
     """
     n = abs(ratio.numerator)
     # Turns of the rotor by which the output angle changes by one step; pow(..., 1) is 0.
-    turns_per_step = pow(ratio.denominator if ratio > 0 else -ratio.denominator, -1, n)
+    turns_per_step = pow(ratio.denominator if ratio.numerator > 0 else -ratio.denominator, -1, n)
     steps = math.floor(error * n / TURN + 0.5)
     turns = steps * turns_per_step % n
     return turns - n * (2 * turns > n), error - TURN * steps / n
@@ -119,14 +119,14 @@ def decide(
     error, budget = errors[0] + offset, known + scatter + delay
     angle = TURN * samples[-1].turns + samples[-1].ideal
     repeats = TURN * ratio.denominator if parameters.single_turn else TURN
-    known_turn = not parameters.output_range and unseen < 0.5 * repeats * abs(ratio)
+    known_turn = not parameters.output_range and unseen < 0.5 * repeats * abs(float(ratio))
     centre = angle if known_turn else sum(parameters.output_range) / 2.0
     if parameters.single_turn:
         turns, distance = nearest_turns(ratio, error)
         if not known_turn:
             periods = (angle - centre) / repeats + turns / ratio.numerator
             turns -= ratio.numerator * round(periods)
-        measured = angle + TURN * float(turns / ratio) + distance
+        measured = angle + TURN * (turns * ratio.denominator / ratio.numerator) + distance
         margin = math.pi / abs(ratio.numerator)
     else:
         measured = centre + math.remainder(angle + error - centre, TURN)
