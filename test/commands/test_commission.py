@@ -163,20 +163,13 @@ ROTOR = 'which joint is the rotor? Repeat with --joint, and its topic if needed:
 ENCODER = 'which joint is the output? Repeat with --encoder-joint, and its topic if needed: '
 
 
-@pytest.mark.parametrize(
-    ('topics', 'options', 'said'),
-    [
-        ({'a': ['m', 'o'], 'b': ['p']}, '', ROTOR + 'm, o on /a; p on /b'),
-        (
-            {'a': ['m', 'o'], 'b': ['p']},
-            '--rotor-topic a',
-            ROTOR + 'm, o on /a',
-        ),
-        ({'a': ['m'], 'b': ['o'], 'c': ['p']}, '--joint m', ENCODER + 'o on /b; p on /c'),
-        ({'a': ['m']}, '--joint n', "no joint 'n'. " + ROTOR.partition('? ')[2] + 'm on /a'),
-        ({'rotor_state': ['m']}, '', 'which joint is the output? There is none.'),
-    ],
-)
+@pytest.mark.parametrize(('topics', 'options', 'said'), [
+    ({'a': ['m', 'o'], 'b': ['p']}, '', ROTOR + 'm, o on /a; p on /b'),
+    ({'a': ['m', 'o'], 'b': ['p']}, '--rotor-topic a', ROTOR + 'm, o on /a'),
+    ({'a': ['m'], 'b': ['o'], 'c': ['p']}, '--joint m', ENCODER + 'o on /b; p on /c'),
+    ({'a': ['m']}, '--joint n', "no joint 'n'. " + ROTOR.partition('? ')[2] + 'm on /a'),
+    ({'rotor_state': ['m']}, '', 'which joint is the output? There is none.'),
+])  # fmt: skip
 def test_topics_and_joints_that_are_missing_or_several_are_named(
     topics, options, said, positions, tmp_path
 ):

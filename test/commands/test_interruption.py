@@ -27,16 +27,10 @@ def counts(terminal) -> list[tuple[str, str]]:
     return [(done, total) for done, total in found if done != '0']
 
 
-@pytest.mark.parametrize(
-    'arguments',
-    [
-        ['info'],
-        ['lost-motion'],
-        ['calibrate', '--encoder-topic', '/output_state'],
-        ['plot', 'output', 'a.png', '--bag'],
-    ],
-    ids=lambda words: words[0],
-)
+@pytest.mark.parametrize('arguments', [
+    ['info'], ['lost-motion'], ['calibrate', '--encoder-topic', '/output_state'],
+    ['plot', 'output', 'a.png', '--bag'],
+], ids=lambda words: words[0])  # fmt: skip
 def test_ctrl_c_while_reading_gives_130(arguments, tmp_path):
     with (
         BlockedBag(SERVO, tmp_path / 'blocked') as blocked,

@@ -94,30 +94,23 @@ PLOT, ANIMATE = ['plot', 'roses', 'a.png'], ['animate', 'a.gif']
 SCHEME, OUTPUT = ['plot', 'scheme', 'a.png'], ['plot', 'output', 'a.png']
 
 
-@pytest.mark.parametrize(
-    ('arguments', 'cause'),
-    [
-        (['plot', 'scheme', 'a.xyz'], 'a.xyz: the suffix must be png or '),
-        (['plot', 'scheme', 'none/a.png'], 'none/a.png: No such file or directory'),
-        ([*SCHEME, '--degrees', 'nan'], 'must be a finite number, not nan'),
-        ([*SCHEME, '--speed', '1'], '--speed is for slides, not for scheme'),
-        ([*SCHEME, '--module', '0'], '--module must be between 1e-06 and 0.1'),
-        ([*SCHEME, '--config', 'none.yaml'], 'none.yaml'),
-        ([*OUTPUT, '--bag', 'none'], 'none: no such file or folder'),
-        (OUTPUT, 'output needs --bag'),
-        ([*PLOT, '--ring-teeth', '1001', '--satellite-teeth', '1000'], 'petals'),
-        ([*PLOT, '--duration', '1'], '--duration needs --bag'),
-        ([*OUTPUT, '--bag', SERVO, '--start-offset', '7'], 'no rotor states from 7 s to inf s'),
-        ([*OUTPUT, '--bag', SERVO, '--rotor-topic', '/motor'], 'no topic /motor of type sensor_m'),
-        ([*ANIMATE, '--start-offset', '1'], '--start-offset needs --bag'),
-        (
-            [*ANIMATE, '--rate', '0.05'],
-            'frames are more than 2000; reduce --duration or raise --rate',
-        ),
-        (['animate', 'a.png'], 'a.png: the suffix must be gif'),
-        (['animate', 'none/a.gif'], 'none/a.gif: No such file or directory'),
-    ],
-)
+@pytest.mark.parametrize(('arguments', 'cause'), [
+    (['plot', 'scheme', 'a.xyz'], 'a.xyz: the suffix must be png or '),
+    (['plot', 'scheme', 'none/a.png'], 'none/a.png: No such file or directory'),
+    ([*SCHEME, '--degrees', 'nan'], 'must be a finite number, not nan'),
+    ([*SCHEME, '--speed', '1'], '--speed is for slides, not for scheme'),
+    ([*SCHEME, '--module', '0'], '--module must be between 1e-06 and 0.1'),
+    ([*SCHEME, '--config', 'none.yaml'], 'none.yaml'),
+    ([*OUTPUT, '--bag', 'none'], 'none: no such file or folder'), (OUTPUT, 'output needs --bag'),
+    ([*PLOT, '--ring-teeth', '1001', '--satellite-teeth', '1000'], 'petals'),
+    ([*PLOT, '--duration', '1'], '--duration needs --bag'),
+    ([*OUTPUT, '--bag', SERVO, '--start-offset', '7'], 'no rotor states from 7 s to inf s'),
+    ([*OUTPUT, '--bag', SERVO, '--rotor-topic', '/motor'], 'no topic /motor of type sensor_m'),
+    ([*ANIMATE, '--start-offset', '1'], '--start-offset needs --bag'),
+    ([*ANIMATE, '--rate', '0.05'], 'frames are more than 2000; reduce --duration or raise --rate'),
+    (['animate', 'a.png'], 'a.png: the suffix must be gif'),
+    (['animate', 'none/a.gif'], 'none/a.gif: No such file or directory'),
+])  # fmt: skip
 def test_unusable_input_gets_one_clear_line_and_no_file(arguments, cause, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert cause in refusal(*arguments)

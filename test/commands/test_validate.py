@@ -147,21 +147,14 @@ def test_a_bag_that_is_given_twice_is_validated_once(bags):
     assert (done.returncode, done.stdout.count('verdict')) == (0, 1)
 
 
-@pytest.mark.parametrize(
-    ('name', 'options', 'code'),
-    [
-        ('wrong', ['--tolerance-angle', '1.9e-9'], 1),
-        ('wrong', ['--tolerance-angle', '2.1e-9'], 0),
-        ('wrong', ['--tolerance-position', '1'], 1),
-        ('good', ['--tolerance-angle', '0', '--tolerance-position', '0'], 0),
-        ('shifted', [], 1),
-        ('namespaced', [], 0),
-        ('good', ['--ratio', '-19'], 0),
-        ('good', ['--ratio', '-39/2'], 1),
-        ('good', ['--rotor-topic', '/rotor_state', '--output-topic', '/output_state'], 0),
-        ('good', ['--rotor-topic', '/output_state', '--output-topic', '/rotor_state'], 1),
-    ],
-)
+@pytest.mark.parametrize(('name', 'options', 'code'), [
+    ('wrong', ['--tolerance-angle', '1.9e-9'], 1), ('wrong', ['--tolerance-angle', '2.1e-9'], 0),
+    ('wrong', ['--tolerance-position', '1'], 1),
+    ('good', ['--tolerance-angle', '0', '--tolerance-position', '0'], 0), ('shifted', [], 1),
+    ('namespaced', [], 0), ('good', ['--ratio', '-19'], 0), ('good', ['--ratio', '-39/2'], 1),
+    ('good', ['--rotor-topic', '/rotor_state', '--output-topic', '/output_state'], 0),
+    ('good', ['--rotor-topic', '/output_state', '--output-topic', '/rotor_state'], 1),
+])  # fmt: skip
 def test_options_decide(name, options, code, bags, capsys):
     assert main(['validate', str(bags / name), *options]) == code
     assert (code == 2) == bool(capsys.readouterr().err)
@@ -278,17 +271,11 @@ def test_a_report_goes_into_a_pipe_and_through_a_link(bags, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ('arguments', 'code', 'unbuffered'),
-    [
-        (['validate', 'good'], 0, ''),
-        (['validate', 'wrong'], 1, '1'),
-        (['validate', 'good', '--json', '-'], 0, '1'),
-        (['validate', 'wrong', '--junit', '-'], 1, ''),
-        (['urdf'], 0, ''),
-        (['urdf'], 0, '1'),
-    ],
-)
+@pytest.mark.parametrize(('arguments', 'code', 'unbuffered'), [
+    (['validate', 'good'], 0, ''), (['validate', 'wrong'], 1, '1'),
+    (['validate', 'good', '--json', '-'], 0, '1'), (['validate', 'wrong', '--junit', '-'], 1, ''),
+    (['urdf'], 0, ''), (['urdf'], 0, '1'),
+])  # fmt: skip
 def test_a_closed_pipe_changes_no_exit_code(arguments, code, unbuffered, bags):
     environment = os.environ | {'PYTHONUNBUFFERED': unbuffered}
     with running_gearkin(*arguments, cwd=bags, env=environment) as process:

@@ -167,17 +167,10 @@ def at(turns=0, angle=0.0, velocity=STEADY, effort=0.0) -> RotorSample:
     return RotorSample(START, RotorPosition(turns, angle), velocity, effort)
 
 
-@pytest.mark.parametrize(
-    ('sample', 'inside'),
-    [
-        (at(), True),
-        (at(velocity=19 * 2.99), True),
-        (at(velocity=-19 * 3.01), False),
-        (at(velocity=None), True),
-        (at(effort=-29.9 / 19), True),
-        (at(effort=20.1 / 19), False),
-    ],
-)
+@pytest.mark.parametrize(('sample', 'inside'), [
+    (at(), True), (at(velocity=19 * 2.99), True), (at(velocity=-19 * 3.01), False),
+    (at(velocity=None), True), (at(effort=-29.9 / 19), True), (at(effort=20.1 / 19), False),
+])  # fmt: skip
 def test_interval_is_that_of_the_ideal_output_outside_of_what_was_calibrated(sample, inside):
     assert half_width(sample) == (1e-4 if inside else 2e-3)
 

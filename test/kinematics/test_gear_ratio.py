@@ -23,18 +23,11 @@ RATIOS = st.builds(
 )
 
 
-@pytest.mark.parametrize(
-    ('text', 'ratio'),
-    [
-        ('-19', Fraction(-19)),
-        ('+19', Fraction(19)),
-        ('1457/26', Fraction(1457, 26)),
-        ('-58/3', Fraction(-58, 3)),
-        ('38/2', Fraction(19)),
-        ('28.8', Fraction(144, 5)),
-        ('-0.1', Fraction(-1, 10)),
-    ],
-)
+@pytest.mark.parametrize(('text', 'ratio'), [
+    ('-19', Fraction(-19)), ('+19', Fraction(19)), ('1457/26', Fraction(1457, 26)),
+    ('-58/3', Fraction(-58, 3)), ('38/2', Fraction(19)), ('28.8', Fraction(144, 5)),
+    ('-0.1', Fraction(-1, 10)),
+])  # fmt: skip
 def test_text_is_read_exactly(text, ratio):
     assert GearRatio.parse(text) == ratio
 

@@ -206,16 +206,10 @@ STIFFNESS = Stiffness(2000.0, 1000.0, 2000.0)  # kAe = kB = 1000 N·m/rad
 
 
 @pytest.mark.parametrize('direction', [1, -1])
-@pytest.mark.parametrize(
-    ('output', 'torque_a', 'torque_b', 'stand_off_a', 'stand_off_b'),
-    [
-        (0.0, 1.5, -1.5, 0.0, 0.0),
-        (-1.0, 1.0, -2.0, 0.0, 0.0),
-        (-3.0, 0.0, -3.0, 0.0, 0.0),
-        (-4.0, 0.0, -4.0, 0.001, 0.0),
-        (5.0, 5.0, 0.0, 0.0, 0.002),
-    ],
-)
+@pytest.mark.parametrize(('output', 'torque_a', 'torque_b', 'stand_off_a', 'stand_off_b'), [
+    (0.0, 1.5, -1.5, 0.0, 0.0), (-1.0, 1.0, -2.0, 0.0, 0.0), (-3.0, 0.0, -3.0, 0.0, 0.0),
+    (-4.0, 0.0, -4.0, 0.001, 0.0), (5.0, 5.0, 0.0, 0.0, 0.002),
+])  # fmt: skip
 def test_braced_branches_share_the_torque_by_hand(
     actuator, direction, output, torque_a, torque_b, stand_off_a, stand_off_b
 ):

@@ -96,16 +96,10 @@ def test_numpy_numbers_and_lists_become_plain_types():
     assert isinstance(mechanism.branches, tuple)
 
 
-@pytest.mark.parametrize(
-    ('ring_teeth', 'satellite_teeth', 'ratio', 'petals'),
-    [
-        (80, 76, Fraction(-19), 40),
-        (80, 78, Fraction(-39), 80),
-        (61, 58, Fraction(-58, 3), 61),
-        (80, 79, Fraction(-79), 160),
-        (2, 1, Fraction(-1), 4),
-    ],
-)
+@pytest.mark.parametrize(('ring_teeth', 'satellite_teeth', 'ratio', 'petals'), [
+    (80, 76, Fraction(-19), 40), (80, 78, Fraction(-39), 80), (61, 58, Fraction(-58, 3), 61),
+    (80, 79, Fraction(-79), 160), (2, 1, Fraction(-1), 4),
+])  # fmt: skip
 def test_numbers_of_the_specification(ring_teeth, satellite_teeth, ratio, petals):
     mechanism = Mechanism(ring_teeth, satellite_teeth, 1e-3, (A,))
     assert mechanism.gear_ratio == ratio

@@ -179,20 +179,12 @@ def test_ring_turns_for_wanted_preloads_and_thresholds_give_them(
         assert getattr(given_back, figure) == pytest.approx(wanted, rel=1e-13, abs=4.0 * rounding)
 
 
-@pytest.mark.parametrize(
-    ('ring_teeth', 'satellite_teeth', 'cam_phases', 'pitches'),
-    [
-        (80, 76, (0.0, 0.0), 0.0),
-        (80, 76, (0.0, math.pi), 0.0),
-        (80, 78, (0.0, math.pi), 0.0),
-        (61, 58, (0.0, math.pi), 0.5),
-        (61, 58, (0.0, -math.pi), 0.5),
-        (61, 58, (0.0, math.pi / 3), 0.5),
-        (61, 58, (0.0, math.pi / 6), 0.25),
-        (80, 76, (1.0, 1.0 + math.pi / 8), 0.25),
-        (80, 76, (math.pi / 8, 0.0), -0.25),
-    ],
-)
+@pytest.mark.parametrize(('ring_teeth', 'satellite_teeth', 'cam_phases', 'pitches'), [
+    (80, 76, (0.0, 0.0), 0.0), (80, 76, (0.0, math.pi), 0.0), (80, 78, (0.0, math.pi), 0.0),
+    (61, 58, (0.0, math.pi), 0.5), (61, 58, (0.0, -math.pi), 0.5),
+    (61, 58, (0.0, math.pi / 3), 0.5), (61, 58, (0.0, math.pi / 6), 0.25),
+    (80, 76, (1.0, 1.0 + math.pi / 8), 0.25), (80, 76, (math.pi / 8, 0.0), -0.25),
+])  # fmt: skip
 def test_ring_phase_makes_branch_b_mesh_as_branch_a(
     ring_teeth, satellite_teeth, cam_phases, pitches
 ):

@@ -147,18 +147,10 @@ def test_multi_turn_position_is_used_as_it_is(actuator, side, position):
 # -- gaps ----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ('max_speed', 'elapsed', 'known'),
-    [
-        (10.0, 0.314, True),
-        (math.nextafter(math.pi, 0.0), 1.0, True),
-        (math.pi, 1.0, False),
-        (10.0, 0.315, False),
-        (650.0, 0.0048, True),
-        (650.0, 0.0049, False),
-        (10.0, 0.0, True),
-    ],
-)
+@pytest.mark.parametrize(('max_speed', 'elapsed', 'known'), [
+    (10.0, 0.314, True), (math.nextafter(math.pi, 0.0), 1.0, True), (math.pi, 1.0, False),
+    (10.0, 0.315, False), (650.0, 0.0048, True), (650.0, 0.0049, False), (10.0, 0.0, True),
+])  # fmt: skip
 @pytest.mark.parametrize('velocities', [(None, None), (None, 1.0), (1.0, None)], ids=str)
 def test_gaps_of_half_a_turn_leave_the_turns_unknown(max_speed, elapsed, known, velocities):
     """Only velocities at both ends could narrow the possible turn."""

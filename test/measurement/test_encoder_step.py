@@ -55,16 +55,10 @@ def test_step_is_found_however_it_was_recorded(recorded, noise):
     assert found.size == pytest.approx(STEP, rel=1e-4)
 
 
-@pytest.mark.parametrize(
-    ('recorded', 'resolution'),
-    [
-        ('float32', 2.0**-24),
-        ('float32 in degrees', math.radians(2.0**-18)),
-        ('%.4f', 1e-4),
-        ('%.6f', 1e-6),
-        ('%.2f in degrees', math.radians(0.01)),
-    ],
-)
+@pytest.mark.parametrize(('recorded', 'resolution'), [
+    ('float32', 2.0**-24), ('float32 in degrees', math.radians(2.0**-18)), ('%.4f', 1e-4),
+    ('%.6f', 1e-6), ('%.2f in degrees', math.radians(0.01)),
+])  # fmt: skip
 def test_resolution_of_the_recording_is_not_a_step_of_the_encoder(recorded, resolution):
     found = find_step(RECORDED[recorded](readings(1.0, 1e-3)))
     assert not found.seen

@@ -43,19 +43,13 @@ def subscription(node, topic='in', **policies):
     return node.create_subscription(JointState, topic, lambda _: None, profile)
 
 
-@pytest.mark.parametrize(
-    ('offered', 'requested', 'policies'),
-    [
-        ({}, {}, []),
-        ({}, BEST_EFFORT, []),
-        (LATCHED, LATCHED, []),
-        (BEST_EFFORT, LATCHED, ['RELIABILITY', 'DURABILITY']),
-        ({}, {'deadline': SECOND}, ['DEADLINE']),
-        ({}, {'liveliness': LivelinessPolicy.MANUAL_BY_TOPIC}, ['LIVELINESS']),
-        ({}, {'liveliness_lease_duration': SECOND}, ['LIVELINESS_LEASE_DURATION']),
-    ],
-    ids=str,
-)
+@pytest.mark.parametrize(('offered', 'requested', 'policies'), [
+    ({}, {}, []), ({}, BEST_EFFORT, []), (LATCHED, LATCHED, []),
+    (BEST_EFFORT, LATCHED, ['RELIABILITY', 'DURABILITY']),
+    ({}, {'deadline': SECOND}, ['DEADLINE']),
+    ({}, {'liveliness': LivelinessPolicy.MANUAL_BY_TOPIC}, ['LIVELINESS']),
+    ({}, {'liveliness_lease_duration': SECOND}, ['LIVELINESS_LEASE_DURATION']),
+], ids=str)  # fmt: skip
 def test_listener_that_requests_more_than_offered_is_a_warning(make, offered, requested, policies):
     mine, other = make('mine'), make('other')
     output = publisher(mine, **offered)

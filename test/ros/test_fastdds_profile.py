@@ -32,18 +32,12 @@ def chosen() -> dict[str, str]:
     return {name: os.environ[name] for name in VARIABLES if name in os.environ}
 
 
-@pytest.mark.parametrize(
-    ('environment', 'in_the_folder', 'used'),
-    [
-        ({}, '', FASTDDS_2),
-        ({}, '', FASTDDS_3),
-        ({FASTDDS_2[1]: '/my.xml'}, '', FASTDDS_3),
-        ({FASTDDS_3[1]: '/my.xml'}, '', FASTDDS_2),
-        ({}, 'DEFAULT_FASTRTPS_PROFILES.xml', FASTDDS_2),
-        ({}, 'DEFAULT_FASTDDS_PROFILES.xml', FASTDDS_3),
-        ({'SKIP_DEFAULT_XML_FILE': '1'}, 'DEFAULT_FASTDDS_PROFILES.xml', FASTDDS_3),
-    ],
-)
+@pytest.mark.parametrize(('environment', 'in_the_folder', 'used'), [
+    ({}, '', FASTDDS_2), ({}, '', FASTDDS_3), ({FASTDDS_2[1]: '/my.xml'}, '', FASTDDS_3),
+    ({FASTDDS_3[1]: '/my.xml'}, '', FASTDDS_2), ({}, 'DEFAULT_FASTRTPS_PROFILES.xml', FASTDDS_2),
+    ({}, 'DEFAULT_FASTDDS_PROFILES.xml', FASTDDS_3),
+    ({'SKIP_DEFAULT_XML_FILE': '1'}, 'DEFAULT_FASTDDS_PROFILES.xml', FASTDDS_3),
+])  # fmt: skip
 def test_profile_is_used_if_nobody_has_chosen_another(
     monkeypatch, tmp_path, environment, in_the_folder, used
 ):

@@ -312,18 +312,11 @@ def test_parameters_that_cannot_be_are_refused(context, tmp_path):
         GearSimulator(context=context, parameter_files=[file])
 
 
-@pytest.mark.parametrize(
-    ('names', 'followed', 'said'),
-    [
-        (['m1'], [1.0], ''),
-        (
-            ['m1', 'm2'],
-            [],
-            'rotor_command rejected: 2 joints in it: set rotor_joint to one of them',
-        ),
-        ([], [], 'rotor_command rejected: 0 joints in it: set rotor_joint to one of them'),
-    ],
-)
+@pytest.mark.parametrize(('names', 'followed', 'said'), [
+    (['m1'], [1.0], ''),
+    (['m1', 'm2'], [], 'rotor_command rejected: 2 joints in it: set rotor_joint to one of them'),
+    ([], [], 'rotor_command rejected: 0 joints in it: set rotor_joint to one of them'),
+])  # fmt: skip
 def test_without_a_name_the_only_joint_of_a_command_is_followed(names, followed, said):
     positions, warnings = [], []
     driver = SimpleNamespace(follow=lambda command: positions.append(command.position))

@@ -9,20 +9,11 @@ import pytest
 from gear_kinematics.shape.angles import arc, arc_seconds
 
 
-@pytest.mark.parametrize(
-    ('seconds', 'text'),
-    [
-        (0.0, '0.000″'),
-        (-1e-9, '0.000″'),
-        (4.8786, '4.879″'),
-        (-4.878, '-4.878″'),
-        (59.9996, '1′ 00.000″'),
-        (206.265, '3′ 26.265″'),
-        (3600.0, '1° 00′ 00.000″'),
-        (-3723.45, '-1° 02′ 03.450″'),
-        (1295999.9999, '360° 00′ 00.000″'),
-    ],
-)
+@pytest.mark.parametrize(('seconds', 'text'), [
+    (0.0, '0.000″'), (-1e-9, '0.000″'), (4.8786, '4.879″'), (-4.878, '-4.878″'),
+    (59.9996, '1′ 00.000″'), (206.265, '3′ 26.265″'), (3600.0, '1° 00′ 00.000″'),
+    (-3723.45, '-1° 02′ 03.450″'), (1295999.9999, '360° 00′ 00.000″'),
+])  # fmt: skip
 def test_angles_are_written_in_degrees_minutes_and_seconds(seconds, text):
     assert arc(math.radians(seconds / 3600.0)) == text
 

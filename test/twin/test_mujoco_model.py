@@ -123,17 +123,10 @@ def test_energy_is_kept(gear):
     assert model.data.energy[0] > 0.0
 
 
-@pytest.mark.parametrize(
-    'values',
-    [
-        {},
-        {'friction': 0.4},
-        {'interference': -1e-3, 'play': 1e-3},
-        {'shaft_stiffness': math.inf},
-        {'shaft_stiffness': math.inf, 'interference': -1e-3, 'play': 1e-3, 'curve': BENT},
-    ],
-    ids=['braced', 'friction', 'play', 'rigid shaft', 'a measured curve, worn'],
-)
+@pytest.mark.parametrize('values', [
+    {}, {'friction': 0.4}, {'interference': -1e-3, 'play': 1e-3}, {'shaft_stiffness': math.inf},
+    {'shaft_stiffness': math.inf, 'interference': -1e-3, 'play': 1e-3, 'curve': BENT},
+], ids=['braced', 'friction', 'play', 'rigid shaft', 'a measured curve, worn'])  # fmt: skip
 def test_a_ramp_is_that_of_the_fast_model(gear, values):
     """Within 1 % of its greatest turn, with the rotor locked."""
     gear = replace(gear, **values)

@@ -77,17 +77,11 @@ def test_what_the_node_publishes_passes(config, name, samples):
     assert max(field.max_error for field in fields) < 1e-11
 
 
-@pytest.mark.parametrize(
-    ('topic', 'fields', 'name'),
-    [
-        (STATE, {'position': 2e-9}, 'position'),
-        (STATE, {'velocity': -2e-9}, 'velocity'),
-        (STATE, {'effort': 2e-9}, 'effort'),
-        (INTERVAL, {'position': 2e-9}, 'half width'),
-        (INTERVAL, {'position': -2e-9}, 'half width'),
-        (STATE, {'position': math.nan}, 'position'),
-    ],
-)
+@pytest.mark.parametrize(('topic', 'fields', 'name'), [
+    (STATE, {'position': 2e-9}, 'position'), (STATE, {'velocity': -2e-9}, 'velocity'),
+    (STATE, {'effort': 2e-9}, 'effort'), (INTERVAL, {'position': 2e-9}, 'half width'),
+    (INTERVAL, {'position': -2e-9}, 'half width'), (STATE, {'position': math.nan}, 'position'),
+])  # fmt: skip
 def test_changed_number_is_found_and_located(config, servo, topic, fields, name):
     report = validate(changed(servo, topic, 2000, **fields), config)
     [(where, field)] = [(t.topic, f) for t in report.topics for f in t.fields if not f.passed]

@@ -50,17 +50,11 @@ def miscounted(monkeypatch) -> None:
     monkeypatch.setattr(RotorTurns, 'update', wrong)
 
 
-@pytest.mark.parametrize(
-    ('plant', 'name', 'parameters'),
-    [
-        (None, 'driver_faults', DEFAULT),
-        (None, 'servo_point_to_point', DEFAULT),
-        (None, 'constant_speed_3000rpm', DEFAULT),
-        (None, 'single_turn_encoder', SINGLE),
-        (scaled, 'servo_point_to_point', DEFAULT),
-        (miscounted, 'single_turn_encoder', SINGLE),
-    ],
-)
+@pytest.mark.parametrize(('plant', 'name', 'parameters'), [
+    (None, 'driver_faults', DEFAULT), (None, 'servo_point_to_point', DEFAULT),
+    (None, 'constant_speed_3000rpm', DEFAULT), (None, 'single_turn_encoder', SINGLE),
+    (scaled, 'servo_point_to_point', DEFAULT), (miscounted, 'single_turn_encoder', SINGLE),
+])  # fmt: skip
 def test_a_fault_of_the_node_itself_is_found(plant, name, parameters, monkeypatch, tmp_path):
     bag = BAGS / name
     if plant:

@@ -51,18 +51,11 @@ def test_home_says_where_the_shaft_was_and_is(capsys):
     assert service in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
-    ('gears', 'wanted', 'error'),
-    [
-        ([], '', 'no gear_state_publisher is running with this ROS_DOMAIN_ID'),
-        (
-            ['/a/gear', '/b/gear'],
-            '',
-            'which node is to be homed? Repeat with --node: /a/gear, /b/g',
-        ),
-        (['/a/gear'], 'a/gaer', '/a/gaer is not running; did you mean `/a/gear`?'),
-    ],
-)
+@pytest.mark.parametrize(('gears', 'wanted', 'error'), [
+    ([], '', 'no gear_state_publisher is running with this ROS_DOMAIN_ID'),
+    (['/a/gear', '/b/gear'], '', 'which node is to be homed? Repeat with --node: /a/gear, /b/g'),
+    (['/a/gear'], 'a/gaer', '/a/gaer is not running; did you mean `/a/gear`?'),
+])  # fmt: skip
 def test_home_needs_to_know_the_node(gears, wanted, error, monkeypatch, capsys):
     monkeypatch.setattr(homing, '_SEARCH', 0.2)
     monkeypatch.setattr(homing, 'Graph', lambda _: SimpleNamespace(gears=gears))

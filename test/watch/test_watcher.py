@@ -208,24 +208,16 @@ def test_values_that_are_out_of_date_say_so_and_move_nothing():
     assert view_of(gear_node(joint={}.get)).rotor is None
 
 
-@pytest.mark.parametrize(
-    ('gear', 'state', 'words'),
-    [
-        (None, 'no node', 'No gear_state_publisher is running'),
-        (gear_node(seen=False, running=False), 'no node', 'is not running. gearkin init'),
-        (gear_node(seen=False, running=False, name='/lefd/gear'), 'no node', NEAREST),
-        (gear_node(running=False), 'ended', 'has ended. Waiting'),
-        (gear_node(fault='module must be'), 'fault', 'cannot be used: module must be'),
-        (gear_node(parameters=None), 'connecting', ''),
-        (gear_node(), 'connected', ''),
-        (gear_node(joint={}.get), 'no output', 'There has been no output yet.'),
-        (
-            gear_node(joint={topics.OUTPUT_STATE: JointValue(0.0, 0.0, 5.74)}.get),
-            'no output',
-            '5.7 s',
-        ),
-    ],
-)
+@pytest.mark.parametrize(('gear', 'state', 'words'), [
+    (None, 'no node', 'No gear_state_publisher is running'),
+    (gear_node(seen=False, running=False), 'no node', 'is not running. gearkin init'),
+    (gear_node(seen=False, running=False, name='/lefd/gear'), 'no node', NEAREST),
+    (gear_node(running=False), 'ended', 'has ended. Waiting'),
+    (gear_node(fault='module must be'), 'fault', 'cannot be used: module must be'),
+    (gear_node(parameters=None), 'connecting', ''), (gear_node(), 'connected', ''),
+    (gear_node(joint={}.get), 'no output', 'There has been no output yet.'),
+    (gear_node(joint={topics.OUTPUT_STATE: JointValue(0.0, 0.0, 5.74)}.get), 'no output', '5.7 s'),
+])  # fmt: skip
 def test_state_of_the_node_is_told(gear, state, words):
     others = [gear_node(name='/left/gear')] if words is NEAREST else []
     view = view_of(gear, others)
