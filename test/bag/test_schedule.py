@@ -26,26 +26,18 @@ def schedule(times, **options) -> list[tuple[float, float]]:
     return [(pytest.approx(due, abs=1e-9), received / SECOND) for due, (_, received, _) in found]
 
 
-@pytest.mark.parametrize(
-    ('options', 'expected'),
-    [
-        ({}, [(0.0, 5.0), (1.0, 6.0), (1.5, 6.5), (4.0, 9.0)]),
-        ({'rate': 2.0}, [(0.0, 5.0), (0.5, 6.0), (0.75, 6.5), (2.0, 9.0)]),
-    ],
-    ids=str,
-)
+@pytest.mark.parametrize(('options', 'expected'), [
+    ({}, [(0.0, 5.0), (1.0, 6.0), (1.5, 6.5), (4.0, 9.0)]),
+    ({'rate': 2.0}, [(0.0, 5.0), (0.5, 6.0), (0.75, 6.5), (2.0, 9.0)]),
+], ids=str)  # fmt: skip
 def test_due_times(options, expected):
     assert schedule([5.0, 6.0, 6.5, 9.0], **options) == expected
 
 
-@pytest.mark.parametrize(
-    ('times', 'options', 'due'),
-    [
-        ([5.0, 6.0, 7.0], {}, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]),
-        ([5.0, 6.0, 7.0], {'rate': 2.0}, [0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 4.5]),
-        ([5.0], {'rate': 4.0}, [0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 1.75, 2, 2.25]),
-    ],
-    ids=str,
-)
+@pytest.mark.parametrize(('times', 'options', 'due'), [
+    ([5.0, 6.0, 7.0], {}, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]),
+    ([5.0, 6.0, 7.0], {'rate': 2.0}, [0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 4.5]),
+    ([5.0], {'rate': 4.0}, [0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 1.75, 2, 2.25]),
+], ids=str)  # fmt: skip
 def test_a_loop_restarts_after_a_mean_period(times, options, due):
     assert [moment for moment, _ in schedule(times, loop=True, **options)] == due

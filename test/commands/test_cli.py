@@ -154,20 +154,16 @@ def test_file_for_two_nodes_is_refused_naming_them(two_nodes, tmp_path, monkeypa
 # What cannot be used.
 
 
-@pytest.mark.parametrize(
-    ('arguments', 'cause'),
-    [
-        ('', 'arguments are required: COMMAND; see gearkin --help'),
-        ('unknown', "'unknown'"),
-        ('describe --ring-teeth many', "--ring-teeth: invalid int value: 'many'; see"),
-        ('describe --satellite-teeth 80', 'satellite_teeth (80) must be less than'),
-        ('describe --module 0', 'module must be'),
-        ('describe --eccentricity nan', '--eccentricity must be between 1e-06 and 1.0'),
-        ('describe --config missing.yaml', 'missing.yaml: No such file or directory'),
-        ('preload --setting 1 2', 'expected 3 arguments; see gearkin preload --help'),
-        ('validate bag --junit', '--junit: expected one argument'),
-    ],
-)
+@pytest.mark.parametrize(('arguments', 'cause'), [
+    ('', 'arguments are required: COMMAND; see gearkin --help'), ('unknown', "'unknown'"),
+    ('describe --ring-teeth many', "--ring-teeth: invalid int value: 'many'; see"),
+    ('describe --satellite-teeth 80', 'satellite_teeth (80) must be less than'),
+    ('describe --module 0', 'module must be'),
+    ('describe --eccentricity nan', '--eccentricity must be between 1e-06 and 1.0'),
+    ('describe --config missing.yaml', 'missing.yaml: No such file or directory'),
+    ('preload --setting 1 2', 'expected 3 arguments; see gearkin preload --help'),
+    ('validate bag --junit', '--junit: expected one argument'),
+])  # fmt: skip
 def test_unusable_arguments_get_one_clear_line_and_code_2(arguments, cause):
     assert cause in refusal(*arguments.split())
 

@@ -177,14 +177,10 @@ def test_topics_and_joints_that_are_missing_or_several_are_named(
     assert refusal('commission', bag, *options.split()).endswith(said)
 
 
-@pytest.mark.parametrize(
-    'topics',
-    [
-        {'a': ['m', 'n'], 'b': ['o']},
-        {'a': ['m', 'o']},
-        {'rotor_state': ['m'], 'output_encoder': ['o'], 'output_state': ['s'], 'b': ['p']},
-    ],
-)
+@pytest.mark.parametrize('topics', [
+    {'a': ['m', 'n'], 'b': ['o']}, {'a': ['m', 'o']},
+    {'rotor_state': ['m'], 'output_encoder': ['o'], 'output_state': ['s'], 'b': ['p']},
+])  # fmt: skip
 def test_joints_are_found_and_a_check_takes_those_of_the_file(topics, positions, tmp_path):
     bag = str(joint_states(tmp_path, positions, **topics))
     file = tmp_path / 'a.yaml'

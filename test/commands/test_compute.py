@@ -23,15 +23,10 @@ EXACT = ('--tolerance-angle', '0', '--tolerance-position', '0')
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ('name', 'options'),
-    [
-        ('rotor_only', []),
-        ('rotor_only', ['--storage', 'sqlite3', '--compression', 'zstd']),
-        ('wrong', ['--compression', 'zstd']),
-        ('namespaced', []),
-    ],
-)
+@pytest.mark.parametrize(('name', 'options'), [
+    ('rotor_only', []), ('rotor_only', ['--storage', 'sqlite3', '--compression', 'zstd']),
+    ('wrong', ['--compression', 'zstd']), ('namespaced', []),
+])  # fmt: skip
 def test_a_computed_bag_validates_without_error(name, options, bags, tmp_path):
     out = tmp_path / 'out'
     done = gearkin_here('compute', bags / name, out, *options)
@@ -98,15 +93,11 @@ def test_compute_says_what_it_left_out(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ('others', 'topics'),
-    [
-        ((), {'/motor/output_state', '/motor/body_poses'}),
-        (('/output_state', '/body_poses'), {'/output_state', '/body_poses'}),
-        (('/a/output_state', '/b/output_state'), {'/motor/output_state', '/motor/body_poses'}),
-    ],
-    ids=['none', 'recorded', 'several'],
-)
+@pytest.mark.parametrize(('others', 'topics'), [
+    ((), {'/motor/output_state', '/motor/body_poses'}),
+    (('/output_state', '/body_poses'), {'/output_state', '/body_poses'}),
+    (('/a/output_state', '/b/output_state'), {'/motor/output_state', '/motor/body_poses'}),
+], ids=['none', 'recorded', 'several'])  # fmt: skip
 def test_recorded_outputs_are_replaced_and_the_only_joint_is_taken(others, topics, tmp_path):
     topic, out = '/motor/joints', tmp_path / 'out'
     kinds = {name: POSE_ARRAY if 'poses' in name else JOINT_STATE for name in (topic, *others)}
@@ -151,16 +142,12 @@ def test_an_interrupted_computation_leaves_nothing(number, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ('name', 'out', 'cause'),
-    [
-        ('good', 'there', 'there: exists already'),
-        ('good', 'there/file/out', 'Not a directory'),
-        ('garbage.mcap', 'out', 'garbage.mcap: not a bag of a known kind'),
-        ('missing', 'out', 'missing: no such file or folder'),
-        ('left_and_right', 'out', 'left_and_right: which topic is rotor_state? /left/rotor_state'),
-    ],
-)
+@pytest.mark.parametrize(('name', 'out', 'cause'), [
+    ('good', 'there', 'there: exists already'), ('good', 'there/file/out', 'Not a directory'),
+    ('garbage.mcap', 'out', 'garbage.mcap: not a bag of a known kind'),
+    ('missing', 'out', 'missing: no such file or folder'),
+    ('left_and_right', 'out', 'left_and_right: which topic is rotor_state? /left/rotor_state'),
+])  # fmt: skip
 def test_what_cannot_be_computed_gets_one_line_and_code_2(name, out, cause, bags, tmp_path):
     (tmp_path / 'there').mkdir()
     (tmp_path / 'there' / 'file').touch()

@@ -19,15 +19,11 @@ SIGNATURES = {'png': b'\x89PNG\r\n\x1a\n', 'svg': b'<?xml', 'pdf': b'%PDF-', 'gi
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ('suffix', 'figure', 'options'),
-    [
-        ('svg', 'scheme', ('--degrees', '20', '--torque', '-4')),
-        ('pdf', 'roses', ()),
-        ('svg', 'slides', ('--speed', '-100')),
-        ('PNG', 'output', ('--bag', SERVO, '--start-offset', '0.5', '--duration', '0.2')),
-    ],
-)
+@pytest.mark.parametrize(('suffix', 'figure', 'options'), [
+    ('svg', 'scheme', ('--degrees', '20', '--torque', '-4')), ('pdf', 'roses', ()),
+    ('svg', 'slides', ('--speed', '-100')),
+    ('PNG', 'output', ('--bag', SERVO, '--start-offset', '0.5', '--duration', '0.2')),
+])  # fmt: skip
 def test_plot_writes_the_same_file_each_time(figure, suffix, options, tmp_path, capsys):
     contents = []
     for name in ('one', 'two'):

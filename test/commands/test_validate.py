@@ -41,14 +41,10 @@ CORRECTED = ('corrected_state', 'corrected_interval')
 OLD_REPORT = '{\n  "made_by": "gearkin validate"\n}\n'
 
 
-@pytest.mark.parametrize(
-    ('name', 'code', 'verdict', 'error'),
-    [
-        ('good', 0, 'passed', ''),
-        ('wrong', 1, 'failed', ''),
-        ('garbage.mcap', 2, 'unusable', 'gearkin: garbage.mcap: not a bag of a known kind\n'),
-    ],
-)
+@pytest.mark.parametrize(('name', 'code', 'verdict', 'error'), [
+    ('good', 0, 'passed', ''), ('wrong', 1, 'failed', ''),
+    ('garbage.mcap', 2, 'unusable', 'gearkin: garbage.mcap: not a bag of a known kind\n'),
+])  # fmt: skip
 def test_the_verdict_is_the_exit_code(name, code, verdict, error, bags):
     done = gearkin_here('validate', name, cwd=bags)
     assert (done.returncode, done.stderr) == (code, error)
@@ -160,25 +156,20 @@ def test_options_decide(name, options, code, bags, capsys):
     assert (code == 2) == bool(capsys.readouterr().err)
 
 
-@pytest.mark.parametrize(
-    ('options', 'cause'),
-    [
-        (['--tolerance-effort=-1e-9'], '--tolerance-effort: must be at least 0, not -1e-9'),
-        (['--tolerance-position', 'nan'], '--tolerance-position: must be at least 0, not nan'),
-        (['--tolerance-angle', 'small'], "invalid number value: 'small'; see gearkin validate"),
-        (['--joint', 'm1'], "no joint 'm1' in it; there are: rotor; give the right --config"),
-        (['--rotor-topic', '/nope'], 'good: no topic /nope of type sensor_msgs/msg/JointState'),
-        (['--poses-topic', '/output_state'], 'good: no topic /output_state of type geometry_msgs'),
-        (['--output-topic', '/nope'], 'good: no topic /nope of type sensor_msgs'),
-        (['--json', '-', '--junit', '-'], 'only one report can go to stdout'),
-        (['--config', 'missing.yaml'], 'No such file'),
-        (['--config', 'broken.yaml'], 'not YAML'),
-        (['missing.mcap'], 'missing.mcap: no bag there'),
-        (['*.nothing'], '*.nothing: no bag there'),
-        (['--jobs', '0'], '--jobs: must be at least 1, not 0'),
-        (['--jobs', '2', '--live'], '--live: not allowed with argument --jobs'),
-    ],
-)
+@pytest.mark.parametrize(('options', 'cause'), [
+    (['--tolerance-effort=-1e-9'], '--tolerance-effort: must be at least 0, not -1e-9'),
+    (['--tolerance-position', 'nan'], '--tolerance-position: must be at least 0, not nan'),
+    (['--tolerance-angle', 'small'], "invalid number value: 'small'; see gearkin validate"),
+    (['--joint', 'm1'], "no joint 'm1' in it; there are: rotor; give the right --config"),
+    (['--rotor-topic', '/nope'], 'good: no topic /nope of type sensor_msgs/msg/JointState'),
+    (['--poses-topic', '/output_state'], 'good: no topic /output_state of type geometry_msgs'),
+    (['--output-topic', '/nope'], 'good: no topic /nope of type sensor_msgs'),
+    (['--json', '-', '--junit', '-'], 'only one report can go to stdout'),
+    (['--config', 'missing.yaml'], 'No such file'), (['--config', 'broken.yaml'], 'not YAML'),
+    (['missing.mcap'], 'missing.mcap: no bag there'), (['*.nothing'], '*.nothing: no bag there'),
+    (['--jobs', '0'], '--jobs: must be at least 1, not 0'),
+    (['--jobs', '2', '--live'], '--live: not allowed with argument --jobs'),
+])  # fmt: skip
 def test_unusable_arguments_get_one_line_and_code_2(options, cause, bags, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / 'broken.yaml').write_text('{')
@@ -341,14 +332,10 @@ def test_processes_end_with_one_that_is_killed(bags, tmp_path):
 
 @pytest.mark.live
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ('bag', 'option', 'topics'),
-    [
-        ('wrong', '', {'output_state', 'body_poses'}),
-        ('rotor_only', '--config', {'output_state'}),
-        ('good', '--calibration', {'output_state', 'body_poses', *CORRECTED}),
-    ],
-)
+@pytest.mark.parametrize(('bag', 'option', 'topics'), [
+    ('wrong', '', {'output_state', 'body_poses'}), ('rotor_only', '--config', {'output_state'}),
+    ('good', '--calibration', {'output_state', 'body_poses', *CORRECTED}),
+])  # fmt: skip
 def test_what_a_live_node_publishes_is_validated_not_what_was_recorded(
     bag, option, topics, bags, other_gear, tmp_path
 ):

@@ -59,15 +59,11 @@ def test_a_parameter_is_that_of_one_actuator_or_the_default_of_all(tmp_path):
     assert load_actuators() == {'': NodeParameters.load()}
 
 
-@pytest.mark.parametrize(
-    ('given', 'output', 'inner'),
-    [
-        ({}, 'shoulder', 'shoulder_rotor'),
-        ({'output_joint': 'pan'}, 'pan', 'shoulder_rotor'),
-        ({'frame_prefix': 'left_'}, 'left_shoulder', 'left_rotor'),
-        ({'frame_prefix': '', 'output_joint': 'pan'}, 'pan', 'rotor'),
-    ],
-)
+@pytest.mark.parametrize(('given', 'output', 'inner'), [
+    ({}, 'shoulder', 'shoulder_rotor'), ({'output_joint': 'pan'}, 'pan', 'shoulder_rotor'),
+    ({'frame_prefix': 'left_'}, 'left_shoulder', 'left_rotor'),
+    ({'frame_prefix': '', 'output_joint': 'pan'}, 'pan', 'rotor'),
+])  # fmt: skip
 def test_only_a_prefix_that_is_given_is_before_the_output_joint(tmp_path, given, output, inner):
     parameters = load_actuators(write(tmp_path, shoulder=given))['shoulder']
     assert parameters.output_name == parameters.joint_names[-1] == output

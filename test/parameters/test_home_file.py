@@ -44,18 +44,14 @@ def test_what_is_read_is_what_was_written(path):
     assert read_home(path, SINGLE, NODE) == ({'': 28.969}, '2026-03-01 12:00 UTC')
 
 
-@pytest.mark.parametrize(
-    ('entries', 'cause'),
-    [
-        ({'gear_ratio': '1457/26'}, "its gear_ratio is '1457/26', not '-19'"),
-        ({'rotor_encoder': 'single_turn'}, "its rotor_encoder is 'single_turn', not 'multi_turn'"),
-        ({'rotor_zero': float('nan')}, 'rotor_zero must be between'),
-        ({'schema': 'gear_kinematics/home/2'}, "its schema is 'gear_kinematics/home/2', not"),
-        ({'rotor_joint': 'm' * 200_000}, "its rotor_joint is 'mmm"),
-        ({'rotor_zero': 'm' * 200_000}, 'rotor_zero must be of type float'),
-    ],
-    ids=str,
-)
+@pytest.mark.parametrize(('entries', 'cause'), [
+    ({'gear_ratio': '1457/26'}, "its gear_ratio is '1457/26', not '-19'"),
+    ({'rotor_encoder': 'single_turn'}, "its rotor_encoder is 'single_turn', not 'multi_turn'"),
+    ({'rotor_zero': float('nan')}, 'rotor_zero must be between'),
+    ({'schema': 'gear_kinematics/home/2'}, "its schema is 'gear_kinematics/home/2', not"),
+    ({'rotor_joint': 'm' * 200_000}, "its rotor_joint is 'mmm"),
+    ({'rotor_zero': 'm' * 200_000}, 'rotor_zero must be of type float'),
+], ids=str)  # fmt: skip
 def test_other_gear_or_odd_value_is_refused_in_a_line(path, entries, cause):
     path.write_text(yaml.safe_dump(yaml.safe_load(OLD) | entries), 'utf-8')
     with pytest.raises(ConfigError) as refusal:

@@ -36,15 +36,10 @@ def test_file_is_the_default_one_with_the_joint_of_the_driver_and_the_gear(tmp_p
     assert 'only place that defines default values' not in text
 
 
-@pytest.mark.parametrize(
-    ('places', 'program'),
-    [
-        (['bin', 'python'], 'gear_state_publisher'),
-        (['python'], '{}/python/gear_state_publisher'),
-        ([], 'ros2 run gear_kinematics gear_state_publisher'),
-    ],
-    ids=['on the PATH', 'beside the interpreter', 'of a workspace'],
-)
+@pytest.mark.parametrize(('places', 'program'), [
+    (['bin', 'python'], 'gear_state_publisher'), (['python'], '{}/python/gear_state_publisher'),
+    ([], 'ros2 run gear_kinematics gear_state_publisher'),
+], ids=['on the PATH', 'beside the interpreter', 'of a workspace'])  # fmt: skip
 def test_head_says_how_to_start_the_node(tmp_path, monkeypatch, places, program):
     for place in places:
         (tmp_path / place).mkdir()

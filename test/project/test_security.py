@@ -150,15 +150,10 @@ def merged(levels: int) -> str:
     return '\n'.join(lines)
 
 
-@pytest.mark.parametrize(
-    ('text', 'cause'),
-    [
-        ("more: !!python/object/apply:os.mkdir ['trace']", 'could not determine a constructor'),
-        ('more:\n' + merged(3), '2002:merge'),
-        ('more: [&a {b: c}, *a]', None),
-    ],
-    ids=['object', 'merge', 'alias'],
-)
+@pytest.mark.parametrize(('text', 'cause'), [
+    ("more: !!python/object/apply:os.mkdir ['trace']", 'could not determine a constructor'),
+    ('more:\n' + merged(3), '2002:merge'), ('more: [&a {b: c}, *a]', None),
+], ids=['object', 'merge', 'alias'])  # fmt: skip
 def test_metadata_makes_no_objects_and_ends(text, cause, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     bag = shutil.copytree(BAG, tmp_path / 'bag')

@@ -248,14 +248,9 @@ def test_figure_says_how_far_rotor_and_output_have_turned(far):
         assert np.subtract(values[1:], values[0]) == pytest.approx(steps, abs=1e-2)
 
 
-@pytest.mark.parametrize(
-    ('angles', 'speed'),
-    [
-        ([0.0, 0.3], '0.01 × real time'),
-        ([0.0, 1e-4], '10 × real time'),
-        ([0.0], '100 × real time'),
-    ],
-)
+@pytest.mark.parametrize(('angles', 'speed'), [
+    ([0.0, 0.3], '0.01 × real time'), ([0.0, 1e-4], '10 × real time'), ([0.0], '100 × real time'),
+])  # fmt: skip
 def test_it_plays_at_a_speed_that_can_be_followed(angles, speed):
     tree = parse(without_plotly(to_html([moving(angles)])))
     assert [option.text for option in tree.xpath('//option[@selected]')] == [speed]

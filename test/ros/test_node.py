@@ -94,39 +94,30 @@ def test_bounds_and_choices_are_published(node):
 QOS_DEPTH = 'qos_overrides./rotor_state.subscription.depth'
 
 
-@pytest.mark.parametrize(
-    ('values', 'words'),
-    [
-        ({'ring_teeth': 100_001}, ['ring_teeth', '2', '100000']),
-        ({'satellite_teeth': 76.0}, ['satellite_teeth must be of type int, not 76.0']),
-        ({'gear_ratio': 50.5}, ["gear_ratio must be of type str, not 50.5; quote it: '101/2'"]),
-        ({'eccentricity': math.nan}, ['eccentricity', '1e-06', '1.0']),
-        ({'branches': ['a'], 'b.cam_phase': 1.0}, ['`b.cam_phase`', '`b` is not in `branches`']),
-        ({'gear_ratio': '19', 'output_joint': ''}, ['output_joint', "''"]),
-        ({'calibration': '/none.yaml'}, ['/none.yaml', 'No such file or directory']),
-        ({'ring_tooth': 90, 'nothing_like_it': 1}, ['`ring_tooth`', '`nothing_like_it`']),
-        ({QOS_DEPTH: 2**40}, [QOS_DEPTH, '0', '2147483647']),
-    ],
-    ids=str,
-)
+@pytest.mark.parametrize(('values', 'words'), [
+    ({'ring_teeth': 100_001}, ['ring_teeth', '2', '100000']),
+    ({'satellite_teeth': 76.0}, ['satellite_teeth must be of type int, not 76.0']),
+    ({'gear_ratio': 50.5}, ["gear_ratio must be of type str, not 50.5; quote it: '101/2'"]),
+    ({'eccentricity': math.nan}, ['eccentricity', '1e-06', '1.0']),
+    ({'branches': ['a'], 'b.cam_phase': 1.0}, ['`b.cam_phase`', '`b` is not in `branches`']),
+    ({'gear_ratio': '19', 'output_joint': ''}, ['output_joint', "''"]),
+    ({'calibration': '/none.yaml'}, ['/none.yaml', 'No such file or directory']),
+    ({'ring_tooth': 90, 'nothing_like_it': 1}, ['`ring_tooth`', '`nothing_like_it`']),
+    ({QOS_DEPTH: 2**40}, [QOS_DEPTH, '0', '2147483647']),
+], ids=str)  # fmt: skip
 def test_unusable_parameters_are_refused_at_the_start(make, values, words):
     with pytest.raises((ParameterException, ValueError)) as caught:
         make(**values)
     assert all(word in str(caught.value) for word in words), str(caught.value)
 
 
-@pytest.mark.parametrize(
-    ('name', 'value', 'words'),
-    [
-        ('rotor_direction', 0, ['-1', '1']),
-        ('rotor_zero', math.nan, ['1000000000000000']),
-        ('rotor_encoder', 'absolute', ['multi_turn', 'single_turn']),
-        ('max_rotor_speed', 'fast', ['DOUBLE']),
-        ('output_joint', 'satellite_a', ["'satellite_a'"]),
-        ('calibration', '/none.yaml', ['No such file or directory']),
-        ('ring_teeth', 81, ['read-only']),
-    ],
-)
+@pytest.mark.parametrize(('name', 'value', 'words'), [
+    ('rotor_direction', 0, ['-1', '1']), ('rotor_zero', math.nan, ['1000000000000000']),
+    ('rotor_encoder', 'absolute', ['multi_turn', 'single_turn']),
+    ('max_rotor_speed', 'fast', ['DOUBLE']), ('output_joint', 'satellite_a', ["'satellite_a'"]),
+    ('calibration', '/none.yaml', ['No such file or directory']),
+    ('ring_teeth', 81, ['read-only']),
+])  # fmt: skip
 def test_refusal_of_a_change_names_the_parameter_once_and_its_cause(node, name, value, words):
     before = node.get_parameter(name).value
     result = node.set_parameters_atomically([Parameter(name, value=value)])
@@ -472,15 +463,10 @@ def test_outputs_of_unknown_turns_are_marked_or_withheld(make, monkeypatch, outp
     assert node._actuators[''].state.monitor.unreferenced == 3
 
 
-@pytest.mark.parametrize(
-    ('kind', 'available', 'name'),
-    [
-        ('auto', True, 'EventsExecutor'),
-        ('single_threaded', True, 'SingleThreadedExecutor'),
-        ('auto', False, 'SingleThreadedExecutor'),
-        ('events', False, None),
-    ],
-)
+@pytest.mark.parametrize(('kind', 'available', 'name'), [
+    ('auto', True, 'EventsExecutor'), ('single_threaded', True, 'SingleThreadedExecutor'),
+    ('auto', False, 'SingleThreadedExecutor'), ('events', False, None),
+])  # fmt: skip
 def test_executor_is_the_one_asked_for_if_the_release_has_it(
     context, monkeypatch, kind, available, name
 ):

@@ -58,14 +58,10 @@ def rotor_input() -> RotorInput:
     return RotorInput(SETTINGS)
 
 
-@pytest.mark.parametrize(
-    ('stamp', 'position', 'cause'),
-    [
-        (START + SECOND, math.nan, 'position not finite'),
-        (START - 1, -1.0, 'out of order'),
-        (START - SECOND, -1.0, 'out of order'),
-    ],
-)
+@pytest.mark.parametrize(('stamp', 'position', 'cause'), [
+    (START + SECOND, math.nan, 'position not finite'), (START - 1, -1.0, 'out of order'),
+    (START - SECOND, -1.0, 'out of order'),
+])  # fmt: skip
 def test_a_rejected_message_changes_nothing(stamp, position, cause):
     """`test_faults.py` tests what is counted, and `test_joint_reader.py` what has which cause."""
     rotor_input = homed(3.0)

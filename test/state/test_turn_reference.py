@@ -161,15 +161,10 @@ def disagrees(encoder, rotor):
 QUARTERS = {'output_range': (0.0, 1.5 * math.pi)}  # a joint of 0 to 270°
 
 
-@pytest.mark.parametrize(
-    ('settings', 'without'),
-    [
-        (MULTI, -110.0),
-        (SINGLE, -110.0),
-        (replace(SINGLE, gear_ratio='36/5'), 250.0),
-        (replace(MULTI, rotor_encoder_range=25.0), None),
-    ],
-)
+@pytest.mark.parametrize(('settings', 'without'), [
+    (MULTI, -110.0), (SINGLE, -110.0), (replace(SINGLE, gear_ratio='36/5'), 250.0),
+    (replace(MULTI, rotor_encoder_range=25.0), None),
+])  # fmt: skip
 def test_range_of_the_output_tells_its_turn_or_excludes_it(settings, without):
     for degrees, found in ((250.0, 250.0), (-1e-3, -1e-3), (100.0, 100.0), (270.0, 270.0)):
         bench = Bench(replace(settings, **QUARTERS))

@@ -157,18 +157,14 @@ def test_a_later_report_replaces_figures_of_an_earlier_one(loose, ramps, pins):
     assert found.curve is None
 
 
-@pytest.mark.parametrize(
-    ('content', 'fault'),
-    [
-        ('no report', 'must be the JSON'),
-        ('[' * 100_000, 'must be the JSON'),
-        ('[]', 'must be the JSON'),
-        ('{"made_by": "gearkin loads", "recordings": [{}]}', 'must be the JSON'),
-        ('{"recordings": [{}, {}]}', 'one recording'),
-        ('{"recordings": [{"friction": {"value": null}}]}', 'must be the JSON'),
-        (json.dumps({'recordings': [LEVEL]}), 'must be the JSON'),
-    ],
-)
+@pytest.mark.parametrize(('content', 'fault'), [
+    ('no report', 'must be the JSON'), ('[' * 100_000, 'must be the JSON'),
+    ('[]', 'must be the JSON'),
+    ('{"made_by": "gearkin loads", "recordings": [{}]}', 'must be the JSON'),
+    ('{"recordings": [{}, {}]}', 'one recording'),
+    ('{"recordings": [{"friction": {"value": null}}]}', 'must be the JSON'),
+    (json.dumps({'recordings': [LEVEL]}), 'must be the JSON'),
+])  # fmt: skip
 def test_what_is_no_report_is_named(gear, tmp_path, content, fault):
     path = tmp_path / 'report.json'
     path.write_text(content, 'utf-8')

@@ -58,14 +58,10 @@ def test_branches_share_a_load_as_the_audited_preload_says(gear):
         assert measured == pytest.approx(torques, rel=1e-4, abs=1e-5), load
 
 
-@pytest.mark.parametrize(
-    ('loads', 'stiffness'),
-    [
-        ((-2.0, 9.0), STIFFNESS.both_in_mesh),
-        ((10.0, 14.0), STIFFNESS.branch_b_alone),
-        ((-9.0, -4.0), STIFFNESS.branch_a_alone),
-    ],
-)
+@pytest.mark.parametrize(('loads', 'stiffness'), [
+    ((-2.0, 9.0), STIFFNESS.both_in_mesh), ((10.0, 14.0), STIFFNESS.branch_b_alone),
+    ((-9.0, -4.0), STIFFNESS.branch_a_alone),
+])  # fmt: skip
 def test_soft_constraints_do_not_show_in_the_stiffness(gear, loads, stiffness):
     low, high = loads
     model = MujocoModel(gear)
@@ -74,15 +70,10 @@ def test_soft_constraints_do_not_show_in_the_stiffness(gear, loads, stiffness):
     assert (high - low) / turned == pytest.approx(stiffness, rel=1e-4)
 
 
-@pytest.mark.parametrize(
-    ('stiffness', 'satellite_inertia', 'output_inertia'),
-    [
-        (Stiffness(13e3, 16e3, math.inf), 1e-7, 1e-4),
-        (Stiffness(80e3, 250.0, math.inf), 1e-6, 0.1),
-        (Stiffness(11e3, 200.0, 80e3), 1e-5, 1e-3),
-    ],
-    ids=['light satellites', 'a soft output', 'a stiff shaft'],
-)
+@pytest.mark.parametrize(('stiffness', 'satellite_inertia', 'output_inertia'), [
+    (Stiffness(13e3, 16e3, math.inf), 1e-7, 1e-4), (Stiffness(80e3, 250.0, math.inf), 1e-6, 0.1),
+    (Stiffness(11e3, 200.0, 80e3), 1e-5, 1e-3),
+], ids=['light satellites', 'a soft output', 'a stiff shaft'])  # fmt: skip
 def test_so_it_is_for_other_gears(gear, stiffness, satellite_inertia, output_inertia):
     loads = replace(
         gear.parameters.loads, satellite_inertia=satellite_inertia, coupling_inertia=1e-8

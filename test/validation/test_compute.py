@@ -176,17 +176,13 @@ def test_damage_of_the_source_leaves_nothing(tmp_path):
     assert list(tmp_path.iterdir()) == [source]
 
 
-@pytest.mark.parametrize(
-    ('options', 'words'),
-    [
-        ({'topics': Topics('/motor')}, ['/motor', '/rotor_state']),
-        ({'topics': Topics('/body_poses', poses='/p')}, ['PoseArray', 'JointState']),
-        ({'topics': Topics(output='/body_poses', poses='/p')}, ['/body_poses', 'PoseArray']),
-        ({'topics': Topics(output='/rotor_state')}, ['/rotor_state', 'must differ']),
-        ({'others': ['/rotor_state', '/grip']}, ['no topic /grip in it', '/rotor_state']),
-    ],
-    ids=['missing', 'wrong type', 'not an output', 'twice', 'other missing'],
-)
+@pytest.mark.parametrize(('options', 'words'), [
+    ({'topics': Topics('/motor')}, ['/motor', '/rotor_state']),
+    ({'topics': Topics('/body_poses', poses='/p')}, ['PoseArray', 'JointState']),
+    ({'topics': Topics(output='/body_poses', poses='/p')}, ['/body_poses', 'PoseArray']),
+    ({'topics': Topics(output='/rotor_state')}, ['/rotor_state', 'must differ']),
+    ({'others': ['/rotor_state', '/grip']}, ['no topic /grip in it', '/rotor_state']),
+], ids=['missing', 'wrong type', 'not an output', 'twice', 'other missing'])  # fmt: skip
 def test_an_unusable_topic_is_named_and_nothing_is_written(options, words, tmp_path):
     with pytest.raises(ValueError, match=words[0]) as caught:
         run(BAGS / 'servo_point_to_point', tmp_path / 'computed', **options)

@@ -514,19 +514,15 @@ JOINTS = {'rotor': ['/j', 'm'], 'output': ['/j', 'o']}
 
 
 @pytest.mark.live
-@pytest.mark.parametrize(
-    ('command', 'answer'),
-    [
-        ({'do': 'home'}, 'No node is ready.'),
-        ({'do': 'undo'}, 'This command is not possible now.'),
-        ({'do': 'write'}, 'This command is not possible now.'),
-        ({'do': 'exit'}, 'This command is not possible now.'),
-        ({'do': 'commission', **JOINTS, 'output': []}, 'This command is not possible now.'),
-        ([], 'This command is not possible now.'),
-        ({'do': 'commission', **JOINTS, 'output': ['/j', 'm']}, 'Choose two joints: that of'),
-        ({'do': 'commission', **JOINTS, 'ratio': 'x'}, 'a gear ratio must be an integer'),
-    ],
-)
+@pytest.mark.parametrize(('command', 'answer'), [
+    ({'do': 'home'}, 'No node is ready.'), ({'do': 'undo'}, 'This command is not possible now.'),
+    ({'do': 'write'}, 'This command is not possible now.'),
+    ({'do': 'exit'}, 'This command is not possible now.'),
+    ({'do': 'commission', **JOINTS, 'output': []}, 'This command is not possible now.'),
+    ([], 'This command is not possible now.'),
+    ({'do': 'commission', **JOINTS, 'output': ['/j', 'm']}, 'Choose two joints: that of'),
+    ({'do': 'commission', **JOINTS, 'ratio': 'x'}, 'a gear ratio must be an integer'),
+])  # fmt: skip
 def test_what_cannot_be_done_is_answered(running, command, answer):
     text, done = running.ask(command).result(20.0)
     assert (text[: len(answer)], done) == (answer, False)

@@ -160,16 +160,11 @@ def test_joint_without_a_name_goes_by_its_index(joint, names, count, index, writ
         assert JointReader(joint).read(data) == (1, False, 10.0 + index, 10.0 + index, None)
 
 
-@pytest.mark.parametrize(
-    ('seconds', 'nanoseconds', 'stamp'),
-    [
-        (12, 10**9 - 1, 12_999_999_999),
-        (12, 10**9, 13 * SECOND),
-        (1732231175, 3_158_772_736, 1_732_231_178_158_772_736),
-        (2**31 - 2, 10**9 + 7, (2**31 - 1) * SECOND + 7),
-        (-1, 2**32 - 1, 3_294_967_295),
-    ],
-)
+@pytest.mark.parametrize(('seconds', 'nanoseconds', 'stamp'), [
+    (12, 10**9 - 1, 12_999_999_999), (12, 10**9, 13 * SECOND),
+    (1732231175, 3_158_772_736, 1_732_231_178_158_772_736),
+    (2**31 - 2, 10**9 + 7, (2**31 - 1) * SECOND + 7), (-1, 2**32 - 1, 3_294_967_295),
+])  # fmt: skip
 def test_stamp_is_the_time_that_its_parts_mean(seconds, nanoseconds, stamp):
     data = FULL[:4] + struct.pack('<iI', seconds, nanoseconds) + FULL[12:]
     assert JointReader('rotor').read(data) == (stamp, nanoseconds >= 10**9, 2.0, 4.0, 6.0)
