@@ -8,7 +8,7 @@
 # 12 samples per period as a higher frequency; over 40 periods this is more than half a period too much, and the fit ends in a
 # side maximum. The amplitude falls with the frequency, down to 1.3 % at 5 samples per period. Neither an error nor anything in the
 # result tells so; with the right frequency as the start it is found.
-# For us: a transmission error looks small so. Take the order from a Fourier transform first; gearkin loads fits known orders.
+# For us: a transmission error looks small so. Begin the fit at the known order of the gear, or at the peak of a Fourier transform.
 #
 # Exit code 0: still so. Needs a JDK and mvn; installs the versions into a temporary folder.
 set -eu

@@ -8,7 +8,7 @@
 # so that all of them are taken as outliers; where all weights in a window are 0, the result is 0/0. 10 values are NaN, 28 with
 # 4 iterations, without an error. On a shaft that turns evenly without any noise the opposite happens: the median of the residuals
 # is 0, which ends the iterations, and a reading that is 50 rad too large draws the result by 8.6 rad.
-# For us: leave out a reading that differs from both of its neighbours before smoothing; a NaN in a table is reported by gearkin.
+# For us: leave out a reading that differs from both of its neighbours before smoothing, and look for NaN after it.
 #
 # Exit code 0: still so. Needs a JDK and mvn; installs the versions into a temporary folder.
 set -eu

@@ -8,7 +8,7 @@
 # its name are kept, not its conversion and unit, so that the values are 1500 to 1504 without a unit; the time is no longer marked
 # as the time, and goes from 4 back to 0. Expected of cut_mdf_by_time() from 1 to 3 s: three values. What happens: it reports
 # success, but the new file points to where the conversion was in the old one, and mdf4-rs itself refuses to open it.
-# For us: merge and cut with another library; gearkin reports times that go back, and a rotor that turns by 1500 rad in a sample.
+# For us: merge and cut recordings with another library, or give the recordings to gearkin one by one.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.
 set -eu
