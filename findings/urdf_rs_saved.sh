@@ -6,7 +6,7 @@
 # A continuous joint needs no <limit>, and a link without <inertial> is a frame. Expected of read_from_string() and write_to_string():
 # the same robot. What happens: what the file does not have is written with zeros. The motor gets a limit of effort 0 and velocity 0,
 # with which a simulator holds it still, and the frame an <inertial> of mass 0, which others refuse or take as a massless body. The
-# <transmission> with its reduction of 20 is missing. The mimic, the damping and the soft limits stay.
+# <transmission> with its reduction of 20 is missing. The mimic stays.
 # For us: keep the file that was read; gearkin reads the ratio from its mimic.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.
