@@ -2,7 +2,6 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # diozero-core 1.4.1 (Java): a stepper whose coils are driven two at a time does not turn, and the second of two motors is the first one.
 #
-#
 # Expected of a bipolar stepper in the style DOUBLE: two neighbouring coils at each step, and after four steps one period, as SINGLE and
 # INTERLEAVE make it, only with more torque. What happens: at every other step both ends of one coil are on, which brakes it, and
 # between them the field goes half a period on, which may turn the rotor in either direction: it trembles on the spot. The four steps

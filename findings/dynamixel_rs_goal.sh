@@ -2,7 +2,6 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # dynamixel 0.1.1 (Rust): a goal of 1.9 mrad is sent as 0 to a PRO servo with 0.024 mrad per count, and an MX-28 cannot hold a position.
 #
-#
 # An M42-10-S260-R has 263187 counts per turn. Expected of a goal of 1.9 mrad: 80 counts. What happens: the goal is first cut off to
 # whole steps of 2 mrad, so that 0 is sent, and 131509 for a goal of π, 2 mrad short of the 131593 counts of half a turn. An MX-28
 # has 4096 counts per turn, 651.90 per rad. Expected: its goals and positions are scaled by that. What happens: goals by 651.09 and

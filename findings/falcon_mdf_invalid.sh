@@ -2,7 +2,6 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # falcon_mdf 0.7.2 (Rust): the difference of two encoders is valid where one of them was not, and their counts are not interpolated.
 #
-#
 # Its series have a flag per sample, true for valid. Expected of the difference of an output and a rotor whose second sample is invalid:
 # the second sample is invalid. What happens: the flags of both are combined by "or", so that a sample is valid if either is; if
 # only one of both has flags, its flags are kept, and the difference is right. Expected of resample() with InterpolationMode::Linear

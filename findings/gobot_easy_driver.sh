@@ -2,7 +2,6 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # gobot.io/x/gobot/v2 2.5.0 (Go): a stepper that is to move by -100 steps moves forward by 100 steps and is counted back.
 #
-#
 # An EasyDriver has a direction pin, 0 for forward. Expected of Move(-100): the pin is set to 1 for 100 steps. What happens: only
 # the counter knows of the sign; the pin keeps its level, the motor turns forward, and CurrentStep() is -100. After
 # SetDirection("backward") and Move(100) the motor turns back and is counted forward. Only Run() does both alike. Expected of 360

@@ -2,7 +2,6 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # oxictl 0.1.1 (Rust): where a motor turns back, its angle turns forward in each sector, and its Hall sensors are never at fault.
 #
-#
 # HallSensor interpolates the electrical angle between two edges. Expected of a motor that turns back at 20 rad/s: an angle that falls
 # from the upper to the lower edge of each sector. What happens: it is counted up from the lower edge with the speed's absolute
 # value, and jumps down by two sectors at the next edge: up to 1.05 rad away, where forward it is right within 0.01 rad. Expected of

@@ -2,7 +2,6 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # oxictl 0.1.1 (Rust): a sine and cosine without any error are read right for the first 0.11 rad, then up to 3.1 rad away.
 #
-#
 # Its SincosEncoder corrects offsets and amplitudes "as the encoder rotates through a full cycle". Expected at ideal signals of
 # amplitude 1 and no offset: their angle. What happens: as soon as a signal has covered 0.1, this part of a turn is taken as its
 # whole range, and its middle as the offset; after that, each 0.1 again. The angle is right up to 0.11 rad, 0.75 rad away at 0.12 rad,

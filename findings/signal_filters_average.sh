@@ -2,7 +2,6 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # signal-filters 0.1.16 (Rust): after an encoder was at a million counts, the average of eight readings of 0.1 is -23.5.
 #
-#
 # An axis moves at a million counts and more, and is then set to zero. Expected of MovingAverageFilterf32 of 8 readings, when 100 have been
 # 0.1: 0.1. What happens: the sum is kept in single precision, in which each reading is added once and taken off later;
 # what is rounded off at large values stays in it for good. reset() clears it. A shaft at 100 rad with a noise of 1 mrad is read 2.6 mrad
