@@ -16,7 +16,7 @@ trap 'rm -rf "$folder"' EXIT
 mkdir -p "$folder/src/main/java"
 cd "$folder"
 cat > pom.xml <<'XML'
-<project xmlns="http://maven.apache.org/POM/4.0.0">
+<project>
   <modelVersion>4.0.0</modelVersion>
   <groupId>org.example</groupId><artifactId>motors</artifactId><version>1</version>
   <properties><maven.compiler.source>17</maven.compiler.source><maven.compiler.target>17</maven.compiler.target>
@@ -115,6 +115,6 @@ public class Main {
     }
 }
 JAVA
-timeout 280 mvn --quiet --batch-mode -Dmaven.repo.local="$folder/repository" compile dependency:build-classpath -Dmdep.outputFile=path > log \
-    || { cat log; exit 1; }
+timeout 280 mvn --quiet --batch-mode -Dmaven.repo.local="$folder/repository" \
+    compile dependency:build-classpath -Dmdep.outputFile=path > log || { cat log; exit 1; }
 timeout 60 java -cp "target/classes:$(cat path)" Main
