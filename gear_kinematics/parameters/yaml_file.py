@@ -12,10 +12,11 @@ import yaml
 _MAX_DEPTH = 20  # libyaml has no limit of recursion
 _MAX_NUMBERS = 100  # as keys of a mapping: hashes of numbers can be made to collide
 _TEXT = 'tag:yaml.org,2002:str'
+_NO_NUMBER = re.compile('[:_]|^[-+]?0b')  # for rcl, in what PyYAML takes for numbers
 
 
 class Loader(getattr(yaml, 'CSafeLoader', yaml.SafeLoader)):  # type: ignore[misc]
-    """Reads 15e-4 as a number and 1:30 as a text, as ROS does."""
+    """Reads 15e-4 as a number, and 1:30, 1_000 and 0b11 as texts, as ROS does."""
 
     max_bytes: ClassVar[int] = 2**18
     max_events: ClassVar[int] = 2**13
@@ -46,7 +47,7 @@ for _kind, _number in (('int', Loader.construct_yaml_int), ('float', Loader.cons
     Loader.add_constructor(
         f'tag:yaml.org,2002:{_kind}',
         lambda loader, node, number=_number: (
-            node.value if ':' in node.value else number(loader, node)
+            node.value if _NO_NUMBER.search(node.value) else number(loader, node)
         ),
     )
 

@@ -294,6 +294,14 @@ def test_every_way_to_write_a_number_in_a_node_file_is_read(tmp_path, number):
     assert load(write(tmp_path, text)).eccentricity == 0.0015
 
 
+@pytest.mark.parametrize('number', ['1:20', '8_0', '0b1010000', '0x_50'])
+def test_what_rcl_reads_as_a_text_is_no_number_of_a_node_file(tmp_path, number):
+    # PyYAML sees 80 in each; rcl 9.2 and 10.1 hand texts to the node, which refuses them.
+    text = f'/**:\n  ros__parameters:\n    ring_teeth: {number}\n'
+    with pytest.raises(ConfigError, match=f'ring_teeth must be .*{number}'):
+        load(write(tmp_path, text))
+
+
 @pytest.mark.parametrize(
     ('content', 'cause'),
     [
