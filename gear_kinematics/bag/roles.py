@@ -54,9 +54,9 @@ def find_topics(
     """Find the topics by type and name; those in the namespace of the rotor's topic come first.
 
     The names of some parts may be given. The rotor's topic is the one with most of the `joints`;
-    of several that are alike, it is the one whose namespace has the outputs. The `namespace` of
-    the node, or else of a given output, chooses among several sets of topics. Without `outputs`,
-    only the rotor's topic must exist. Poses neither recorded nor given have an empty name.
+    of several that are alike, it is the one whose namespace has the outputs. The outputs are those
+    in the `namespace` of the node, by default in that of a given output. Without `outputs`, only
+    the rotor's topic must exist. Poses neither recorded nor given have an empty name.
 
     Raises:
         BagError: if a topic is missing or ambiguous.
@@ -71,6 +71,7 @@ def find_topics(
         if left.get(topic) != (wanted := TOPICS[_PARTS[part]].type):
             raise missing_topic(bag.path, left, topic, wanted)
         del left[topic]
+    node_known = namespace is not None
     if namespace is None and (output := found.get('output') or found.get('poses')):
         namespace = output.rpartition('/')[0]
     if 'rotor' not in found:
@@ -78,11 +79,17 @@ def find_topics(
         del left[found['rotor']]
     chosen = found['rotor'] if namespace is None else f'{namespace}/{ROTOR_STATE}'
     expected = Topics.in_namespace_of(chosen)._asdict()
-    for part in parts:
-        if part not in found:
-            same_node = left.get(expected[part]) == TOPICS[_PARTS[part]].type
-            found[part] = expected[part] if same_node else _find_topic(bag, left, _PARTS[part])
-            del left[found[part]]
+    for part in [part for part in parts if part not in found]:
+        topic, kind = expected[part], TOPICS[_PARTS[part]].type
+        if left.get(topic) != kind:
+            of_others = {base_name(other) for other in _of_type(left, kind)}
+            if node_known and _PARTS[part] in of_others:
+                if part == 'output':
+                    raise missing_topic(bag.path, left, topic, kind)
+                continue
+            topic = _find_topic(bag, left, _PARTS[part])
+        found[part] = topic
+        del left[topic]
     if outputs:
         found.setdefault('poses', '')
     return Topics(**found)

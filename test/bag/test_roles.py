@@ -183,6 +183,16 @@ def test_the_encoder_at_the_output_is_found_by_name(joint_states, given, found):
     assert find_encoder_topic(bag_with(joint_states), '/arm/rotor_state', given) == found
 
 
+def test_outputs_of_another_node_are_not_those_of_the_one_that_is_named():
+    bag = bag_with('/m /output_state /right/output_state', '/body_poses')
+    found = find_topics(bag, namespace='/right')
+    assert found == Topics('/m', '/right/output_state', '')
+    with pytest.raises(BagError, match=r'no topic /left/output_state .* there are'):
+        find_topics(bag, namespace='/left')
+    # Others can be those of the node, by other names.
+    assert find_topics(bag_with('/rotor_state /shaft'), namespace='/left').output == '/shaft'
+
+
 def test_which_encoder_is_meant_is_asked():
     bag = bag_with('/b/output_encoder /a/output_encoder')
     with pytest.raises(BagError, match='which topic is output_encoder'):
