@@ -147,7 +147,18 @@ class Corrector:
         self._stamps, self._last = (second, third, last, stamp), (turns, angle)
         deviation = slope = unknown = 0.0
         for radius, coefficient, states in self._stops:
-            part = coefficient / len(states)
+            if len(states) == 1:  # its history is known, as it nearly always is
+                state = states[0] + step
+                if state < -radius:
+                    state = -radius
+                elif state > radius:
+                    state = radius
+                else:
+                    slope += coefficient
+                states[0] = state
+                deviation += coefficient * state
+                continue
+            part = 0.5 * coefficient
             for k, before in enumerate(states):
                 state = before + step
                 if state < -radius:
@@ -158,7 +169,7 @@ class Corrector:
                     slope += part
                 states[k] = state
                 deviation += part * state
-            if states[0] == states[-1]:
+            if states[0] == states[1]:
                 del states[1:]
             else:
                 unknown += abs(part) * (states[1] - states[0])
