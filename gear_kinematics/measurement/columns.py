@@ -27,7 +27,7 @@ _TORQUE = (
 _KNOWN_WORDS = (*_ROTOR, *_OUTPUT, *_ANGLE, *_TORQUE, 'current')
 _TIME = (
     'time', 't', *_STAMP, 'today', 'datetime', 'elapsed', 'zeit', 'uhrzeit', 'temps', 'tempo',
-    'tiempo', 'xtime', 'x',
+    'tiempo', 'tout', 'xtime', 'x',
 )  # fmt: skip
 _FILLING = {
     'header', 'receive', 'log', 'measured', 'actual', 'act', 'filtered', 'raw', 'field', 'data',
@@ -140,7 +140,8 @@ def find_columns(
         ColumnsError: if too few columns are found.
         ValueError: if a name or a unit is unknown, or a name occurs more than once.
     """
-    named, below = {}, dict(below)
+    named = {}
+    below = {k: '=' * unit.startswith('=') + _unit(unit.lstrip('=')) for k, unit in below.items()}
     for role in ('time', *_ANGULAR, 'torque'):
         if name := getattr(given, role):
             plain, bracket, unit = name.rpartition('[')

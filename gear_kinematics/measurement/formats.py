@@ -26,7 +26,10 @@ def _parquet(path: Path) -> TableFile:
     import pandas as pd  # noqa: PLC0415, of an extra
 
     columns: dict[str, Any] = {}
-    for name, column in pd.read_parquet(path, engine='pyarrow').items():
+    frame = pd.read_parquet(path, engine='pyarrow')
+    if frame.index.dtype.kind in 'mMf':
+        frame = frame.rename_axis(index=frame.index.name or 'time').reset_index()
+    for name, column in frame.items():
         if np.ndim(next(iter(column.dropna()), 0)) == 1:
             vectors = (vector if np.ndim(vector) else () for vector in column)
             elements = enumerate(zip_longest(*vectors, fillvalue=np.nan))
@@ -46,6 +49,11 @@ def _mat(path: Path) -> TableFile:
         if isinstance(value, dict):
             for key, inner in value.items():
                 add(f'{name}.{key}' if name else key, inner)
+        elif all(isinstance(each, dict) for each in np.atleast_1d(value)):  # of scopes of Simulink
+            above = name.rpartition('.')[0]
+            for k, signal in enumerate(value):
+                label = signal.get('label') or f'{name}[{k}]'
+                add(f'{above}.{label}' if above else label, signal)
         elif np.ndim(value) in {1, 2} and np.asarray(value).dtype.kind in 'iuf':
             values = np.squeeze(value)
             if values.ndim == 1 and values.size > 1:

@@ -187,8 +187,12 @@ def _frozen(still: Array, other: Array) -> NDArray[np.bool_]:
 
 def _lost_motion(steps: Array, ideal: Array, fastest: float) -> NDArray[np.bool_]:
     """Find the steps of the error, rad, by which the output lags at a reversal of the rotor."""
-    most = np.minimum(np.abs(ideal), fastest)
-    lag = -steps * np.sign(ideal)
+    moved = np.abs(ideal)
+    # Where a sample is missing at the reversal, the motion there and back is one step.
+    moved[1:-1] = np.maximum(moved[1:-1], np.minimum(moved[:-2], moved[2:]))
+    most = np.minimum(moved, fastest)
+    _, after = _directions(ideal, _REVERSAL)
+    lag = -steps * np.where(after, np.sign(after), np.sign(ideal))
     lost: NDArray[np.bool_] = _reverses(ideal, _REVERSAL) & (lag > 0.0) & (lag <= 1.1 * most)
     return lost
 
@@ -198,12 +202,17 @@ def _reverses(ideal: Array, around: int) -> NDArray[np.bool_]:
 
     A recording may begin and end with one.
     """
-    signs = np.concatenate([np.zeros(around), np.sign(ideal), np.zeros(around)])
-    sums = np.convolve(signs, np.ones(around), 'valid')
-    before, after = sums[: len(ideal)], sums[around : around + len(ideal)]
+    before, after = _directions(ideal, around)
     reverses: NDArray[np.bool_] = before * after <= 0.0
     reverses[:around] = reverses[-around:] = True
     return reverses
+
+
+def _directions(ideal: Array, around: int) -> tuple[Array, Array]:
+    """Sum the signs of so many steps, rad, before each step, and of those from it on."""
+    signs = np.concatenate([np.zeros(around), np.sign(ideal), np.zeros(around)])
+    sums = np.convolve(signs, np.ones(around), 'valid')
+    return sums[: len(ideal)], sums[around : around + len(ideal)]
 
 
 def _slipped(error: Array, ideal: Array, usually: float) -> NDArray[np.bool_]:

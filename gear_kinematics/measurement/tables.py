@@ -150,9 +150,9 @@ class _Samples:
             del found['torque'], data['torque'], usable['torque']
         counts = [*map(np.count_nonzero, usable.values())]
         fewest, apart = min(counts), len({*clocks.values()}) > 1
-        if not apart and len(lengths := {*map(len, data.values())}) > 1:
+        if not apart and len(lengths := {*map(len, raw.values())}) > 1:
             raise ValueError(
-                f'columns of {" and ".join(map(str, sorted(lengths)))} rows, without times'
+                f'columns of {" and ".join(map(str, sorted(lengths)))} rows, without times of each'
             )
         both = np.zeros(1, bool) if apart else np.all([*usable.values()], axis=0)
         # PlotJuggler writes each series at its own times, and leaves the other columns empty.

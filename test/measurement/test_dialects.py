@@ -490,6 +490,23 @@ def parquet(path, time, rotor, output):
     return Sources(rotor='observation.state[0]', output='observation.state[1]', unit='rad')
 
 
+def parquet_of_times(path, time, rotor, output):
+    pytest.importorskip('pyarrow')
+    pd = pytest.importorskip('pandas')
+    index = pd.to_datetime(1.79e9 + time, unit='s')
+    pd.DataFrame({'rotor': rotor, 'output': output}, index=index).to_parquet(path)
+    return Sources()
+
+
+def scope(path, time, rotor, output):
+    """As a scope of Simulink has it, a structure with time."""
+    io = pytest.importorskip('scipy.io')
+    signals = [('Motor angle [rad]', rotor), ('Output angle [rad]', output)]
+    signals = np.array([{'values': values, 'label': label} for label, values in signals])
+    io.savemat(path, {'Scope': {'time': time, 'signals': signals, 'blockName': 'm/Scope'}})
+    return Sources()
+
+
 def mat(path, time, rotor, output):
     io = pytest.importorskip('scipy.io')
     io.savemat(path, {'run': {'time': time, 'rotor_deg': DEG * rotor, 'output': {'rad': output}}})
@@ -525,9 +542,9 @@ def workbook(path, time, rotor, output):
 def tdms(path, time, rotor, output):
     nptdms = pytest.importorskip('nptdms')
     with nptdms.TdmsWriter(path) as writer:
-        for group, values in (('Rotor', DEG * rotor), ('Output', DEG * output)):
-            known = {'wf_increment': float(time[1])}
-            channel = nptdms.ChannelObject(group, 'Angle [deg]', values, properties=known)
+        for group, values in (('Rotor', rotor), ('Output', output)):
+            known = {'wf_increment': float(time[1]), 'unit_string': 'Degrees'}
+            channel = nptdms.ChannelObject(group, 'Angle', DEG * values, properties=known)
             writer.write_segment([channel])
     return Sources()
 
@@ -548,6 +565,7 @@ def mf4(path, time, rotor, output):
 
 
 FORMATS = {'parquet': parquet, 'mat': mat, '7.3.mat': hdf5, 'tdms': tdms, 'mf4': mf4}
+FORMATS |= {'index.parquet': parquet_of_times, 'scope.mat': scope}
 FORMATS |= {'xlsx': workbook, **dict.fromkeys(('csv.gz', 'tsv.zst', 'TXT.zip'), text)}
 
 
@@ -555,7 +573,9 @@ FORMATS |= {'xlsx': workbook, **dict.fromkeys(('csv.gz', 'tsv.zst', 'TXT.zip'), 
 def test_other_formats(tmp_path, gear, reference, name):
     path = tmp_path / f'r.{name}'
     given = FORMATS[name](path, *reference('encoders'))
-    assert_measured(read(path, gear, given), gear)
+    recording = read(path, gear, given)
+    assert recording.encoders.timed
+    assert_measured(recording, gear)
     path.write_bytes(b'nothing at all')
     with pytest.raises(RecordingError, match=f'{re.escape(name)}: '):
         read(path, gear, given)
@@ -575,3 +595,20 @@ def test_the_advice_gives_the_output_the_column_that_is_named_after_it(tmp_path,
         RecordingError, match=r'--rotor-column motor\d_pos --output-column output_'
     ):
         read(saved(tmp_path, content), gear)
+
+
+def test_columns_of_different_lengths_are_refused(tmp_path, gear, reference):
+    io = pytest.importorskip('scipy.io')
+    time, rotor, output = reference('encoders')
+    io.savemat(tmp_path / 'r.mat', {'tout': time[1:], 'rotor': rotor, 'output': output})
+    with pytest.raises(
+        RecordingError, match='columns of 1319 and 1320 rows, without times of each'
+    ):
+        read(tmp_path / 'r.mat', gear)
+
+
+def test_a_sample_that_is_missing_at_a_reversal_is_no_slip(tmp_path, gear, reference):
+    columns = reference('encoders')
+    kept = np.arange(columns.shape[1]) % 9 != 2
+    path = saved(tmp_path, written(columns[:, kept], NAMES, ('{:.2f}', '{:.6f}', '{:.6f}')))
+    assert read(path, gear).faults == ()
