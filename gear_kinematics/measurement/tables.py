@@ -346,7 +346,7 @@ def _advice(path: Path, table: TableFile, sources: Sources, ratio: Fraction) -> 
     text = f'among the columns {listed}; name them'
     for likeness in sorted(pairs, reverse=True)[:_FEWEST]:
         rotor, output = pairs[likeness]
-        named = replace(sources, rotor=rotor, output=output)
+        named = replace(sources, rotor=rotor, output=output, as_recorded=False)
         words = ['--rotor-column', rotor, '--output-column', output]
         try:
             _recording(path, table, named, ratio)
@@ -357,5 +357,6 @@ def _advice(path: Path, table: TableFile, sources: Sources, ratio: Fraction) -> 
             unit = ['deg'] if np.any(parts > 0.0) else ['counts', *_COUNTS]
             words += _COUNTS if option[0] == '-counts' else ['--angle-unit', *unit]
         command = shlex.join([*sources.command.split(), str(path), *words])
-        return f'{text} with their units, for example: {command}'
+        counts = f' and their counts per turn in place of {_COUNTS[1]}' * (_COUNTS[1] in words)
+        return f'{text} with their units{counts}, for example: {command}'
     return f'{text} with --angle-column, --torque-column, --rotor-column, --output-column'

@@ -450,14 +450,16 @@ def test_what_speaks_against_a_unit_is_said(tmp_path, gear, reference, table, wr
         ('FB{} [cnt]', ['--rotor-counts', '4096', '--output-counts', '4096']),
     ],
 )
-def test_the_command_line_of_the_advice_works(tmp_path, gear, reference, name, unit):
+@pytest.mark.parametrize('as_recorded', [False, True])
+def test_the_command_line_of_the_advice_works(tmp_path, gear, reference, name, unit, as_recorded):
     time, rotor, output = reference('encoders')
     names = ','.join(['t', name.format(1), 'temp', name.format(2)])
     content = written([time, rotor, 30.0 * time, output], names, 4 * ['{:.5f}'])
     path = saved(tmp_path, content)
     with pytest.raises(RecordingError, match=r'among the columns t \(0.00000\), .*1') as caught:
-        read(path, gear)
-    _, command = str(caught.value).split('for example: ')
+        read(path, gear, Sources(as_recorded=as_recorded))
+    text, command = str(caught.value).split('for example: ')
+    assert ('counts per turn in place of 4096' in text) == ('4096' in unit)
     parser = argparse.ArgumentParser()
     parser.set_defaults(parser=parser)
     add_recordings(parser, 'angle', 'torque', 'rotor', 'output')

@@ -50,7 +50,9 @@ class Joint:
         if len(measured) <= 1:
             raise RecordingError(f'{path}: only one sample of both encoders')
         if not encoders.timed:
-            raise RecordingError(f'{path}: no column of times, such as time_s')
+            raise RecordingError(
+                f'{path}: no column of times, such as time_s; name it with --time-column'
+            )
         rotor = motion.turns * TURN + motion.angle
         for body, values, step in (
             ('rotor', rotor, encoders.rotor_step),
