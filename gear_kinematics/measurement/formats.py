@@ -3,8 +3,8 @@
 
 A table becomes a recording in steps, each in a module of its own: `open_table` here chooses the
 reader; `dialects` finds names, units and numbers in a text, whose `cells` are numbers, times or
-arrays; `columns` finds the meaning of names and units; `clocks` gives the rows their times; and
-`tables` decides which rows are used.
+arrays; `columns` finds the meaning of names and units, or `advice` proposes columns; `clocks`
+gives the rows their times; and `tables` decides which rows are used.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping

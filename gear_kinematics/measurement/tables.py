@@ -1,28 +1,24 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Tables as recordings: the rows that are used, their units and times."""
 
-import re
-import shlex
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from fractions import Fraction
-from itertools import filterfalse, permutations
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
+from gear_kinematics.measurement.advice import advise
 from gear_kinematics.measurement.clocks import FASTEST, MOST, stamps, with_unit
 from gear_kinematics.measurement.columns import (
     ColumnsError,
     Sources,
     described,
     find_columns,
-    may_be_angle,
     nanoseconds_of,
-    sides,
 )
 from gear_kinematics.measurement.commissioning.encoder_range import count_wraps, signed, unwrapped
 from gear_kinematics.measurement.commissioning.joint import other_unit
@@ -51,15 +47,7 @@ _MOST_TWIST = 0.35  # rad of the output under torque; a shaft that turns further
 _BLOCKS, _LIKE = 10, (0.08, 1.0)
 """Number of parts of a recording; error of the output within a part that shows degrees, rad."""
 _WHOLE = 50  # number of different whole numbers that are no coincidence
-_TRIED, _FEWEST, _ROWS = 12, 10, 10_000
-"""Number of columns that are tried for an example; least and most rows that are compared."""
-_NO_ANGLE = re.compile(
-    r'(?i)torq|effort|curr|vel(?!_mapper)|speed|rpm|/ ?s|temp|time|stamp|target|goal|cmd|elec|^t$'
-)
-"""Words in names of columns that are not proposed as angles."""
-_LIKELY = re.compile(r'(?i)pos|ang|enc|theta|winkel|(rad|deg|rev|inc|cnt|counts)\b')
-"""Words in names of columns that are proposed first."""
-_COUNTS = '--rotor-counts', '4096', '--output-counts', '4096'  # example for whole numbers
+_FEWEST, _ROWS = 10, 10_000  # least number of samples of a part; greatest number in all
 _THOUSAND = 1000.0
 _SHOWN = 800  # characters of an error, which may quote a long file
 
@@ -127,7 +115,8 @@ class _Samples:
         try:
             found = find_columns(table.names, sources, table.units, table.clocks)
         except ColumnsError as error:
-            raise ValueError(f'{error} {_advice(path, table, sources, ratio)}') from error
+            advice = advise(path, table, sources, partial(_recording, path, table, ratio=ratio))
+            raise ValueError(f'{error} {advice}') from error
         clock = found.pop('time', None)
         rest = nanoseconds_of(clock.name, table.names) if clock else None
         usual = clock.name if clock else ''
@@ -322,41 +311,3 @@ def _error(rotor: Array, output: Array) -> float:
     delay = error @ speed / max(speed @ speed, _LEAST)
     spreads = [np.ptp(np.quantile(e - delay * v, (1.0 - MOST, MOST))) for e, v in parts]
     return float(np.median(spreads))
-
-
-def _advice(path: Path, table: TableFile, sources: Sources, ratio: Fraction) -> str:
-    """List the columns with their first values, and propose a command line that works, if any."""
-    names = [name for name in table.names if name]
-    listed = ', '.join(f'{name} ({table.first.get(name, "")})' for name in names)
-    angles = filter(may_be_angle, filterfalse(_NO_ANGLE.search, names))
-    single = [name for name in angles if names.count(name) == 1]
-    likely = [*filter(_LIKELY.search, single)]
-    raw, _ = table.load((likely if len(likely) > 1 else single)[:_TRIED])
-    raw = {
-        name: values.astype(float) for name, values in raw.items() if values.dtype.kind in 'iuf'
-    }
-    pairs = {}
-    for rotor, output in permutations(raw, 2):
-        if len(raw[rotor]) != len(raw[output]) or sides(rotor)[1] or sides(output)[0]:
-            continue
-        pair = np.array([raw[rotor], raw[output]])[:, :_ROWS]
-        pair = np.diff(pair[:, np.isfinite(pair).all(axis=0)])
-        if pair.shape[1] > _FEWEST and (spread := np.std(pair, axis=1))[0] > spread[1] > 0.0:
-            pairs[abs(np.corrcoef(pair)[0, 1])] = rotor, output
-    text = f'among the columns {listed}; name them'
-    for likeness in sorted(pairs, reverse=True)[:_FEWEST]:
-        rotor, output = pairs[likeness]
-        named = replace(sources, rotor=rotor, output=output, as_recorded=False)
-        words = ['--rotor-column', rotor, '--output-column', output]
-        try:
-            _recording(path, table, named, ratio)
-        except ValueError as error:
-            if not (option := re.search('--angle-unit|-counts', str(error))):
-                continue
-            parts = np.concatenate([raw[rotor], raw[output]]) % 1.0
-            unit = ['deg'] if np.any(parts > 0.0) else ['counts', *_COUNTS]
-            words += _COUNTS if option[0] == '-counts' else ['--angle-unit', *unit]
-        command = shlex.join([*sources.command.split(), str(path), *words])
-        counts = f' and their counts per turn in place of {_COUNTS[1]}' * (_COUNTS[1] in words)
-        return f'{text} with their units{counts}, for example: {command}'
-    return f'{text} with --angle-column, --torque-column, --rotor-column, --output-column'
