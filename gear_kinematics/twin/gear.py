@@ -49,8 +49,8 @@ class LoadingCurve:
     friction: tuple[float, ...]  #: friction torques, N·m
 
     def at(self, wind_up: float) -> tuple[float, float]:
-        """Return torque and friction at a wind-up; friction is constant beyond the ends."""
-        right = min(max(bisect(self.wind_up, wind_up), 1), len(self.wind_up) - 1)
+        """Return torque, N·m, and friction at a wind-up, rad; friction is constant beyond the ends."""
+        right = bisect(self.wind_up, wind_up, 1, len(self.wind_up) - 1)
         left = right - 1
         share = (wind_up - self.wind_up[left]) / (self.wind_up[right] - self.wind_up[left])
         within = max(0.0, min(share, 1.0))

@@ -73,7 +73,9 @@ def real_gear(
     found = measure(read(recording, config, Sources(on_rotor=on_rotor)), config)
     report.write_text(json.dumps(document([found], None, Limits()).data), 'utf-8')
     gear = TwinGear.of(
-        NodeParameters.of({'loads.rotor_inertia': 1e-5, 'branch_stiffness': [1e3]}),
+        NodeParameters.of(
+            {'branches': ['a'], 'loads.rotor_inertia': 1e-5, 'branch_stiffness': [1e3]}
+        ),
         TwinParameters.of(
             {'play': 0.0, 'friction': 0.0, 'rotor_damping': 0.0, 'output_inertia': 1e-3}
         ),
