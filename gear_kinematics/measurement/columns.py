@@ -166,8 +166,7 @@ def find_columns(
     elif 'torque' in found and (angles := [found[role] for role in _ANGULAR if role in found]):
         found = {'angle': angles[0]} | {r: found[r] for r in found if r in {'torque', 'time'}}
     else:
-        torques = {size: unit for unit, size in reversed([*_UNITS['torque'].items()])}
-        known = f'known units: {", ".join((*ANGLE_UNITS, *reversed(torques.values())))}'
+        known = f'known units: {", ".join((*ANGLE_UNITS, *_usual("torque")))}'
         raise ColumnsError(f'neither an angle and a torque nor a rotor and an output ({known})')
     if own := [clocks[name] for name in found.values() if name in clocks]:
         found['time'] = own[0]
@@ -202,14 +201,24 @@ def known_units(cells: Sequence[str]) -> list[str]:
     return units if 2 * known > len([*filter(None, units)]) else []
 
 
+def _usual(role: str) -> list[str]:
+    """The usual words for the units of a quantity."""
+    words: dict[float | None, str] = {}
+    for unit, size in _UNITS[role].items():
+        words.setdefault(size, unit)
+    return [*words.values()]
+
+
 def _column(role: str, name: str, given: Sources, common: str, below: Mapping[str, str]) -> Column:
     (words, unit), own = _split(name), ''
     elsewhere = below.get(name, '')
     unit = elsewhere[1:] if elsewhere[:1] == '=' else unit or elsewhere or _unknown(role, words)
     if unit and unit not in _UNITS[role] and not (given.unit and role in _ANGULAR):
-        listed = ', '.join(sorted(_UNITS[role]))
-        option = '; or give it with --angle-unit' if role in _ANGULAR else ''
-        raise ValueError(f'{name}: the unit {unit} is not known; known: {listed}{option}')
+        usual = _usual(role)
+        raise ValueError(
+            f'{name}: the unit {unit} is not known; known: {", ".join(usual)}; give it, as in '
+            f'--{role}-column {shlex.quote(f"{name} [{usual[0]}]")}'
+        )
     if role in _ANGULAR:
         own, unit = given.unit or unit, given.unit or unit or common
         if not unit and not _role(name)[0]:
