@@ -49,7 +49,7 @@ class LoadingCurve:
     friction: tuple[float, ...]  #: friction torques, N·m
 
     def at(self, wind_up: float) -> tuple[float, float]:
-        """Return torque and friction, N·m, at a wind-up, rad; beyond the ends friction is constant."""
+        """Return torque and friction, N·m, at a wind-up, rad; friction stays beyond the ends."""
         right = bisect(self.wind_up, wind_up, 1, len(self.wind_up) - 1)
         left = right - 1
         share = (wind_up - self.wind_up[left]) / (self.wind_up[right] - self.wind_up[left])

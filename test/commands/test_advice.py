@@ -127,7 +127,7 @@ def test_the_joint_chooses_among_topics(tmp_path, capsys):
         ('valdate a', "'valdate'; did you mean `validate`? there are: animate, calibrate, "),
         ('plot sheme a', "'sheme'; did you mean `scheme`? there are: output, roses, "),
         ('compute a b --storage mcp', "'mcp'; did you mean `mcap`? there are: mcap"),
-        ('replay a --lopp', '--lopp; did you mean `--loop`? there are: --as, '),
+        ('replay a --lopp', '--lopp; did you mean `--loop`? there are: --actuator, --as, '),
         ('plot scheme a --degres', '--degres; did you mean `--degrees`? there are: --actuator'),
         ('replay a b', 'unrecognized arguments: b; see gearkin replay --help'),
         ('urdf --config my.yaml', 'did you mean `module`?; there are: ring_teeth, '),
