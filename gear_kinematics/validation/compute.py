@@ -26,6 +26,7 @@ from gear_kinematics.wire.topics import (
     LOAD_TOPICS,
     OUTPUT_STATE,
     TOPICS,
+    TRANSMISSION_ERROR,
     base_name,
     topic_of,
 )
@@ -62,8 +63,9 @@ def compute(
 
     The actuators are given by name, '' for one gear. They have the topics that the node gives
     them: only `output_state` if just the ratio is known, the loads with a preload, and
-    CORRECTED_TOPICS with a calibration. Of the other topics, all are copied or those in `others`;
-    an `encoder_topic` that references the rotor always is. `files` are contents by name.
+    CORRECTED_TOPICS with a calibration. Of the other topics, those in `others` are copied, or all
+    but the transmission error of outputs that are replaced; an `encoder_topic` that references
+    the rotor always is. `files` are contents by name.
 
     Each output follows its rotor message, with the same time of reception. Until the output's
     encoder references the rotor, outputs are those of the nearest turn or the configured zero, as
@@ -86,7 +88,11 @@ def compute(
         raise ValueError(f'{", ".join(all_names)}: the names must differ')
     outputs = {topic: TOPICS[base_name(name)].type for name, topic in names.items()}
     inputs = {rotor_topic, encoder_topic} if encoder_topic else {rotor_topic}
-    chosen = {*inputs, *(source.topics if others is None else others)}
+    if others is None:  # errors of the outputs that are replaced would contradict the new ones
+        others = source.topics.keys() - {
+            *in_namespace([TRANSMISSION_ERROR], topics.output).values()
+        }
+    chosen = {*inputs, *others}
     _check_topics(source, rotor_topic, chosen, outputs)
     kept, computed, copied = list[str](), 0, 0
     efforts = dict.fromkeys(gears, 0.0)

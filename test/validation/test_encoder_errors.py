@@ -10,10 +10,12 @@ from live import rotor_bytes
 from node_loop import ENCODER
 from shipped_bags import JOINT_STATE, write_bag
 
+from gear_kinematics.bag import Bag
 from gear_kinematics.parameters.arm import load_actuators
 from gear_kinematics.state.arm_state import ArmState
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.validation import explain
+from gear_kinematics.validation.compute import compute
 from gear_kinematics.validation.validate_bag import validate
 
 ERRORS = '/transmission_error'
@@ -100,6 +102,17 @@ def test_errors_without_the_encoder_are_not_compared(tmp_path):
     report = judged(tmp_path, messages)
     assert report.passed, explain(report)
     assert 'recorded, but not compared: transmission_error' in explain(report)
+
+
+def test_errors_of_other_outputs_are_not_kept_beside_computed_ones(tmp_path):
+    """The recorded node was homed, which computed outputs are not."""
+    assert judged(tmp_path, lambda actuators: recording(actuators, 251)).passed
+    file, computed = tmp_path / 'arm.yaml', tmp_path / 'computed'
+    with Bag(tmp_path / 'bag') as bag:
+        result = compute(bag, computed, load_actuators(file))
+    assert result.left_out == (ERRORS,)
+    report = validate(computed, file)
+    assert report.passed, explain(report)
 
 
 def test_a_message_that_is_none_fails(tmp_path):
