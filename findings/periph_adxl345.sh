@@ -36,9 +36,9 @@ type sensor struct {
 	registers [64]byte
 }
 
-func (s *sensor) String() string                                         { return "sensor" }
-func (s *sensor) Duplex() conn.Duplex                                    { return conn.Full }
-func (s *sensor) TxPackets([]spi.Packet) error                           { return nil }
+func (s *sensor) String() string                                            { return "sensor" }
+func (s *sensor) Duplex() conn.Duplex                                       { return conn.Full }
+func (s *sensor) TxPackets([]spi.Packet) error                              { return nil }
 func (s *sensor) Connect(physic.Frequency, spi.Mode, int) (spi.Conn, error) { return s, nil }
 
 func (s *sensor) Tx(written, read []byte) error {
@@ -51,7 +51,7 @@ func (s *sensor) Tx(written, read []byte) error {
 // motor answers as a Tic on I2C whose target and acting target are -1.
 type motor struct{}
 
-func (motor) String() string                 { return "motor" }
+func (motor) String() string                  { return "motor" }
 func (motor) SetSpeed(physic.Frequency) error { return nil }
 
 func (motor) Tx(_ uint16, _, read []byte) error {
