@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# accel-stepper 0.1.0 (Rust): a motor at a constant speed trembles on the spot, and a new goal behind it reverses it at full speed.
+# accel-stepper 0.1.0 (Rust): at a constant speed a motor trembles on the spot, and a new goal behind it reverses it at full speed.
 #
 # It is a port of the Arduino library of this name. Expected after 1 s at a constant speed of 100 steps/s: 100 steps, and -100 at
 # -100 steps/s. What happens: the direction of a step is not that of the speed, but that from the position to the goal, and forward

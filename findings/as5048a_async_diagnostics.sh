@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# as5048a-async 0.1.0 (Rust): an encoder whose angle is not valid is valid, a weak magnet is a good one, and a sound encoder is not ready.
+# as5048a-async 0.1.0 (Rust): an invalid angle is reported as valid, a weak magnet as good, and a sound encoder as never ready.
 #
 # The AS5048A has its four flags in the bits 8 to 11 of its register 0x3FFD: offset compensation finished, CORDIC overflow, field too
 # high, field too weak. What happens: they are looked for two bits higher up, in 10 to 13. A sound encoder, 0x0180, has not finished

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# grafito-canstepper 0.2.3: an axis with a limit of 10 turns goes to 12 by two moves of 6, and anywhere if none was reported yet.
+# grafito-canstepper 0.2.3: an axis with a limit of 10 turns goes to 12 by two moves of 6, and anywhere before its first report.
 #
 # Expected of Axis(max_pos=10): move_by(6) and, before the axis is there, move_by(6) again are 12, so that the second is a
 # LimitViolation. What happens: the limit is compared with the last position that was reported plus the step, but the motor adds

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# commons-math3 3.6.1 (Java): the smoother that is to withstand outliers makes 10 readings NaN around one bad one, or follows it.
+# commons-math3 3.6.1 (Java): a smoother that is to withstand outliers gives 10 NaN around a single one, or follows it.
 #
 # An encoder that stands still trembles by one count, and one of its 201 readings is 4096 counts too large. Expected of LoessInterpolator
 # with its 2 robust iterations: 1000 to 1001 counts everywhere. What happens: the bad reading spoils the first fit of its neighbours,

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# diozero-core 1.4.1 (Java): a stepper whose coils are driven two at a time does not turn, and the second of two motors is the first one.
+# diozero-core 1.4.1 (Java): the second of two motors is the first one, and a stepper with two coils on at a time does not turn.
 #
 # Expected of DualMotor.getMotorB(): the second motor. What happens: it is the first; setValues() drives both. Expected of a bipolar
 # stepper in the style DOUBLE, of the package `sandpit`: two neighbouring coils at each step, and after four steps one

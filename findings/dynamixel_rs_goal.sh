@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# dynamixel 0.1.1 (Rust): a goal of 1.9 mrad is sent as 0 to a PRO servo with 0.024 mrad per count, and an MX-28 cannot hold a position.
+# dynamixel 0.1.1 (Rust): a goal of 1.9 mrad is sent to a PRO servo as 0, and an MX-28 that is sent its own position creeps away.
 #
 # An M42-10-S260-R has 263187 counts per turn. Expected of a goal of 1.9 mrad: 80 counts. What happens: the goal is first cut off to
 # whole steps of 2 mrad, so that 0 is sent, and 131509 for a goal of π, 2 mrad short of the 131593 counts of half a turn. An MX-28

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# endaq 1.5.3: the same quaternion has a roll of -2°, 51°, 53° or 70°, another one each time that the program is started.
+# endaq 1.5.3: the same quaternion has a roll of -2°, 51°, 53° or 70°, by chance at each start of the program.
 #
 # An arm is turned by 30° about x, then by 40° about its own y and by 50° about its own z. Expected of quaternion_to_euler(), which
 # is intrinsic by its documentation: 30°, 40° and 50°. What happens in the mode 'roll-pitch-yaw': which of the three words stands for x is

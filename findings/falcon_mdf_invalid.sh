@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# falcon_mdf 0.7.2 (Rust): the difference of two encoders is valid where one of them was not, and their counts are not interpolated.
+# falcon_mdf 0.7.2 (Rust): the difference of two encoders is valid where one of them is not, and counts are not interpolated.
 #
 # Its series have a flag per sample, true for valid. Expected of the difference of an output and a rotor whose second sample is invalid:
 # the second sample is invalid. What happens: the flags of both are combined by "or", so that a sample is valid if either is; if

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# gobot.io/x/gobot/v2 2.5.0 (Go): a stepper that is to move by -100 steps moves forward by 100 steps and is counted back.
+# gobot.io/x/gobot/v2 2.5.0 (Go): a move of -100 steps goes forward and is counted back, and 360 moves of 1° are 316°.
 #
 # An EasyDriver has a direction pin, 0 for forward. Expected of Move(-100): the pin is set to 1 for 100 steps. What happens: only
 # the counter knows of the sign; the pin keeps its level, the motor turns forward, and CurrentStep() is -100. After

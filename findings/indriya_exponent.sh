@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# indriya 2.2 (Java): "1e-3 rad" is 1 rad and "1,5 rad" is 15 rad, both without an error; 20 °C and 5 °C are 298 °C.
+# indriya 2.2 (Java): "1e-3 rad" is 1 rad and "1,5 rad" is 15 rad, without an error, and 20 °C plus a rise of 5 °C is 298 °C.
 #
 # The reference implementation of Java's units. Expected of Quantities.getQuantity("1e-3 rad"), as C and Python write it: 0.001 rad, or
 # an error. What happens: the number ends at the "e", and what follows up to the space is left out, so that any exponent is 10^0:

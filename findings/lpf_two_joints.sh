@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# lpf 1.0.0 (npm): two joints share one filter, an array of angles below 0.5 rad becomes 0, and a stream is filtered ten times.
+# lpf 1.0.0 (npm): two joints share one filter, angles below 0.5 rad in an array become 0, and each value is filtered ten times.
 #
 # The module is itself a filter. Expected of a low-pass of y += 0.1 (x - y): after 7 readings at 100 rad it is at half of them. What
 # happens: next() filters its last ten values, which it has filtered already, once more, so that 40 readings are needed.

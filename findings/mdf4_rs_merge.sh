@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# mdf4-rs 0.3.3 (Rust): merging two recordings makes 1500 of a position of 1.5 rad and times that go back.
+# mdf4-rs 0.3.3 (Rust): merging makes 1500 of a position of 1.5 rad and times that go back, and a cut recording cannot be read.
 #
 # A channel has whole numbers with a factor of 0.001 and the unit rad. Expected after merge_files() of two recordings of 5 s: 10 values of
 # 1.500 to 1.504 rad at times that rise. What happens: of a channel only its bits and its name are kept, not its conversion and unit, so

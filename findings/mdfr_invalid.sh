@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# mdfr 0.7.3: a reading that an .mf4 marks as invalid is an angle like any other, and a joined recording goes on in rad as deg.
+# mdfr 0.7.3: a reading that an .mf4 marks as invalid is an angle like any other, and joining puts numbers in rad under the unit deg.
 #
 # An encoder gives 0 while it has a fault, and marks these samples as invalid. Expected: no value, as mf4-rs 3.7.0 gives nan of
 # the same file, or a mask. What happens: get_channel_data(), get_polars_series() and the exported CSV have 0, and nothing tells them

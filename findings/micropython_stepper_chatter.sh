@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# micropython-stepper 1.0.3: a stepper that is sent to 10° steps to and fro on and on, and one that is told to be at 90° is at 0°.
+# micropython-stepper 1.0.3: a stepper that is sent to 10° steps to and fro for ever, and one that is set to 90° is at 0°.
 #
 # 200 steps a turn make 5.56 steps of 10°. Expected of target_deg(10): the motor stops at 5 or 6 steps. What happens: the target
 # stays at 5.56, and as a motor is never there it makes one step on and one back at each tick of its timer, 1000 a second here.

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# node-red-node-smooth 0.1.2 (npm): a reading that is null makes the mean of a joint at 100 rad 90 rad, and a deviation 0.2 mrad or NaN.
+# node-red-node-smooth 0.1.2 (npm): one null makes 90 rad of a mean of 100 rad, and a deviation of 0.03 mrad is 0.2 mrad or NaN.
 #
 # JSON has no NaN, so that a lost reading is null. Expected of the mean of 10: null is left out with a remark, as "abc" is. What
 # happens: null and an empty text are 0, and true is 1: the mean of a joint that stands at 100 rad is 90 rad for 10 readings. Expected

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# oxictl 0.1.1 (Rust): a drive with a fault has a status that no state of CiA 402 has, and one in quick stop says that it is not ready.
+# oxictl 0.1.1 (Rust): the status word of a fault is that of no state of CiA 402, and that of a quick stop is another state.
 #
 # Ds402StateMachine stands in for a drive. Expected of its status words: those that CiA 402 has for its states, by which a master tells
 # them, such as xxxx xxxx x0xx 1000 for a fault. What happens: five states are right. A fault is 0x0048, whose bits 3 and 6 are never

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# oxictl 0.1.1 (Rust): where a motor turns back, its angle turns forward in each sector, and its Hall sensors are never at fault.
+# oxictl 0.1.1 (Rust): where a motor turns back, its angle rises within each sector, and its Hall sensors are never at fault.
 #
 # HallSensor interpolates the electrical angle between two edges. Expected of a motor that turns back at 20 rad/s: an angle that falls
 # from the upper to the lower edge of each sector. What happens: it is counted up from the lower edge with the speed's absolute

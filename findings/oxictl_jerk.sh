@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# oxictl 0.1.1 (Rust): a move of limited jerk by 2 rad goes on to 2.79 rad and is back at 2 rad within one step.
+# oxictl 0.1.1 (Rust): a move of limited jerk to 2 rad overshoots to 2.79 rad and jumps back to 2 rad within one step.
 #
 # JerkLimitedProfile plans within 30 rad/s³, 10 rad/s² and 5 rad/s, and "handles short distances". Expected of a move by 2 rad: that
 # it ends at 2 rad with a speed of 0. What happens: the peak speed for a short distance is taken as the root of jerk times distance

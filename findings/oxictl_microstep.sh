@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# oxictl 0.1.1 (Rust): a stepper that is to turn by a whole turn turns by 1/50 of it, since its currents make one period per turn.
+# oxictl 0.1.1 (Rust): in microsteps, a stepper turns by 1/50 of what its position says.
 #
 # By its documentation, the angle of MicroStepDriver's currents advances by 2π / (4 N) per microstep. A motor of 200 steps per turn has
 # 50 periods per turn, so expected after 3200 microsteps of 1/16: 50 periods, and after 64, four full steps, one period. What happens:

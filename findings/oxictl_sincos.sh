@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# oxictl 0.1.1 (Rust): a sine and cosine without any error are read right for the first 0.11 rad, then up to 3.1 rad away.
+# oxictl 0.1.1 (Rust): an ideal sine and cosine are read right for the first 0.11 rad, then up to 3.1 rad away.
 #
 # Its SincosEncoder corrects offsets and amplitudes "as the encoder rotates through a full cycle". Expected at ideal signals of
 # amplitude 1 and no offset: their angle. What happens: as soon as a signal has covered 0.1, this part of a turn is taken as its

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# pylx16a 1.1.1: a servo with limits of 60° and 180° cannot turn on by 10°, or back at all, but is sent from 170° to 240°.
+# pylx16a 1.1.1: a servo with limits of 60° and 180° refuses to turn by 10°, or back, but turns from 170° by 70° to 240°.
 #
 # Expected of move(10, relative=True) at 100°: a command to 110°, and of move(70, relative=True) at 170° an error, since the limits
 # end at 180°. What happens: not the goal but the number of degrees to turn is compared with the limits, so that 10 is refused as

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# rclpy 7.1.6 and 9.1.2: a node refuses its own parameter file where this is loaded again, if a gain of it is written as 2e-3.
+# rclpy 7.1.6 and 9.1.2: a node refuses its own parameter file when it is loaded again, if a gain in it is written as 2e-3.
 #
 # A node is started with --params-file, and the same file is loaded into it by AsyncParameterClient.load_parameter_file(), as after an
 # edit. Expected: nothing changes. What happens: rcl reads the file at the start by its own rules, the client by PyYAML, which knows

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# rclpy 7.1.6 and 9.1.2: a parameter from -0.3 to 0.3 in steps of 0.1 takes each step but 0.0.
+# rclpy 7.1.6 and 9.1.2: a parameter from -0.3 to 0.3 in steps of 0.1 takes all seven values but 0.0.
 #
 # A trim in degrees is declared with FloatingPointRange(from_value=-0.3, to_value=0.3, step=0.1). Expected: 0.0 is one of its seven
 # values, as 0.1 is. What happens: -0.3 + 3 * 0.1 is 5.6e-17 in floating point, and is compared with 0.0 by a relative

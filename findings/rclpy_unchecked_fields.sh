@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# rclpy 7.1.6 and 9.1.2: an angle of 1 in a Float64 is published as 5e-324, and a joint whose names are 'elbow' is five joints.
+# rclpy 7.1.6 and 9.1.2: a Float64 of the whole number 1 is published as 5e-324, and the joint name 'elbow' as five joints.
 #
 # Expected of Float64(data=1), a whole number as a slider or a file gives it: 1.0, or an error. What happens: the message shows 1,
 # and its subscribers get 5e-324, as the size of the whole number is taken for the bits of the double; of -3 they get nan, of 0 zero.

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# robot-kinematics 1.1.0: in the Jacobian the last joint of each arm does not move its tip, and the tip of each URDF is at its base.
+# robot-kinematics 1.1.0: in its Jacobian the last joint of an arm does not move the tip, and the tip of each URDF is at (0, 0, 0).
 #
 # An arm of 0.5 m and 0.4 m by its DH parameters, at 0.3 and 0.5 rad. Expected of Jacobian(): the derivative of forward_kinematics(),
 # 0.435 and 0.287 m/rad in x. What happens: each joint turns about the frame at its own end, not the one before it, so that the

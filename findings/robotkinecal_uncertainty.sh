@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# robotkinecal 0.1.0: an arm that is calibrated by points instead of poses is told a third of the variance that its joints have.
+# robotkinecal 0.1.0: a calibration of an arm by points instead of poses gives a third of the right variance of its joints.
 #
 # A calibration of six joints by 20 measured points of the tool, with a noise of 0.1 mm. Expected of joints_uncertainty, which is a
 # variance by the documentation: that of the estimated parameters, as they scatter over many calibrations. What happens: the residuals are

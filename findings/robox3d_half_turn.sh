@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# robox3d 0.1.0: a rotor that is to turn to 4 rad spins on and on, at 75 rad/s after 6 s, and its gear and damping have no effect.
+# robox3d 0.1.0: a rotor that is to turn to 4 rad spins for ever, and the mimic, damping and friction of a URDF have no effect.
 #
 # A continuous joint under position control with 10 N·m/rad and 0.6 N·m·s/rad. Expected of set_targets(), which goes to 4 rad at
 # 2 rad/s: the rotor follows and stops, as it does at 3 rad. What happens: angles are kept within ±π, but not the goals; beyond half

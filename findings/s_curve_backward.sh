@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# s_curve 0.1.7 (Rust): a short move back that begins in motion jumps by 2.2 rad in a move of 2 rad, the same move forward is right.
+# s_curve 0.1.7 (Rust): a short move back that begins in motion jumps by 2.2 rad, where the same move forward is right.
 #
 # A joint that turns at 1 rad/s moves from 0 to 2 rad, within 30 rad/s³, 10 rad/s² and 5 rad/s. Expected of the move from 2 rad to
 # 0 that begins at -1 rad/s: the mirror image. What happens: where the greatest speed is not reached, the times are calculated with

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# servomotor 0.12.2: an encoder at the output that has turned by 4096 counts is read at 0.45°, and multimove() is always an error.
+# servomotor 0.12.2: a whole turn of an external encoder of 4096 counts is read as 0.45°, and multimove() always fails.
 #
 # An M17 servomotor with an external encoder of 4096 counts a turn, in degrees. Expected of get_comprehensive_position(): the
 # motor's two positions in degrees, and the count of the encoder, which the library's own table of commands says must not be

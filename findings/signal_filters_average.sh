@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# signal-filters 0.1.16 (Rust): after an encoder was at a million counts, the average of eight readings of 0.1 is -23.5.
+# signal-filters 0.1.16 (Rust): after a million counts, the average of readings of 0.1 is -23.5, and a median of five begins at 0.
 #
 # An axis moves at a million counts and more, and is then set to zero. Expected of MovingAverageFilterf32 of 8 readings, when 100 have been
 # 0.1: 0.1. What happens: the sum is kept in single precision, in which each reading is added once and taken off later;

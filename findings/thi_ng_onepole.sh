@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# @thi.ng/dsp 4.7.115 (npm): a high-pass at 1/100 of the rate lets 91 % of a standstill through; the response of a low-pass is 30 dB off.
+# @thi.ng/dsp 4.7.115 (npm): a high-pass lets 91 % of a standstill through, and the response of a low-pass is 30 dB too small.
 #
 # Expected of onepoleHP(0.01), to take the rest position out of a vibration: a joint that stands at 100 rad ends at 0. What happens: it
 # ends at 91.2 rad. Its pole is that of a low-pass seen from half the rate, so that at a low corner it lets all frequencies through,

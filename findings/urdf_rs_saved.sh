@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# urdf-rs 0.10.0 (Rust): a motor without limits in a URDF has no torque and no speed once it is saved, and its transmission is lost.
+# urdf-rs 0.10.0 (Rust): a motor without limits has an effort and a speed of 0 once its URDF is saved, and its gear is lost.
 #
 # A continuous joint needs no <limit>, and a link without <inertial> is a frame. Expected of read_from_string() and write_to_string():
 # the same robot. What happens: what the file does not have is written with zeros. The motor gets a limit of effort 0 and velocity 0,
