@@ -41,7 +41,11 @@ def run(options: argparse.Namespace) -> ExitCode:
     with stopped_by_signals() as stopped, BagWriter(options.out) as bag:
         # At the end, a node that was homed would have another zero than its first outputs.
         answers: dict[str, Future[Mapping[str, NodeParameters]]] = {}
-        with replay_node('') as node, replay_node('') as asking, ThreadPoolExecutor(1) as thread:
+        with (
+            replay_node('') as node,
+            replay_node('', 'gear_kinematics_asking') as asking,
+            ThreadPoolExecutor(1) as thread,
+        ):
 
             def ask(gear: str) -> None:
                 answers[gear] = thread.submit(parameters_of, asking, gear)

@@ -239,12 +239,12 @@ class Replay:
 
 
 @contextmanager
-def replay_node(namespace: str) -> Iterator[Node]:
+def replay_node(namespace: str, name: str = 'gear_kinematics_replay') -> Iterator[Node]:
     """Create a ROS node in its own context, without signal handlers and services."""
     context = Context()
     rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
     node = Node(
-        'gear_kinematics_replay',
+        name,
         context=context,
         namespace=namespace,
         start_parameter_services=False,

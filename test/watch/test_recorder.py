@@ -42,6 +42,7 @@ def test_what_a_node_hears_and_publishes_is_recorded_as_it_is_named(tmp_path, ca
     assert recording.process.returncode == 0
     assert re.search(rf' {ENCODER}: \d+ messages, [1-9]\d+ Hz\n', recording.text())
     assert recording.text().endswith('prove it: gearkin validate monday\n')
+    assert 'already registered' not in recording.text()  # a name in use
     with Bag(tmp_path / 'monday') as bag:
         assert bag.topics.keys() >= {
             MOTOR, ENCODER, '/diagnostics',
@@ -124,7 +125,9 @@ def test_a_node_that_is_homed_meanwhile_is_recorded_with_its_first_zero(tmp_path
     monkeypatch.setattr(Recorder, '_look', lambda *_: None)
     monkeypatch.setattr(gear, 'parameters_of', answer)
     monkeypatch.setattr('gear_kinematics.watch.text.show_recording', show)
-    monkeypatch.setattr('gear_kinematics.ros.live.replay_node', lambda _: contextlib.nullcontext())
+    monkeypatch.setattr(
+        'gear_kinematics.ros.live.replay_node', lambda *_: contextlib.nullcontext()
+    )
     assert main(['record', str(tmp_path / 'monday')]) == 0
     assert NodeParameters.load(tmp_path / 'monday' / 'actuator.yaml').rotor_zero == 0.0
 
