@@ -15,7 +15,6 @@ from itertools import pairwise
 import numpy as np
 
 from gear_kinematics.correction.reversals import tells_delay
-from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.recording import Array, RecordingError
 from gear_kinematics.statistics.normal_equations import NormalEquations
 from gear_kinematics.statistics.uncertainty import Component, Estimate, jackknife
@@ -27,9 +26,6 @@ STEP = 0.01  # s before and after a sample, for its speed; also taken between ro
 _ACCURACY = math.radians(2.0 / 3600.0) / math.sqrt(3.0)
 """rad, standard deviation. Few encoders are accurate to ±2″ over the travel, and the faster a gear
 on its springs turns, the more it follows its errors."""
-_BETWEEN, _REPEATED = math.radians(1.0 / 60.0), 1.3
-"""Standard deviation, rad, of errors that repeat with no turn of rotor or output, as of a shaft
-between two stages; and turns of the output after which they can be separated from the others."""
 _BLOCKS = 23  # a prime number, since blocks of whole cycles of an error would be alike
 _MOST = 10_000  # samples that are used; with correlated errors, more would add nothing
 _MEANS = 115  # least number of means of successive samples whose scatter shows correlation
@@ -128,7 +124,6 @@ class EncoderFit:
         parts = (
             self._equations.spreads(self._model)[_SLOPE],
             _ACCURACY,
-            _BETWEEN if abs(float(self.slope[0])) * self.travel < _REPEATED * TURN else 0.0,
             (lagging[0, _SLOPE] - self._terms[0, _SLOPE]) / math.sqrt(3.0),
             curved[0, _SLOPE] / math.sqrt(3.0),
         )

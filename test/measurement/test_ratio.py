@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 import pytest
 from gear_recordings import encoders
-from simulated_encoders import ARC_MINUTE, TURN, Drive, even_strokes, with_play
+from simulated_encoders import TURN, with_play
 
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.columns import Sources
@@ -162,16 +162,6 @@ def test_over_more_than_a_turn_errors_of_a_degree_repeat(turns, most):
     found = estimate_ratio(*joint)
     assert found.taken == -19
     assert abs(found.measured.value + 19.0) <= found.measured.uncertainty <= most
-
-
-@pytest.mark.parametrize(('degrees', 'order'), [(344.0, 8.3), (344.0, 16.33), (390.0, 5.2)])
-def test_errors_of_a_shaft_between_two_stages_contradict_no_ratio(degrees, order):
-    """They repeat neither with a turn of the rotor nor with one of the output; without noise."""
-    drive = Drive(errors={order: ARC_MINUTE})
-    time, rotor, output = drive.readings(even_strokes(math.radians(degrees), 10.0), 40.0, 250.0)
-    found = estimate_ratio(rotor, output, time)
-    assert found.fits(-19)
-    assert found.measured.uncertainty <= 3e-3
 
 
 def test_nobody_is_told_to_turn_further_where_that_does_not_help():
