@@ -14,8 +14,8 @@ set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 python3 -m venv "$folder/venv"
-"$folder/venv/bin/pip" install --quiet --disable-pip-version-check \
-    viblearn==0.1.1 numpy==2.4.6 scipy==1.17.1 scikit-learn==1.9.1
+"$folder/venv/bin/pip" install --quiet --disable-pip-version-check numpy==2.4.6 scipy==1.17.1 scikit-learn==1.9.1
+"$folder/venv/bin/pip" install --quiet --disable-pip-version-check --no-deps viblearn==0.1.1
 cd "$folder"
 timeout 100 venv/bin/python - <<'PYTHON'
 import numpy as np
