@@ -40,8 +40,12 @@ def numbers(column: Any, point: str = '.') -> Any:
     text = text.str.replace(r'(?<=\d) sec$', '', regex=True)  # as MATLAB writes durations
     text = text.str.replace(r"(?<=\d)[ '\u2019\u00a0\u202f](?=\d{3}\b)", '', regex=True)
     if text.str.fullmatch('(0x)?[0-9a-fA-F]{1,15}').all() and (
-        text.str.startswith('0x').all() or text.str.len().eq(len(text.iloc[0])).all()
-    ):  # hexadecimal, as not all are decimal
+        text.str.startswith('0x').all()
+        or (
+            text.str.len().eq(len(text.iloc[0])).all()
+            and not text.str.fullmatch(r'\d+([eE]\d+)?').all()  # as numbers in arrays are
+        )
+    ):
         return text.map(lambda digits: int(digits, 16)).to_numpy()
     other = re.escape('.' if point == ',' else ',')
     marked = text[text.str.contains(other)]

@@ -310,6 +310,9 @@ ENCODERS = {
     'hexadecimal counts, said': lambda t, r, o: written(
         [t, np.round((r - r.min()) * REV * 4096).astype(int), o], 'time,rotor_counts,output_rad',
         ('{:.2f}', '0x{:x}', '{:.5f}')),
+    'counts of as many digits, in arrays': lambda t, r, o: written(
+        [t, 500_000 + np.round(r * REV * 4096), o], 'time,rotor_counts,output_rad',
+        ('{:.2f}', '[{:.0f}]', '{:.5f}')),
     'ISO dates in the afternoon': lambda t, r, o: written(
         [t, r, o], NAMES,
         (lambda v: (NOON + timedelta(seconds=v)).strftime('%Y-%m-%d %I:%M:%S.%f %p'),
