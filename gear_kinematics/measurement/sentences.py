@@ -255,6 +255,10 @@ class Observation(Enum):
     LOADS_UNKNOWN = (
         '{answer}; the loads are unknown for {seconds:si} s, the first time from {start:.3f} s on'
     )
+    LOADS_BEGIN_LATE = (
+        '{answer}; the loads are unknown for {seconds:si} s, the first time before 0 s, when the '
+        'first known load was'
+    )
     BRANCH_OUT_OF_MESH = (
         'branch {branch} was out of mesh for {duration:si} s from {start:.3f} s on: {torque:si} '
         'N·m beyond the preload'

@@ -160,6 +160,7 @@ def test_no_recording_passes_whose_loads_are_unknown_for_a_time(
     failed, found = report(capsys, bag, '--config', config)
     assert (failed, found['verdict']) == (code, 'fail' if code else 'pass')
     assert ('the loads are unknown for 4 s' in found['answer']) == bool(code)
+    assert ('the first time before 0 s' in found['answer']) == (first == 0)
     assert found['left_out'] == {'effort missing': count}
 
 

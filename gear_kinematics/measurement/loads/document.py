@@ -83,7 +83,8 @@ def _report(task: LoadTask, loads: RecordedLoads) -> LoadReport:
         answer = Observation.IMPLAUSIBLE(answer=answer, question=question)
     unknown, start = loads.unknown
     if gaps := unknown > _MOST_UNKNOWN * loads.time[-1]:
-        answer = Observation.LOADS_UNKNOWN(answer=answer, seconds=unknown, start=start)
+        which = Observation.LOADS_BEGIN_LATE if start < 0.0 else Observation.LOADS_UNKNOWN
+        answer = which(answer=answer, seconds=unknown, start=start)
     if preload and (moments or gaps or not question):
         verdict = doc.Verdict.FAIL if moments or gaps else doc.Verdict.PASS
     name, actuator = printable(task.bag.name), task.parameters.actuator

@@ -97,7 +97,7 @@ class RecordedLoads:
     taken: str = ''
     """Columns that were read from a table."""
     unknown: tuple[float, float] = 0.0, 0.0
-    """Time in which the loads are unknown, and its beginning since the first sample, s."""
+    """Time in which the loads are unknown, and its beginning since the first known sample, s."""
 
     @cached_property
     def time(self) -> Array:
