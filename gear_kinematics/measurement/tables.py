@@ -281,9 +281,13 @@ class _Samples:
 
 
 def _divided(counts: Array) -> bool:
-    """Whether all fractions are of three digits, as those of 1.024 in place of 1024."""
+    """Return whether counts have three decimal places, as those of 1.024 in place of 1024.
+
+    Eighths, which have as many, are means of up to eight readings, and fewer places are others.
+    """
     sizes = np.abs(counts[np.isfinite(counts)])
-    fractions = (sizes % 1.0).any() and not (np.round(_THOUSAND * sizes, 6) % 1.0).any()
+    third = (np.round(100.0 * sizes, 6) % 1.0 > 0.0) & (8.0 * sizes % 1.0 > 0.0)
+    fractions = third.any() and not (np.round(_THOUSAND * sizes, 6) % 1.0).any()
     return bool(fractions and sizes.max() < _THOUSAND and not ((sizes > 0) & (sizes < 1)).any())
 
 

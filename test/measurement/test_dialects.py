@@ -368,6 +368,15 @@ def test_every_dialect_is_read(tmp_path, gear, reference, dialect):
     assert recording.encoders is None or recording.encoders.timed or 'without times' in dialect
 
 
+@pytest.mark.parametrize('readings', [2, 8, 10])
+def test_means_of_counts_are_no_thousands(tmp_path, gear, reference, readings):
+    t, r, o = reference('encoders')
+    counts = np.round((r - r.min()) * REV * 20 * readings) / readings + 1.0
+    assert 500.0 < counts.max() < 1000.0
+    path = saved(tmp_path, written([t, counts, o], 'time,rotor_counts,output_rad'))
+    assert read(path, gear, Sources(rotor_counts=20)).both
+
+
 def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, gear, reference):
     # Dynamixel SDK 4.1.0 gives positions modulo 2^32.
     t, r, o = reference('encoders')
