@@ -1,6 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Adds actuators to the parameter file of an arm, as text, so that its comments stay."""
 
+import json
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -32,11 +33,15 @@ def add_actuators(path: Path, blocks: Mapping[str, Sequence[str]], head: Sequenc
         raise ConfigError(f'{path}: {error.strerror}') from error
 
 
-def check_new(path: Path, actuator: str) -> None:
-    """Raise ConfigError if a file is there already, or cannot take an actuator of this name."""
+def check_new(path: Path, actuator: str, joint: str = '') -> None:
+    """Raise ConfigError if a file is there already, or cannot take an actuator of this name.
+
+    The joint is that of the actuator's rotor, which no other one may have; '': not known yet.
+    """
+    block = [_ANY_GEAR, *([f'rotor_joint: {json.dumps(joint)}'] if joint else [])]
     there = os.path.lexists(path)  # perhaps a link to nothing
     if actuator and there == path.exists():
-        _extended(path, {actuator: [_ANY_GEAR]}, ())
+        _extended(path, {actuator: block}, ())
     elif there:
         raise ConfigError(f'{path}: exists already; give another name with -o')
 

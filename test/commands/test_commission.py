@@ -83,6 +83,8 @@ def test_actuator_is_added_to_the_file_of_an_arm(bag, tmp_path, capsys, monkeypa
     assert load_actuators(Path('arm.yaml'))['shoulder'].gear_ratio == '-101'
     assert main([*one, '--check', 'arm.yaml']) == 0
     assert 'elbow is in it already' in refusal(*one, '-o', 'arm.yaml')
+    unread = 'commission', 'none', '--actuator', 'hand', '--joint', 'shoulder', '-o', 'arm.yaml'
+    assert "rotor_joint 'shoulder' belongs to shoulder and hand" in refusal(*unread)
     assert main([*one, '-o', 'new.yaml']) == 0
     alone = NodeParameters.load(Path('new.yaml'))
     assert alone == replace(
