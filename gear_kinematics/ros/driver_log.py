@@ -17,6 +17,7 @@ from gear_kinematics.wire.topics import ROTOR_STATE
 _ELSEWHERE = 0.1  # rad, of a rotor that was turned by hand, or counted from another zero
 _SEARCH = 3  # s, in which all publishers are found: they announce themselves as often
 _HOME = 'check whether the drive restarted; then home it (gearkin home or ~/home)'
+_WRAPS = '; if the position wraps, set rotor_encoder'
 
 
 class DriverLog:
@@ -62,7 +63,7 @@ class DriverLog:
         jumps = self._jumped()
         for name, each in self._inputs.items():
             if jumps[name] > self._jumps[name]:
-                self._log.warning(labelled(name, f'{each.plausibility.jumped}: {_HOME}'))
+                self._log.warning(labelled(name, f'{each.plausibility.jumped}: {_HOME}{_WRAPS}'))
         self._jumps = jumps
         self._missing = 0 if publishers else self._missing + 1
         if self.awaited:
