@@ -24,7 +24,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     bags.add_calibration(parser)
     output = arguments.group(parser, 'output')
     output.add_argument(
-        '--topics', nargs='*', metavar='NAME', help='other topics to copy (default: all)'
+        '--topics',
+        nargs='*',
+        metavar='NAME',
+        help='other topics to copy (default: all but transmission_error)',
     )
     for name, *choices in ('storage', 'mcap', 'sqlite3'), ('compression', 'none', 'zstd'):
         text = f'{name} of the files (default: {choices[0]})'
