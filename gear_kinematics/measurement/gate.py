@@ -28,6 +28,8 @@ _LEAST_STEP = math.radians(0.25)
 _STAYS = 4  # samples in a row that are no stray reading
 _REVERSAL = 4  # samples around a reversal in which the output may lag
 _DELAY = 0.01  # s between the encoders, by which either may be late
+_ALIKE, _SHORTEST = 16, 1e-6
+"""Number of samples in a row that may have the same time; shortest period of samples, s."""
 _MOST_LOST = math.radians(5.0)  # lost motion of a usable gear, at most
 _LIKELY, _TRIED, _MOST_OF = 4.0, 8, 0.6
 """Times that quantile from which on a step may be a slip; number of such steps that are tried;
@@ -77,8 +79,7 @@ def gated(recording: Recording) -> Recording:
     if (rest := float(np.ptp(error - line(rotor)))) < NO_ENCODER:
         fault = Observation.COMPUTED(deviation=rest)
         return replace(recording, faults=(*recording.faults, fault))
-    period = float(np.median(np.diff(both.seconds)))
-    if not (steps := _steps(error, compared.ideal, period)):
+    if not (steps := _steps(error, compared.ideal, _period(both.seconds))):
         return recording
     kept, jumps = _followed(error, rows, steps, compared.period)
     at = np.array(jumps, int)
@@ -104,6 +105,12 @@ def gated(recording: Recording) -> Recording:
         found.append(longest(time[kept], timed=both.timed))
     encoders = _without(both, compared.path, kept, stray)
     return replace(recording, encoders=encoders, faults=(*recording.faults, *found))
+
+
+def _period(seconds: Array) -> float:
+    """Return the usual time between samples, s, of which some can have the same time."""
+    usual = np.median(seconds[_ALIKE:] - seconds[:-_ALIKE]) / _ALIKE
+    return max(float(usual), _SHORTEST)
 
 
 def _compared(both: Encoders) -> _Compared | None:

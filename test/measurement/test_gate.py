@@ -59,6 +59,14 @@ def test_nothing_is_left_out_of_a_clean_recording(clean, gate):
     assert after is before
 
 
+@pytest.mark.parametrize('rows', [1320, 1319])
+def test_two_samples_may_have_the_same_time(clean, gate, rows):
+    columns = clean[:rows].copy()
+    columns[1::2, 0] = columns[: rows - 1 : 2, 0]
+    before, after = gate(columns)
+    assert after is before
+
+
 @pytest.mark.parametrize(
     ('decimals', 'error', 'named'), [(15, 0.0, True), (6, 0.0, True), (6, 1e-5, False)]
 )
