@@ -117,11 +117,11 @@ def stamps(
     new = np.flatnonzero(np.diff(stamp, prepend=stamp[0] - 1))
     if 2 * len(new) < len(stamp):
         remarks.append(Observation.SAME_TIMES(rows=len(stamp), times=len(new), column=clock.name))
-        last = stamp[-1] + np.median(np.diff(stamp[new]))
-        spread = np.interp(
-            np.arange(len(stamp)), [*new, len(stamp)], [*(stamp[new] - stamp[0]), last - stamp[0]]
-        )
-        stamp = stamp[0] + spread.astype(np.int64)
+    if 1 < len(new) < len(stamp):
+        counts, steps = np.diff(new, append=len(stamp)), np.diff(stamp[new])
+        steps = np.minimum(np.append(steps, np.median(steps)), np.median(steps))
+        places = np.arange(len(stamp)) - np.repeat(new, counts)
+        stamp = stamp + (np.repeat(steps / counts, counts) * places).astype(np.int64)
     return stamp, rows
 
 

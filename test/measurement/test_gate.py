@@ -59,6 +59,17 @@ def test_nothing_is_left_out_of_a_clean_recording(clean, gate):
     assert after is before
 
 
+def test_times_that_few_rows_share_change_no_error(tmp_path):
+    """1.2 kHz with times in ms: the error of the gear is ±1 mrad, as no row is a late one."""
+    time = np.arange(12_000) / 1200.0
+    rotor, path = 30.0 * np.sin(math.pi * time), tmp_path / 'both.csv'
+    output = rotor / 10.0 + 1e-3 * np.sin(rotor)
+    write_csv(path, time_s=np.floor(1e3 * time) / 1e3, rotor_rad=rotor, output_rad=output)
+    parameters = NodeParameters.of({'gear_ratio': '10'})
+    found = measure(read_table(path, Sources(), Fraction(10)), parameters).transmission
+    assert found.forward.value == pytest.approx(2e-3, rel=1e-2)
+
+
 @pytest.mark.parametrize('rows', [1320, 1319])
 def test_two_samples_may_have_the_same_time(clean, gate, rows):
     columns = clean[:rows].copy()
