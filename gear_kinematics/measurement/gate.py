@@ -158,9 +158,8 @@ def _steps(error: Array, ideal: Array, period: float) -> _Steps | None:
     lost = _lost_motion(steps, moved, fastest) & (np.abs(steps) <= most)
     # With a delay, the output reverses earlier or later, by twice the motion meanwhile.
     delay = _DELAY / period
-    lost |= _reverses(moved, _REVERSAL + math.ceil(delay)) & (
-        np.abs(steps) <= 2.2 * delay * fastest
-    )
+    reverses, _ = _reversals(moved, _REVERSAL + math.ceil(delay))
+    lost |= reverses & (np.abs(steps) <= 2.2 * delay * fastest)
     slipped = _slipped(level, ideal, usually)
     return _Steps(((np.abs(steps) > limit) & ~lost) | slipped, slipped, limit)
 
@@ -198,28 +197,24 @@ def _lost_motion(steps: Array, ideal: Array, fastest: float) -> NDArray[np.bool_
     # Where a sample is missing at the reversal, the motion there and back is one step.
     moved[1:-1] = np.maximum(moved[1:-1], np.minimum(moved[:-2], moved[2:]))
     most = np.minimum(moved, fastest)
-    _, after = _directions(ideal, _REVERSAL)
+    reverses, after = _reversals(ideal, _REVERSAL)
     lag = -steps * np.where(after, np.sign(after), np.sign(ideal))
-    lost: NDArray[np.bool_] = _reverses(ideal, _REVERSAL) & (lag > 0.0) & (lag <= 1.1 * most)
+    lost: NDArray[np.bool_] = reverses & (lag > 0.0) & (lag <= 1.1 * most)
     return lost
 
 
-def _reverses(ideal: Array, around: int) -> NDArray[np.bool_]:
+def _reversals(ideal: Array, around: int) -> tuple[NDArray[np.bool_], Array]:
     """Find steps of the ideal output angle, rad, with a reversal in so many samples around.
 
-    A recording may begin and end with one.
+    A recording may begin and end with one. Also returns the sum of the signs of as many steps from
+    each one on.
     """
-    before, after = _directions(ideal, around)
-    reverses: NDArray[np.bool_] = before * after <= 0.0
-    reverses[:around] = reverses[-around:] = True
-    return reverses
-
-
-def _directions(ideal: Array, around: int) -> tuple[Array, Array]:
-    """Sum the signs of so many steps, rad, before each step, and of those from it on."""
     signs = np.concatenate([np.zeros(around), np.sign(ideal), np.zeros(around)])
     sums = np.convolve(signs, np.ones(around), 'valid')
-    return sums[: len(ideal)], sums[around : around + len(ideal)]
+    before, after = sums[: len(ideal)], sums[around : around + len(ideal)]
+    reverses: NDArray[np.bool_] = before * after <= 0.0
+    reverses[:around] = reverses[-around:] = True
+    return reverses, after
 
 
 def _slipped(error: Array, ideal: Array, usually: float) -> NDArray[np.bool_]:
