@@ -236,7 +236,7 @@ def _column(role: str, name: str, given: Sources, common: str, below: Mapping[st
         unit = f'{counts} counts a turn' if counts else 'counts'
     elif unit:
         unit = next(one for one, size in _UNITS[role].items() if size == scale)
-    on_rotor, on_output = sides(name)
+    on_rotor, on_output = _sides(words)
     # The current of a motor says a torque of either side.
     on_rotor = given.on_rotor or (on_rotor and 'current' not in words)
     borrowed = role in _ANGULAR and bool(unit) and not own
@@ -245,7 +245,10 @@ def _column(role: str, name: str, given: Sources, common: str, below: Mapping[st
 
 def sides(name: str) -> tuple[bool, bool]:
     """Return whether a name says the rotor, and whether it says the output."""
-    words, _ = _split(name)
+    return _sides(_split(name)[0])
+
+
+def _sides(words: Sequence[str]) -> tuple[bool, bool]:
     return not {*words}.isdisjoint(_ROTOR), not {*words}.isdisjoint(_OUTPUT)
 
 
@@ -264,7 +267,7 @@ def _role(name: str) -> tuple[str, tuple[int, ...]]:
         # The stamp of a message is when it was sampled; a log has when it was received.
         first = 0 if keys == ['stamp'] and 'header' in words and not unit else len(words)
         return 'time', (first, _TIME.index(keys[0]))
-    shafts = [one for one, said in zip(('rotor', 'output'), sides(name), strict=True) if said]
+    shafts = [one for one, said in zip(('rotor', 'output'), _sides(words), strict=True) if said]
     kinds = [one for one, those in (('torque', _TORQUE), ('angle', _ANGLE)) if {*keys} & {*those}]
     if unit in _UNITS['torque'] and not kinds:
         kinds = ['torque']  # as of load_Nm
