@@ -171,11 +171,11 @@ def in_namespace(names: Iterable[str], other: str = Topics().output) -> dict[str
 
 
 def find_in_namespace(bag: Bag, names: Iterable[str], output: str) -> dict[str, str]:
-    """Return the topics of `in_namespace` that a bag has."""
+    """Return the topics of `in_namespace` that a bag has; names may be those of an actuator."""
     return {
         name: topic
         for name, topic in in_namespace(names, output).items()
-        if bag.topics.get(topic) == TOPICS[name].type
+        if bag.topics.get(topic) == TOPICS[base_name(name)].type
     }
 
 

@@ -123,11 +123,7 @@ def _judged(task: Task, bag: Bag, progress: ReportProgress | None) -> BagReport:
     ]
     for proof in filter(None, proofs):
         batches = _seen(proof, batches)
-    damage = None
-    try:
-        (arm or validators[0]).feed(batches)
-    except BagError as error:
-        damage = str(error)
+    damage = _feed(arm or validators[0], batches)
     lost = _recorded_losses(bag)
     reports = arm.reports(damage, lost) if arm else [validators[0].report(damage, lost)]
     reports = [
@@ -147,18 +143,25 @@ def _validator(task: Task, bag: Bag, topics: Topics) -> Validator:
     """Prepare the validation of a gear by what is recorded of it."""
     parameters = task.parameters
     bodies = _OF_BODIES if isinstance(parameters.gear, Mechanism) else ()
-    namespace, _, _ = topics.output.rpartition('/')
-    names = {
-        name: f'{namespace}/{topic_of(parameters.actuator, name)}'
-        for name in (BODY_POSES, *CORRECTED_TOPICS, TRANSMISSION_ERROR, *bodies)
-    }
-    further = {n: topic for n, topic in names.items() if bag.topics.get(topic) == TOPICS[n].type}
+    judged = BODY_POSES, *CORRECTED_TOPICS, TRANSMISSION_ERROR, *bodies
+    names = {topic_of(parameters.actuator, name): name for name in judged}
+    found = find_in_namespace(bag, names, topics.output)
+    further = {names[own]: topic for own, topic in found.items()}
     poses = further.pop(BODY_POSES, '')
     topics = topics._replace(poses=topics.poses or task.poses_topic or poses)
     encoder = find_encoder_topic(bag, topics.rotor) if parameters.absolute else ''
     if TRANSMISSION_ERROR in further and not encoder:
         encoder = find_in_namespace(bag, [OUTPUT_ENCODER], topics.output).get(OUTPUT_ENCODER, '')
     return Validator(task, topics, further, encoder=encoder)
+
+
+def _feed(validator: Validator | ArmValidator, batches: Iterable[MessagesByTopic]) -> str | None:
+    """Feed messages, up to any damage, which is returned."""
+    try:
+        validator.feed(batches)
+    except BagError as error:
+        return str(error)
+    return None
 
 
 def _of_only_joint(task: Task, bag: Bag, rotor: str) -> tuple[Task, Sequence[Finding]]:
@@ -198,11 +201,7 @@ def _played(
     batches: Iterable[MessagesByTopic] = (
         MessagesByTopic(validator.topics, batch) for batch in in_batches(messages, _BATCH)
     )
-    damage = None
-    try:
-        validator.feed(_seen(proof, batches) if proof else batches)
-    except BagError as error:
-        damage = str(error)
+    damage = _feed(validator, _seen(proof, batches) if proof else batches)
     report = with_proof(validator.report(damage), proof)
     return replace(report, findings=(*taken, *report.findings))
 
