@@ -89,9 +89,8 @@ def compute(
     outputs = {topic: TOPICS[base_name(name)].type for name, topic in names.items()}
     inputs = {rotor_topic, encoder_topic} if encoder_topic else {rotor_topic}
     if others is None:  # errors of the outputs that are replaced would contradict the new ones
-        others = source.topics.keys() - {
-            *in_namespace([TRANSMISSION_ERROR], topics.output).values()
-        }
+        replaced = in_namespace([TRANSMISSION_ERROR], topics.output)
+        others = source.topics.keys() - replaced.values()
     chosen = {*inputs, *others}
     _check_topics(source, rotor_topic, chosen, outputs)
     kept, computed, copied = list[str](), 0, 0

@@ -48,12 +48,14 @@ class EncoderErrors:
         parameters = self._parameters
         stamps, position, _ = _positions(encoder, parameters.output_encoder_joint)
         angle = split_turns(measured_angle(parameters, position)).angle
-        self._measured = np.append(self._measured, _table(_KIND, stamps, angle))[-_KEPT:]
+        self._measured = np.append(self._measured, np.rec.fromarrays([stamps, angle], _KIND))[
+            -_KEPT:
+        ]
         stamps, error, malformed = _positions(errors, parameters.output_name)
         if malformed.any():
             self._wrong.add(np.array(errors.received)[malformed])
             self._greatest = math.inf
-        self._errors = np.append(self._errors, _table(_KIND, stamps, error))[-_KEPT:]
+        self._errors = np.append(self._errors, np.rec.fromarrays([stamps, error], _KIND))[-_KEPT:]
 
     def take_rotor(self, samples: Window, moved: Window, answered: Array) -> None:
         """Process the next samples, (n,), whether the node had them, and compare.
@@ -65,7 +67,7 @@ class EncoderErrors:
         )
         count = TURN * (moved['turns'] - samples['turns']) + moved['angle'] - samples['angle']
         usable = answered & samples['turns_known']
-        new = _table(_IDEAL, samples['stamp'], rest, turns, count, usable)
+        new = np.rec.fromarrays([samples['stamp'], rest, turns, count, usable], _IDEAL)
         ideal = np.append(self._ideal, new)
         steps = np.diff(ideal['stamp'])
         if (steps < 0).any():  # the clock was set back: what belongs together does not show
@@ -119,10 +121,3 @@ def _positions(messages: TopicMessages, joint: str) -> tuple[Array, Array, Array
     states = decode_joint_states(messages.data, joint)
     rows = states.joint_found & ~states.malformed & (states.stamp != 0)
     return states.stamp[rows], states.values[rows, 0], states.malformed
-
-
-def _table(kind: np.dtype[np.void], *columns: Array) -> Array:
-    table = np.zeros(len(columns[0]), kind)
-    for name, values in zip(kind.names or (), columns, strict=True):
-        table[name] = values
-    return table
