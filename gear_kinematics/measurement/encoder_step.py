@@ -102,7 +102,7 @@ def _recording_resolution(levels: Array) -> float:
             if np.all(np.abs(scaled - np.round(scaled)) <= error):
                 found.append(unit / scale)
                 break
-    return max(found)
+    return float(max(found))
 
 
 def _common_divisor(levels: Array, resolution: float) -> float:

@@ -93,6 +93,15 @@ def test_a_limit_decides_the_exit_code_and_is_a_test_case(recording, tmp_path, c
     assert failure.get('message').startswith('the backlash of 68.')
 
 
+def test_limits_of_a_printed_table_are_in_the_json(tmp_path, capsys):
+    torque = ramps(*[(4.0, 150)] * 3)
+    angle = np.round(np.degrees(creep(GEAR, torque)), 4)
+    printed = write_csv(tmp_path / 'gear.csv', angle_deg=angle, torque=torque)
+    assert main(['lost-motion', str(printed), '--max-backlash', '60', '--json', '-']) == 1
+    (found,) = json.loads(capsys.readouterr().out)['recordings']
+    assert found['limits']['backlash']['holds'] is False
+
+
 def test_the_rated_torque_can_be_told(recording, capsys):
     assert main(['lost-motion', str(recording), '--rated-torque', '50', '--json', '-']) == 0
     (found,) = json.loads(capsys.readouterr().out)['recordings']
