@@ -36,8 +36,8 @@ def test_what_a_node_hears_and_publishes_is_recorded_as_it_is_named(tmp_path, ca
         beside.enter_context(node(tmp_path))
         recording.wait_for('recording /diagnostics')
         with driving(rate=1000):
-            recording.wait_for(rf'recording .*{MOTOR}')
-            recording.wait_for(rf'recording .*{NAMESPACE}/output_state')
+            for topic in (ENCODER, MOTOR, f'{NAMESPACE}/output_state'):
+                recording.wait_for(f'recording .*{topic}')
             capsys.readouterr()
     assert recording.process.returncode == 0
     assert re.search(rf' {ENCODER}: \d+ messages, [1-9]\d+ Hz\n', recording.text())

@@ -27,16 +27,13 @@ def test_table_in_a_terminal_homes_with_keys(tmp_path):
         terminal.wait_for(f'{OTHER} +connected')
         terminal.wait_for(r'output angle +-?\d+\.\d+° ')
         terminal.wait_for(r'rotor input +healthy')
-        terminal.type('h')
-        terminal.wait_for(r'The output is at -?\d+\.\d°\. Set it to 0\.0°\?   y yes   n no')
+        # Keys ask for nothing while outputs are old, as they are now and then on a busy machine.
+        question = r'The output is at -?\d+\.\d°\. Set it to 0\.0°\?   y yes   n no'
+        terminal.wait_for(question, keys='h')
         terminal.type('ny')  # which no question precedes
-        terminal.type('h')
-        terminal.wait_for('y yes   n no')
-        terminal.type('y')
-        terminal.wait_for(r'the shaft was at -?\d+\.\d° and is now 0\.0° \(rotor_zero ')
-        terminal.wait_for('u undo: rotor_zero 0 again')
-        terminal.type('u')
-        terminal.wait_for(r'Undone: rotor_zero 0 again\.')
+        terminal.wait_for(r'the shaft was at -?\d+\.\d° and is now 0\.0° \(rotor_zero ', keys='hy')
+        terminal.wait_for(r'u undo: rotor_zero \S+ again')
+        terminal.wait_for(r'Undone: rotor_zero \S+ again\.', keys='u')
         terminal.type('q')
         assert terminal.end() == 0
 
