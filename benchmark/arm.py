@@ -2,14 +2,15 @@
 """What one node for an arm costs, against a node for each gear and a textbook node, in one run.
 
     python benchmark/arm.py [--joints 7] [--rate 1000] [--seconds 5] [--rounds 5] [--poses]
-                            [--kinds arm gears 'one gear' textbook] [--json]
+                            [--kinds arm gears 'one gear' textbook] [--baseline FOLDER] [--json]
 
 A driver sends all joints in one message at a steady rate, and a listener takes output_state, with
 --poses body_poses of each gear as well. The arm is one gear_state_publisher with `actuators`; the
 gears are one gear_state_publisher each; one more gear_state_publisher alone gives the latency to
-compare with; the textbook node does the job of the arm in rclpy. All take turns, so that what else
-the machine does befalls all of them. CPU time is that of all nodes together for each message of
-the driver, and memory is PSS, in which a page that processes share counts once. Values and ratios
+compare with; the textbook node does the job of the arm in rclpy. With --baseline, the gears and
+the one gear are nodes of the checkout of another version. All take turns, so that what else the
+machine does befalls all of them. CPU time is that of all nodes together for each message of the
+driver, and memory is PSS, in which a page that processes share counts once. Values and ratios
 are medians over the rounds.
 """
 
@@ -17,6 +18,7 @@ import argparse
 import json
 import statistics
 from contextlib import ExitStack
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from processes import ANNOUNCING, NODE, Program, Surroundings, private_surroundings, program
@@ -48,6 +50,8 @@ class Kind(NamedTuple):
 
     nodes: list[tuple[tuple[str, ...], list[str]]]
     topics: list[str]
+    folder: Path | None = None
+    """The checkout whose nodes these are, if it is not this one."""
 
 
 def main() -> None:
@@ -59,10 +63,11 @@ def main() -> None:
     parser.add_argument('--rounds', type=int, default=5)
     parser.add_argument('--kinds', nargs='+', metavar='KIND', help='those to measure')
     parser.add_argument('--poses', action='store_true', help='listen to body_poses, too')
+    parser.add_argument('--baseline', type=Path, metavar='FOLDER', help='of another version')
     parser.add_argument('--json', action='store_true')
     options = parser.parse_args()
     with private_surroundings() as surroundings:
-        kinds = _kinds(surroundings, options.joints, poses=options.poses)
+        kinds = _kinds(surroundings, options)
         chosen = {name: kinds[name] for name in options.kinds or kinds}
         rounds = [
             {name: _run(kind, options, surroundings) for name, kind in chosen.items()}
@@ -87,9 +92,9 @@ def main() -> None:
         print(f'        cpu, x textbook: {summary["ratios"]["textbook"]["cpu"]:.3g}')
 
 
-def _kinds(surroundings: Surroundings, count: int, *, poses: bool) -> dict[str, Kind]:
+def _kinds(surroundings: Surroundings, options: argparse.Namespace) -> dict[str, Kind]:
     """Give what is measured; the first is the arm."""
-    names = [f'j{number}' for number in range(count)]
+    names, poses = [f'j{number}' for number in range(options.joints)], options.poses
     namespace = surroundings.arguments[-1].removeprefix('__ns:=')
     actuators = ['-p', f'actuators:=[{",".join(names)}]']
     of_arm = ['output_state', *(f'{name}/body_poses' for name in names if poses)]
@@ -104,8 +109,8 @@ def _kinds(surroundings: Surroundings, count: int, *, poses: bool) -> dict[str, 
     of_gears = [f'{name}/{topic}' for name in names for topic in outputs]
     return {
         'arm': Kind([(NODE, actuators)], of_arm),
-        'gears': Kind(gears, of_gears),
-        'one gear': Kind(gears[:1], of_gears[: len(outputs)]),
+        'gears': Kind(gears, of_gears, options.baseline),
+        'one gear': Kind(gears[:1], of_gears[: len(outputs)], options.baseline),
         'textbook': Kind([(program('textbook_arm.py'), actuators)], of_arm),
     }
 
@@ -128,7 +133,7 @@ def _run(kind: Kind, options: argparse.Namespace, surroundings: Surroundings) ->
         for peer in (driver, listener):
             peer.report()
         nodes = [
-            start(Program(command, given(surroundings, arguments)))
+            start(Program(command, given(surroundings, arguments), kind.folder))
             for command, arguments in kind.nodes
         ]
         listener.report()

@@ -69,8 +69,10 @@ def private_surroundings() -> Iterator[Surroundings]:
 class Program:
     """A running program; a context manager, which ends it."""
 
-    def __init__(self, command: Sequence[str], surroundings: Surroundings) -> None:
-        """Start it."""
+    def __init__(
+        self, command: Sequence[str], surroundings: Surroundings, folder: Path | None = None
+    ) -> None:
+        """Start it, in a folder that has the package it runs, if that is not this one."""
         self._name = Path(command[-1]).name
         self._log = surroundings.log
         self.started = time.time_ns()
@@ -83,6 +85,7 @@ class Program:
                 stderr=log,
                 text=True,
                 env=surroundings.environment,
+                cwd=folder,
             )
 
     def __enter__(self) -> Self:
