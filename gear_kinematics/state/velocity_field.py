@@ -6,14 +6,13 @@ may be that of a step of a coarse encoder, or of a vibration.
 """
 
 import math
-from bisect import bisect_left
 from enum import StrEnum
 from itertools import pairwise
 
 import numpy as np
 
 from gear_kinematics.state.statuses import Condition, Fact
-from gear_kinematics.wire.batches import Array, once_for_joints
+from gear_kinematics.wire.batches import Array
 
 SPAN = 100_000_000  # ns, between the readings that are compared; four times that decides
 _PAUSE = 10 * SPAN  # after velocities that were found right
@@ -102,14 +101,14 @@ class VelocityField:
         NaN.
         """
         velocity, start, noted = values[:, 1].copy(), 0, 0
-        times, end = _listed(stamps), len(values)
-        while (row := bisect_left(times, self.due, noted, end)) < end:
+        stamps = stamps[: len(values)]
+        while (row := noted + int(stamps[noted:].searchsorted(self.due))) < len(values):
             self._add(values[noted:row, 1])
             if self.contradicts:
                 velocity[start:row] = np.nan
             start, noted = row, row + 1
             position, given, _ = values[row].tolist()
-            self.note(times[row], position, None if math.isnan(given) else given, noise)
+            self.note(int(stamps[row]), position, None if math.isnan(given) else given, noise)
         self._add(values[noted:, 1])
         if self.contradicts:
             velocity[start:] = np.nan
@@ -252,9 +251,3 @@ class VelocityField:
             if abs(factor - known) <= _ALIKE * abs(known):
                 return name
         return VelocityMeaning.UNKNOWN
-
-
-@once_for_joints
-def _listed(stamps: Array) -> list[int]:
-    times: list[int] = stamps.tolist()
-    return times
