@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, TopicError
-from gear_kinematics.bag.roles import Topics, in_namespace
+from gear_kinematics.bag.roles import Topics, find_in_namespace, in_namespace
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.effort_field import questioned
@@ -25,6 +25,7 @@ from gear_kinematics.wire.topics import (
     JOINT_STATE,
     LOAD_TOPICS,
     OUTPUT_STATE,
+    STATE_TOPICS,
     TOPICS,
     TRANSMISSION_ERROR,
     base_name,
@@ -32,6 +33,7 @@ from gear_kinematics.wire.topics import (
 )
 
 _TOPICS = Topics()
+_OUTPUTS = *STATE_TOPICS, *CORRECTED_TOPICS, TRANSMISSION_ERROR, *LOAD_TOPICS
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,8 +66,8 @@ def compute(
     The actuators are given by name, '' for one gear. They have the topics that the node gives
     them: only `output_state` if just the ratio is known, the loads with a preload, and
     CORRECTED_TOPICS with a calibration. Of the other topics, those in `others` are copied, or all
-    but the transmission error of outputs that are replaced; an `encoder_topic` that references
-    the rotor always is. `files` are contents by name.
+    but outputs of the node that are not computed, such as errors and poses of the URDF; an
+    `encoder_topic` that references the rotor always is. `files` are contents by name.
 
     Each output follows its rotor message, with the same time of reception. Until the output's
     encoder references the rotor, outputs are those of the nearest turn or the configured zero, as
@@ -88,9 +90,9 @@ def compute(
         raise ValueError(f'{", ".join(all_names)}: the names must differ')
     outputs = {topic: TOPICS[base_name(name)].type for name, topic in names.items()}
     inputs = {rotor_topic, encoder_topic} if encoder_topic else {rotor_topic}
-    if others is None:  # errors of the outputs that are replaced would contradict the new ones
-        replaced = in_namespace([TRANSMISSION_ERROR], topics.output)
-        others = source.topics.keys() - replaced.values()
+    if others is None:  # other outputs of an earlier node would contradict the new ones
+        earlier = (topic_of(name, topic) for name in ('', *gears) for topic in _OUTPUTS)
+        others = source.topics.keys() - find_in_namespace(source, earlier, topics.output).values()
     chosen = {*inputs, *others}
     _check_topics(source, rotor_topic, chosen, outputs)
     kept, computed, copied = list[str](), 0, 0
