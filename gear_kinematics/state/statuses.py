@@ -152,7 +152,11 @@ class Condition(Enum):
     LISTENER_QOS = WARN, 'incompatible QoS on {topic}: {policy} (listener {node})', _QOS
     UNSENT = WARN, 'not sent {count}', 'Look for a listener that is stuck.'
     ALSO_PUBLISHES = WARN, '{node} also publishes {topics}', _TWO_NODES
-    SAME_NAME = WARN, 'another node is named {node}', _TWO_NODES
+    SAME_NAME = (
+        WARN,
+        'another node is named {node}, or one was killed in the last 20 s',  # as Fast DDS has it
+        _TWO_NODES,
+    )
 
     def __init__(self, level: int, message: str, advice: str) -> None:
         self.level, self.message, self.advice = level, message, advice
