@@ -27,7 +27,7 @@ from gear_kinematics.wire.topics import RECORDED_TOPICS
 pytestmark = pytest.mark.slow
 
 JOINT_STATE = 'sensor_msgs/msg/JointState'
-KB, MB, GB = 10**3, 10**6, 10**9
+KB, MB = 10**3, 10**6
 MAX_MEMORY = 300 * MB  # of it, the program itself takes 60
 MAX_TIME = 20.0  # s
 EXPANSION = 20  # recordings compress by as much

@@ -36,7 +36,6 @@ from gear_kinematics.kinematics import (
 )
 from gear_kinematics.kinematics.motion import BranchRates, closed_form
 
-EPS = float(np.finfo(np.float64).eps)
 MOST_TURNS = 2**51  # up to here float64 angles are split exactly
 LARGEST_ANGLE = 2.0 * math.pi * MOST_TURNS
 BEYOND = math.nextafter(LARGEST_ANGLE, math.inf)

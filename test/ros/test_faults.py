@@ -35,7 +35,7 @@ from gear_kinematics.ros.live import running_node
 
 pytestmark = pytest.mark.live
 
-WARN, ERROR = 1, 2
+ERROR = 2
 names = (f'/faults_{os.getpid()}_{number}' for number in count())
 
 # Processes that start quickly, without the threads of this one.

@@ -21,8 +21,6 @@ SINGLE_TURN = replace(SETTINGS, rotor_encoder='single_turn')
 NOW = 77 * SECOND + 7
 START = 100 * SECOND
 TURN = 2.0 * math.pi
-QUARTER = 0.5 * math.pi
-LARGEST = 2**51 * TURN  # rad: beyond it a position is too large
 
 
 def clock() -> int:

@@ -27,7 +27,6 @@ PARAMETERS = replace(NodeParameters.load(), rotor_joint='')
 TYPES = {'output_state': JointState, 'body_poses': PoseArray, 'mechanism_joint_states': JointState}
 DIGITS = 1e-12  # of the eccentricity, of a radian within the turn
 LARGEST_ANGLE = 2**51 * math.tau  # rad: the node takes no position beyond
-OUTPUTS = ('output_state', 'body_poses')
 TINY = 1e-20  # rates below: the oracle differentiates numerically, at 50 digits
 
 
@@ -156,9 +155,6 @@ CORRECTED = ('corrected_state', 'corrected_interval')
 def encode_corrected(states, sample, correction, topics=CORRECTED):
     rows = states.corrected_rows(sample, correction, topics)
     return {topic: template.encode(sample.stamp, numbers) for topic, template, numbers in rows}
-
-
-NONE = (0.0, 0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize(('velocity', 'effort'), [(3.0, -0.5), (None, 0.25), (2.0, None)])

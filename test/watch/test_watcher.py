@@ -12,7 +12,6 @@ from contextlib import asynccontextmanager, nullcontext
 from dataclasses import asdict, replace
 from functools import partial
 from itertools import pairwise
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -47,7 +46,6 @@ from tornado.httpclient import AsyncHTTPClient, HTTPRequest  # noqa: E402, an ex
 from gear_kinematics.watch import server  # noqa: E402, needs it
 from gear_kinematics.watch.server import Server  # noqa: E402, needs it
 
-ROOT = Path(__file__).resolve().parents[2]
 JOINT_STATE = 'sensor_msgs/msg/JointState'
 HOSTILE = 'm\x1b[2J<img src=x onerror=alert(1)>'
 TEXT = 2000 * 'much '
