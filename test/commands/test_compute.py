@@ -2,12 +2,11 @@
 """gearkin compute as a user or a CI job runs it."""
 
 import math
-import signal
 import sqlite3
 from contextlib import closing
 
 import pytest
-from blocked_bags import BAGS, DEADLINE, BlockedBag, facts, gearkin_here, refusal, running_gearkin
+from blocked_bags import BAGS, facts, gearkin_here, refusal
 from gear_recordings import old_recording
 from live import rotor_bytes
 from shipped_bags import CONFIGS, JOINT_STATE, POSE_ARRAY, ROTOR, write_bag
@@ -17,7 +16,7 @@ from gear_kinematics.commands.cli import main
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.wire.batches import decode_joint_states
 
-SERVO, SINGLE_TURN = BAGS / 'servo_point_to_point', BAGS / 'single_turn_encoder'
+SINGLE_TURN = BAGS / 'single_turn_encoder'
 SAMPLES = 300
 EXACT = ('--tolerance-angle', '0', '--tolerance-position', '0')
 
@@ -127,23 +126,6 @@ def test_compute_uses_the_config_beside_the_bag(tmp_path):
     assert gearkin_here('validate', out, '--config', CONFIGS / 'actuator.yaml').returncode == 1
     given = NodeParameters.load(SINGLE_TURN / 'actuator.yaml')
     assert NodeParameters.load(out / 'actuator.yaml') == given
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
-def test_an_interrupted_computation_leaves_nothing(number, tmp_path):
-    folder = tmp_path / 'results'
-    folder.mkdir()
-    with (
-        BlockedBag(SERVO, tmp_path / 'blocked') as blocked,
-        running_gearkin('compute', blocked.path, folder / 'out', '--joint', 'rotor') as process,
-    ):
-        blocked.reader()
-        assert list(folder.iterdir())  # it has begun to write
-        process.send_signal(number)
-        output, errors = process.communicate(timeout=DEADLINE)
-    assert (process.returncode, output, errors) == (130, '', '')
-    assert list(folder.iterdir()) == []
 
 
 @pytest.mark.slow

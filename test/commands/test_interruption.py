@@ -1,6 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Progress of live commands on a terminal, and Ctrl-C, which ends every command with 130."""
 
+import os
 import re
 import signal
 
@@ -27,20 +28,34 @@ def counts(terminal) -> list[tuple[str, str]]:
     return [(done, total) for done, total in found if done != '0']
 
 
+REPORTS = '--json a.json --junit a.xml'
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize('arguments', [
-    ['info'], ['lost-motion'], ['calibrate', '--encoder-topic', '/output_state'],
-    ['plot', 'output', 'a.png', '--bag'],
-], ids=lambda words: words[0])  # fmt: skip
-def test_ctrl_c_while_reading_gives_130(arguments, tmp_path):
-    with (
-        BlockedBag(SERVO, tmp_path / 'blocked') as blocked,
-        running_gearkin(*arguments, blocked.path, cwd=tmp_path) as process,
-    ):
-        blocked.reader()
-        process.send_signal(signal.SIGINT)
-        output, errors = process.communicate(timeout=DEADLINE)
-    assert (process.returncode, output, errors) == (130, '', '')
-    assert [path.name for path in tmp_path.iterdir()] == ['blocked']
+    'info BAG', 'lost-motion BAG', 'calibrate --encoder-topic /output_state BAG',
+    'plot output a.png --bag BAG', 'compute BAG out --joint rotor',
+    f'validate {REPORTS} SERVO BAG', f'validate --jobs 2 {REPORTS} SERVO BAG',
+])  # fmt: skip
+def test_what_is_interrupted_while_it_reads_ends_at_once_and_leaves_nothing(
+    arguments, number, tmp_path
+):
+    (folder := tmp_path / 'results').mkdir()
+    with BlockedBag(SERVO, tmp_path / 'blocked') as blocked:
+        paths = {'BAG': blocked.path, 'SERVO': SERVO}
+        words = [paths.get(word, word) for word in arguments.split()]
+        with running_gearkin(*words, cwd=folder) as process:
+            blocked.reader()
+            if 'compute' in words:
+                assert list(folder.iterdir())  # it has begun to write
+            if number == signal.SIGINT:
+                os.killpg(process.pid, number)  # as a terminal does
+            else:
+                process.send_signal(number)
+            output, errors = process.communicate(timeout=DEADLINE)
+            assert (process.returncode, output, errors) == (130, '', '')
+            wait_until(lambda: not blocked.readers(), 'the end of the processes')
+    assert not list(folder.iterdir())
 
 
 @pytest.mark.live

@@ -7,7 +7,6 @@ import json
 import os
 import re
 import shlex
-import signal
 from itertools import product
 from xml.etree import ElementTree as ET
 
@@ -293,30 +292,6 @@ def test_a_terminal_gets_tables_and_its_progress_apart(options, bags):
         assert 'FAILED' in text
         assert '\x1b[' in text  # colours
         assert 'verdict:' not in text  # no plain lines
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize('options', [[], ['--jobs', '2']])
-@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
-def test_an_interrupted_validation_ends_at_once_and_leaves_nothing(
-    options, number, bags, tmp_path
-):
-    reports = tmp_path / 'reports'
-    reports.mkdir()
-    written = ['--json', reports / 'report.json', '--junit', reports / 'report.xml']
-    with (
-        BlockedBag(SERVO, tmp_path / 'blocked') as blocked,
-        running_gearkin('validate', *options, *written, bags / 'good', blocked.path) as process,
-    ):
-        blocked.reader()
-        if number == signal.SIGINT:
-            os.killpg(process.pid, number)  # as a terminal does
-        else:
-            process.send_signal(number)
-        output, errors = process.communicate(timeout=DEADLINE)
-        assert (process.returncode, output, errors) == (130, '', '')
-        wait_until(lambda: not blocked.readers(), 'the end of the processes')
-    assert list(reports.iterdir()) == []
 
 
 @pytest.mark.slow
