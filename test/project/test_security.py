@@ -18,7 +18,9 @@ from pathlib import Path
 
 import pytest
 from blocked_bags import GEARKIN, finished, gearkin
+from gear_recordings import old_recording
 from live import live_node
+from shipped_bags import JOINT_STATE
 
 from gear_kinematics.bag import Bag, BagError
 from gear_kinematics.bag.finding import find_bags
@@ -28,7 +30,6 @@ from gear_kinematics.parameters import ConfigError, NodeParameters
 ROOT = Path(__file__).resolve().parents[2]
 BAG = ROOT / 'bags/servo_point_to_point'
 POLICY = ROOT / 'policies/gear_state_publisher.policy.xml'
-JOINT_STATE = 'sensor_msgs/msg/JointState'
 ESCAPE = '\x1b[2J\x1b]0;owned\x07'
 """Clears a terminal and renames its window."""
 
@@ -177,20 +178,9 @@ def test_quality_of_a_topic_ends(tmp_path, capsys):
 # Crafted bags.
 
 
-def crafted_database(path: Path, *, name='/rotor_state', kind=JOINT_STATE, qos='') -> Path:
+def crafted_database(path: Path, *, name='/rotor_state', qos='') -> Path:
     """Make a bag of the oldest schema with one topic and one message."""
-    with closing(sqlite3.connect(path)) as database, database:
-        database.execute(
-            'CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT,'
-            ' serialization_format TEXT, offered_qos_profiles TEXT)'
-        )
-        database.execute(
-            'CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER,'
-            ' timestamp INTEGER, data BLOB)'
-        )
-        database.execute("INSERT INTO topics VALUES (1, ?, ?, 'cdr', ?)", (name, kind, qos))
-        database.execute("INSERT INTO messages VALUES (1, 1, 1, X'00010000')")
-    return path
+    return old_recording(path, [(name, JOINT_STATE)], [(name, 1, b'\0\1\0\0')], qos)
 
 
 def test_a_link_in_a_bag_is_followed_and_shows_nothing_but_bags(tmp_path):

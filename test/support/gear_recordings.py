@@ -133,7 +133,10 @@ def record_both_encoders(folder: Path, *names: str) -> None:
 
 
 def old_recording(
-    path: Path, types: Sequence[tuple[str, str]], messages: Iterable[tuple[str, int, bytes]]
+    path: Path,
+    types: Sequence[tuple[str, str]],
+    messages: Iterable[tuple[str, int, bytes]],
+    qos: str = '',
 ) -> Path:
     """Write a database as ROS 2 Humble does: without definitions of types, and hashes."""
     numbers = {topic: number for number, (topic, _) in enumerate(types, start=1)}
@@ -146,7 +149,8 @@ def old_recording(
             'CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL,'
             ' timestamp INTEGER NOT NULL, data BLOB NOT NULL)'
         )
-        rows.executemany("INSERT INTO topics VALUES (NULL, ?, ?, 'cdr', '')", types)
+        topics = [(*each, qos) for each in types]
+        rows.executemany("INSERT INTO topics VALUES (NULL, ?, ?, 'cdr', ?)", topics)
         rows.executemany(
             'INSERT INTO messages VALUES (NULL, ?, ?, ?)',
             ((numbers[topic], received, data) for topic, received, data in messages),
