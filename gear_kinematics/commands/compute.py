@@ -100,7 +100,7 @@ def _print_summary(out: Path, result: ComputeResult) -> None:
         print(printable(f'left out: {listed(result.left_out)}'))
     for name, rotor in inputs.items():
         doubts = (
-            rotor.plausibility.jumped,
+            rotor.why_lost,
             rotor.plausibility.beyond_limits,
             rotor.velocity_field.meaning,
             result.questions[name],

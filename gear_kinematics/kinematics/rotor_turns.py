@@ -29,6 +29,7 @@ _TURN_HIGH = math.floor(TURN * 2.0**24) / 2.0**24
 _TURN_LOW = TURN - _TURN_HIGH
 _EXACT_TURN = Fraction(TURN) + Fraction(TURN_TAIL)  # 2π to 32 digits
 _WHOLE = 1e-6  # relative difference of a period from the whole turns that are meant
+_USUAL, _MOST_GAPS = 20, 40  # gaps, less others, that are usual; most that others make up for
 _NOISE = 0.05  # rad, greatest noise of any encoder
 BELOW_HALF = math.nextafter(math.pi, 0.0)  #: rad; any smaller angle is 0 turns, however rounded
 
@@ -193,7 +194,14 @@ class RotorTurns:
         self._lost = False
         self.unknown_gaps = 0
         """Number of gaps in which the rotor could have turned half a period or more unseen."""
+        self._gaps, self._gap = 0, 0.0
+        """How many more of them were too long for the speed than not, lately; their mean, s."""
         self.reset()
+
+    @property
+    def usual_gap(self) -> float:
+        """Time between samples, s, if it is usually too long for the speed; otherwise 0."""
+        return self._gap if self._gaps >= _USUAL else 0.0
 
     @property
     def position(self) -> RotorPosition | None:
@@ -244,8 +252,12 @@ class RotorTurns:
             # Stamps that are early or late put the turn outside of what is possible: it is the
             # right one only if any other were far less possible.
             width = high - low
+            wide = width >= period
+            if wide:
+                self._gap += (elapsed - self._gap) / (self._gaps + 1)
+            self._gaps = min(self._gaps + 1, _MOST_GAPS) if wide else max(self._gaps - 1, 0)
             outside = abs(apparent + period * more - expected) - 0.5 * width
-            if width >= period or outside > _NOISE + (period - width - outside) / 8.0:
+            if wide or outside > _NOISE + (period - width - outside) / 8.0:
                 self.referenced = False
                 self.unknown_gaps += 1
                 self.unseen_travel += self.max_speed * elapsed + 0.5 * period

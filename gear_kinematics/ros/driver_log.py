@@ -11,13 +11,13 @@ from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.parameters.arm import labelled
 from gear_kinematics.ros.graph import Graph
 from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.wire.nearest import among, listed
 from gear_kinematics.wire.topics import ROTOR_STATE
 
 _ELSEWHERE = 0.1  # rad, of a rotor that was turned by hand, or counted from another zero
 _SEARCH = 3  # s, in which all publishers are found: they announce themselves as often
 _HOME = 'check whether the drive restarted; then home it (gearkin home or ~/home)'
-_WRAPS = '; if the position wraps, set rotor_encoder'
 
 
 class DriverLog:
@@ -36,7 +36,7 @@ class DriverLog:
         self._log, self._node, self._inputs = node.get_logger(), node, inputs
         self._topic = node.resolve_topic_name(ROTOR_STATE)
         self._missing = 0  # updates since there was a publisher
-        self._jumps = self._jumped()
+        self._said = self._lost_turns()
         self._before: dict[str, RotorSample] = {}  # the silence
         self.awaited = False  # whether it was logged that the driver is missing or silent
 
@@ -55,16 +55,17 @@ class DriverLog:
             text = f'no joint {", ".join(joints.values())} on {self._topic}{hint}'
             self._log.warning(labelled(', '.join(joints), text))
 
-    def _jumped(self) -> dict[str, int]:
-        return {name: each.plausibility.jumps for name, each in self._inputs.items()}
+    def _lost_turns(self) -> dict[tuple[str, Condition, float], Fact]:
+        """Return how turns were lost, by actuator, condition and time of a jump."""
+        lost = ((name, each.why_lost) for name, each in self._inputs.items())
+        return {(name, f.condition, f.values.get('time', 0.0)): f for name, f in lost if f}
 
     def update(self, publishers: int, silence: float) -> None:
         """Take, once a second, the number of publishers and the time since the last message, s."""
-        jumps = self._jumped()
-        for name, each in self._inputs.items():
-            if jumps[name] > self._jumps[name]:
-                self._log.warning(labelled(name, f'{each.plausibility.jumped}: {_HOME}{_WRAPS}'))
-        self._jumps = jumps
+        said, self._said = self._said, self._lost_turns()
+        for key in self._said.keys() - said.keys():
+            fact = self._said[key]
+            self._log.warning(labelled(key[0], f'{fact}. {fact.advice}'))
         self._missing = 0 if publishers else self._missing + 1
         if self.awaited:
             return
@@ -92,7 +93,7 @@ class DriverLog:
                 turned = f'the rotor is {math.degrees(moved):.0f}° from where it was'
                 elsewhere.append(labelled(name, turned))
         if elsewhere:
-            self._jumps = self._jumped()
+            self._said = self._lost_turns()
             at = '; '.join(elsewhere)
             self._log.warning(f'{self._topic} is heard again, but {at}: {_HOME}')
         else:

@@ -130,8 +130,8 @@ class InputMonitor(DriverMonitor):
         if age > rotor_input.parameters.input_timeout:
             yield Condition.NO_INPUT(age=age)
         if not rotor_input.referenced:
-            if plausibility.jumped:
-                yield plausibility.jumped
+            if lost := rotor_input.why_lost:
+                yield lost
             yield _not_referenced(reference)
         elif wrong := (reference and reference.disagreement) or _outside(rotor_input):
             yield wrong

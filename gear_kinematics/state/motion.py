@@ -7,6 +7,7 @@ import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.state.reach import FLOOR, REGULAR, STALEST, Reading, RotorLimits
+from gear_kinematics.state.wraps import LEAST_STEP
 from gear_kinematics.wire.batches import Array, once_for_joints
 
 COARSEST = TURN / 6.0  # rad; what a Hall sensor of one pole pair resolves
@@ -52,8 +53,10 @@ def all_in_reach(
     took = np.concatenate([[former_span, last[1]], spans])
     ended = stood & (moved != 0.0)
     step, span = np.where(ended, 0.0, moved), np.where(ended, 0, took)
-    # Steps of the same stamp, which are added up, and abrupt stops are left to `judge`.
-    if np.any(when == changed[:-1]):
+    # Steps of the same stamp, which are added up, abrupt stops and what may be a wrap are left to
+    # `judge`.
+    back = (moved[1:] * moved[:-1] < 0.0) & (np.abs(moved[1:]) > LEAST_STEP)
+    if np.any(when == changed[:-1]) or np.any(back):
         return None
     sizes = np.abs([steps, steps - step[1:-1]])
     sizes = np.where(sizes > EQUAL, sizes, COARSEST).min(axis=0)

@@ -25,6 +25,7 @@ from gear_kinematics.state.motion import (
 )
 from gear_kinematics.state.reach import FLOOR, REGULAR, STALEST, Reading, RotorLimits
 from gear_kinematics.state.statuses import Condition, Fact
+from gear_kinematics.state.wraps import LEAST_STEP, Wraps
 
 _AGREEING = 3  # doubted readings in a row that are believed
 _MOST_OF = 0.8  # a period: where so much is in reach, nothing is doubted
@@ -34,6 +35,7 @@ _LONGEST_REPEAT = 1.0  # s, for which a driver repeats a reading while the rotor
 _REPEATED = 0.05  # of the way meanwhile: what it may differ by from that at a steady speed
 _STEADY = 0.25  # of the speed: what it may change by meanwhile
 _ROUNDING = 1e-6  # of a step of single precision, by a conversion of units in double precision
+_LEAST_MOTION = 0.01  # rad between two readings of a rotor that moves
 
 
 class Belief(Enum):
@@ -73,7 +75,7 @@ class Plausibility:
     def restrict(self, max_speed: float, max_acceleration: float, period: float = 0.0) -> None:
         """Change the limits from now on."""
         self.limits = RotorLimits(max_speed, max_acceleration)
-        self.period = period
+        self.period, self.wraps = period, Wraps()
         self.seen_speed = self.seen_acceleration = 0.0
         """rad/s and rad/s², of motions beyond the limits, which are raised above them."""
 
@@ -91,9 +93,10 @@ class Plausibility:
 
     @property
     def jumped(self) -> Fact | None:
-        """The last jump of the encoder, if there was one."""
+        """The last jump of the encoder, or that its jumps are wraps, if there were any."""
         jump = self.jump
-        return Condition.JUMPED(angle=jump.size, time=jump.stamp / 1e9) if jump else None
+        last = Condition.JUMPED(angle=jump.size, time=jump.stamp / 1e9) if jump else None
+        return self.wraps.fact or last
 
     @property
     def beyond_limits(self) -> Fact | None:
@@ -174,6 +177,7 @@ class Plausibility:
         if not reached or (self._doubted and self._stays(position, step, stamp)):
             return self._doubt(position, stamp)
         self._doubted.clear()
+        wraps = abs(last_step) > LEAST_STEP and self._wraps(step, stamp)
         for size in (abs(step), abs(step - last_step)):
             if EQUAL < size < 0.5 * self.noise:
                 self.noise = max(2.0 * size, FLOOR)
@@ -197,7 +201,22 @@ class Plausibility:
                     even = min(even, 0.25 * self.period)
                 most = self.limits.speed * shortest * 1e-9
                 self._even = even, most * most, math.ceil(shortest), int(longest)
+        if wraps:
+            self.jumps += 1
+            return Belief.JUMP
         return BELIEVED
+
+    def _wraps(self, step: float, stamp: int) -> bool:
+        """Whether the last step, which was believed, was a wrap, as the next one shows."""
+        position, changed, last_step, last_span = self._last
+        *_, former_step, former_span = self._former
+        span = stamp - changed
+        if self.period or not (former_span and last_span and span):
+            return False
+        if min(abs(former_step), abs(step)) < _LEAST_MOTION:
+            return False
+        speeds = former_step / (former_span * 1e-9), step / (span * 1e-9)
+        return self.wraps.note(last_step, position, last_span * 1e-9, speeds, jump=False)
 
     def _hold(self, position: float, stamp: int) -> Belief:
         """Judge a reading that repeats the last position.
@@ -279,6 +298,8 @@ class Plausibility:
         else:
             self.jumps += 1
             self.jump = Jump(times[0], self._wrapped(first - before * elapsed))
+            if not self.period:
+                self.wraps.note(first, positions[0], elapsed, (before, speed), jump=True)
         last, noise = self._last, self.noise
         self._restart(position, stamp)
         self.noise = noise

@@ -17,6 +17,7 @@ from gear_kinematics.state.plausibility import BELIEVED, Belief, Plausibility
 from gear_kinematics.state.rotor_samples import RotorSamples, Row
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.state.velocity_field import VelocityField
+from gear_kinematics.state.wraps import too_seldom
 from gear_kinematics.wire.batches import Array, decode_joint_states
 from gear_kinematics.wire.cdr import LATEST, SECOND
 from gear_kinematics.wire.joint_reader import (
@@ -118,6 +119,13 @@ class RotorInput:
     def referenced(self) -> bool:
         """Whether the rotor's turn count is known."""
         return self.turns.referenced
+
+    @property
+    def why_lost(self) -> Fact | None:
+        """How the turns were lost, as far as that is known."""
+        turns = self.turns
+        few = too_seldom(turns.period, turns.max_speed, turns.usual_gap)
+        return self.plausibility.jumped or few
 
     @property
     def mostly_rejected(self) -> bool:

@@ -31,6 +31,10 @@ _EFFORT = (
     'efforts of up to {effort:.4g} N·m at the rotor are more than {whose} ({bearable:.3g} N·m): '
     'set rotor_effort_factor (N·m per unit) if the messages have another unit, such as mA'
 )
+_TOO_SELDOM = (
+    '{rate:.0f} Hz are too few to count turns at max_rotor_speed, {limit:.4g} rad/s: set it to '
+    '{speed:.3g} or less, or let the driver send {least:.0f} Hz, or velocities'
+)
 _PEAK_TO_PEAK = 'peak to peak {angle:.3g} rad'
 
 
@@ -43,6 +47,16 @@ class Condition(Enum):
         ERROR,
         "the rotor's encoder jumped by {angle:.4g} rad at {time:.3f} s",
         'Check whether the drive restarted, and the encoder; if it wraps, set rotor_encoder.',
+    )
+    WRAPS = (
+        ERROR,
+        'the positions wrap after {angle:.4g} rad: set {setting}',
+        f'Change the parameter, {_HOME_IT}.',
+    )
+    TOO_SELDOM = (
+        ERROR,
+        _TOO_SELDOM,
+        f'Change the parameter or the driver, {_HOME_IT}.',
     )
     REJECTED = (
         WARN,

@@ -77,7 +77,7 @@ class FindingCause(Enum):
         '{rotor.jumps} gaps of {rotor.topic} could hide a turn of the rotor: after each, its '
         'turns are taken from the outputs'
     )
-    JUMPED = '{rotor.jumped}: later readings have another zero'
+    JUMPED = '{rotor.jumped}'
     VELOCITY_IS = '{rotor.velocity_is}'
     BEYOND_LIMITS = '{rotor.beyond_limits}'
     OVERSPEED = (

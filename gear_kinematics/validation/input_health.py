@@ -58,6 +58,8 @@ class InputHealth:
 
     def report(self, rotor_input: RotorInput, topic: str) -> InputReport:
         """Report on everything so far."""
+        # Messages without a stamp have that of their reception, and wraps are no motion.
+        timed = not (rotor_input.zero_stamps or rotor_input.plausibility.wraps.period)
         return InputReport(
             topic=topic,
             joint=rotor_input.parameters.rotor_joint,
@@ -74,11 +76,11 @@ class InputHealth:
             duration=self._duration,
             gaps=self._gaps,
             jumps=rotor_input.turns.unknown_gaps,
-            overspeed=self._overspeed,
-            max_speed=self._fastest,
+            overspeed=self._overspeed * timed,
+            max_speed=self._fastest * timed,
             longest_gaps=tuple(self._longest),
             referenced=not (rotor_input.turns.unknown_gaps or rotor_input.plausibility.jumped),
-            jumped=str(rotor_input.plausibility.jumped or ''),
+            jumped=str(rotor_input.why_lost or ''),
             velocity_is=str(rotor_input.velocity_field.meaning or ''),
             beyond_limits=str(rotor_input.plausibility.beyond_limits or ''),
         )
@@ -96,9 +98,10 @@ def _periods(
     return forward, period[forward], float(period[forward].sum())
 
 
-def repeats_stamps(rotor: InputReport) -> bool:
-    """Return whether too many stamps repeat to match outputs with inputs by them."""
-    return rotor.duplicates > _MANY_REPEATED * rotor.valid
+def _repeats_stamps(rotor: InputReport) -> Iterator[Finding]:
+    """Yield that too many stamps repeat to match outputs with inputs by them."""
+    if rotor.duplicates > _MANY_REPEATED * rotor.valid:
+        yield Finding(FindingCause.REPEATED_STAMPS, values={'rotor': rotor})
 
 
 def _mostly_rejected(rotor: InputReport) -> Iterator[Finding]:
@@ -116,8 +119,12 @@ def _counted(rotor: InputReport) -> Iterator[Finding]:
             yield Finding(FindingCause[name.upper()], values={'rotor': rotor})
 
 
-_NOTED = 'jumps', 'jumped', 'velocity_is', 'beyond_limits', 'overspeed', 'of_others', 'zero_stamps'
+_NOTED = 'jumped', 'jumps', 'velocity_is', 'beyond_limits', 'overspeed', 'of_others', 'zero_stamps'
 """Fields of `InputReport` that are noted; their causes have the same names."""
 
-CHECKS: Sequence[Callable[[InputReport], Iterator[Finding]]] = (_mostly_rejected, _counted)
+CHECKS: Sequence[Callable[[InputReport], Iterator[Finding]]] = (
+    _repeats_stamps,
+    _mostly_rejected,
+    _counted,
+)
 """Checks of the contents of the rotor topic."""

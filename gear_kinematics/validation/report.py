@@ -118,7 +118,7 @@ class InputReport:
     duration: float = 0.0  #: time from the first to the last stamp, s
     gaps: int = 0  #: gaps longer than 5 median periods
     jumps: int = 0  #: gaps in which the rotor could have turned half a turn or more unseen
-    jumped: str = ''  #: the last jump of the encoder; '' if there was none
+    jumped: str = ''  #: how turns were lost, as by the last jump of the encoder, in words; or ''
     velocity_is: str = ''  #: what velocities that contradict the positions seem to be; or ''
     beyond_limits: str = ''  #: speed and acceleration beyond their limits, in words; or ''
     overspeed: int = 0  #: steps faster than `max_rotor_speed`

@@ -36,6 +36,8 @@ from gear_kinematics.wire.topics import JOINT_STATES, LOAD_TOPICS, TRANSMISSION_
 
 _FRAME = 'stator'
 _TOPICS = Topics()
+_DOUBTS = {FindingCause.REPEATED_STAMPS, FindingCause.JUMPED}
+"""Causes in the input that explain wrong or missing outputs, where there are some."""
 _NONE: Mapping[str, str] = MappingProxyType({})
 
 
@@ -157,10 +159,9 @@ class Validator:
         checked = [finding for check in input_health.CHECKS for finding in check(rotor)]
         findings = *self._found(), *checked
         passed = not any(finding.fails for finding in findings) and all(t.passed for t in topics)
-        if input_health.repeats_stamps(rotor):
-            values = {'rotor': rotor}
-            repeated = Finding(FindingCause.REPEATED_STAMPS, values=values, explains=not passed)
-            findings = repeated, *findings
+        if not passed:
+            doubts = [replace(each, explains=True) for each in findings if each.cause in _DOUBTS]
+            findings = *doubts, *(each for each in findings if each.cause not in _DOUBTS)
         start = rotor.first_stamp or 0
         series = (output.series.series(output.name, start) for output in self.outputs)
         return BagReport(

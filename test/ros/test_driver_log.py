@@ -2,6 +2,7 @@
 """What the node logs of the rotor's driver; without DDS."""
 
 import contextlib
+import math
 from types import SimpleNamespace
 
 import pytest
@@ -20,7 +21,6 @@ MISSING = (
 STOPPED = '/rotor_state has stopped: no input for 1.5 s'
 NOW = '/rotor_state is heard now'
 CHECK = 'check whether the drive restarted; then home it (gearkin home or ~/home)'
-WRAPS = '; if the position wraps, set rotor_encoder'
 AWAY = f'/rotor_state is heard again, but the rotor is {{}}° from where it was: {CHECK}'
 GEARS = {'/output_state', '/transmission_error', '/left/angle', '/left/transmission_error'}
 
@@ -103,8 +103,20 @@ def test_jump_of_the_encoder_is_one_warning():
             graph.hear(1.0 + 0.001 * number, 5.0 + 100.0 * (number > 3))
     graph.driver_log.update(1, 0.0)
     graph.driver_log.update(1, 0.0)
-    said = f"the rotor's encoder jumped by 100 rad at 1.004 s: {CHECK}{WRAPS}"
-    assert graph.logged == [('W', said)]
+    said = "the rotor's encoder jumped by 100 rad at 1.004 s. Check whether the drive restarted, "
+    assert [(level, text[: len(said)]) for level, text in graph.logged] == [('W', said)]
+
+
+def test_positions_that_wrap_are_named_once_instead_of_every_jump():
+    graph = Graph()
+    for number in range(200):
+        with contextlib.suppress(RejectedInputError):
+            graph.hear(1.0 + 0.01 * number, math.fmod(0.2 * number, math.tau))
+        graph.driver_log.update(1, 0.0)
+    jumps, wraps = graph.logged[:-1], graph.logged[-1]
+    assert ['jumped by -6.283 rad' in text for _, text in jumps] == [True, True]
+    said = 'the positions wrap after 6.283 rad: set rotor_encoder: single_turn. Change the parame'
+    assert (wraps[0], wraps[1][: len(said)]) == ('W', said)
 
 
 @pytest.mark.live

@@ -39,6 +39,7 @@ class Row(NamedTuple):
     found: FindingCause | None = None
     settings: NodeParameters = MULTI
     verdict: Verdict = Verdict.PASS
+    also: FindingCause | None = None
 
 
 def message(number: int, changed) -> bytes:
@@ -77,6 +78,13 @@ def at_speed(speed: float, **fields) -> list[dict[str, Any]]:
 
 
 JUMPED = Condition.JUMPED(angle=pytest.approx(100.0, abs=0.01), time=pytest.approx(100.6))
+WRAPS = Condition.WRAPS(angle=math.tau, setting='rotor_encoder: single_turn')
+TOO_SELDOM = Condition.TOO_SELDOM(
+    rate=pytest.approx(100.0),
+    limit=650.0,
+    speed=pytest.approx(80.0 * math.pi),
+    least=pytest.approx(1.25 * 650.0 / math.pi),
+)
 OUTSIDE = Condition.OUTSIDE(
     angle_deg=pytest.approx(-71.77, abs=0.01), low_deg=0.0, high_deg=math.degrees(1.0)
 )
@@ -135,6 +143,20 @@ ROWS = {
         (JUMPED, Condition.NOT_REFERENCED(), Condition.REJECTED(counts={'implausible': 2})),
         FindingCause.JUMPED,
     ),
+    'positions wrap': Row(
+        [{'position': [math.fmod(SPEED * k / 100, math.tau)]} for k in range(COUNT)],
+        {'rejected': {'implausible': 6}},
+        (WRAPS, Condition.NOT_REFERENCED(), Condition.REJECTED(counts={'implausible': 6})),
+        FindingCause.JUMPED,
+    ),
+    'messages too few for turns': Row(
+        part({}),
+        {'jumps': COUNT - 1},
+        (TOO_SELDOM, Condition.NOT_REFERENCED()),
+        FindingCause.JUMPED,
+        replace(SINGLE, max_rotor_speed=650.0),
+        also=FindingCause.JUMPS,
+    ),
     'rpm': Row(
         at_speed(50.0, velocity=[1500.0 / math.pi]),
         {},
@@ -172,6 +194,6 @@ def test_a_fault_is_counted_diagnosed_and_found(fault):
     for name in set(names) - {'jumps'}:
         assert getattr(gear.input, name) == counts[name]
     causes = {finding.cause for finding in found.findings} - {FindingCause.OVERSPEED}
-    assert causes == {row.found} - {None}
+    assert causes == {row.found, row.also} - {None}
     assert found.verdict == row.verdict
     assert all(field.passed for topic in found.topics for field in topic.fields)

@@ -2,7 +2,9 @@
 """Readings that the rotor cannot have reached, injected into motions within its limits."""
 
 import math
+from contextlib import suppress
 from dataclasses import replace
+from unittest.mock import ANY
 
 import numpy as np
 import pytest
@@ -179,6 +181,47 @@ def test_a_jump_that_stays_is_named_and_ends_the_reference(rate, size):
     assert rotor.segment == 1
     rotor.home(0.0)
     assert rotor.referenced
+
+
+@pytest.mark.parametrize(('rate', 'speed', 'period'), [
+    (10, 1.0, TURN), (10, -15.0, TURN), (20, 20.0, TURN), (50, -5.0, TURN), (50, 80.0, TURN),
+    (100, 100.0, TURN), (200, 300.0, TURN), (1000, -5.0, TURN), (1000, 300.0, TURN),
+    (200, 100.0, 25.0), (1000, -100.0, 8.0 * math.pi),
+])  # fmt: skip
+def test_positions_that_wrap_are_named_after_three_wraps(rate, speed, period):
+    count = math.ceil(4.2 * period / abs(speed) * rate)
+    times = np.arange(count) / rate
+    angles = np.mod(0.5 * period + speed * times, period) - 0.5 * period
+    third = int(np.flatnonzero(np.abs(np.diff(angles)) > 0.5 * period)[2]) + 1
+    batch = messages(times, angles)
+    rotor, _ = fed(MULTI, batch[:third])
+    assert rotor.plausibility.wraps.fact is None
+    rotor, _ = fed(MULTI, batch[: third + 3])
+    named = Condition.WRAPS(angle=pytest.approx(period, rel=0.01), setting=ANY)
+    assert rotor.plausibility.jumped == rotor.why_lost == named
+    assert not rotor.referenced
+    whole = RotorInput(MULTI)
+    whole.accept_batch(batch[: third + 3], [*range(third + 3)])
+    assert state_of(whole.plausibility) == state_of(rotor.plausibility)
+    rotor.home(0.0)
+    for data in batch[third + 3 :]:
+        with suppress(RejectedInputError):
+            rotor.accept(data, int)
+    assert not rotor.referenced, 'the next wrap loses the turns again'
+    rotor.parameters = replace(MULTI, rotor_encoder_range=period)
+    assert rotor.plausibility.wraps.fact is None
+
+
+@pytest.mark.parametrize('rate', [10, 20, 50, 1000])
+def test_machine_with_a_quick_return_or_a_drive_that_restarts_does_not_wrap(rate):
+    times = np.arange(40 * rate) / rate
+    quick = 0.06 + 1.0 / rate
+    cycle = np.mod(times, 2.0)
+    back = np.where(cycle < 2.0 - quick, cycle / (2.0 - quick), (2.0 - cycle) / quick)
+    indexed, restarted = np.floor(times / 2.0) % 2 * TURN, 25.0 * np.minimum(cycle, 1.0)
+    for angles in (4.0 * back, 9.0 * back, indexed, restarted):
+        rotor, _ = fed(MULTI, messages(times, angles))
+        assert rotor.plausibility.wraps.fact is None
 
 
 @pytest.mark.parametrize('rate', [500, 1000])
