@@ -75,7 +75,7 @@ def show(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> Non
         if asking:
             rows.append(Entry('', f'{view.question}   y yes   n no'))
         undo = f'   u undo: {view.undo} again' if view.undo else ''
-        more = '   n next node' * bool(others)
+        more = f'   n next {"actuator" if view.arm else "node"}' * bool(others)
         rows.append(Entry('', '', f'h home{undo}{more}   q end'))
         return rows, pressed != 'q'
 

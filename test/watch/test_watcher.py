@@ -300,6 +300,10 @@ def test_all_angles_of_an_arm_are_in_a_row():
     assert (view.node, [node.name for node in view.nodes]) == (label, [label])
     said = line(rows_of(view))
     assert said.startswith(f'{label} connected; all shoulder 90.0°   elbow 0.0°   hand none; ')
+    terminal = Console(file=io.StringIO(), force_terminal=True, width=200)
+    both = replace(view, nodes=(*view.nodes, Entry('/left/gear_state_publisher elbow', '')))
+    show(SimpleNamespace(view=both), terminal, iter((False, True)).__next__)
+    assert 'n next actuator' in terminal.file.getvalue()
 
 
 @pytest.mark.live
