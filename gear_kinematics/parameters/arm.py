@@ -117,14 +117,16 @@ def faults_in(given: Mapping[str, Any], others: Iterable[str] = ()) -> list[str]
     branches = {name: _branches(values) for name, values in actuators.items()}
     every = [branch for each in branches.values() for branch in each]
     known = {**PARAMETERS} | branch_parameters(every)
-    faults = []
+    refused = {}
     for name, value in given.items():
         first, _, rest = name.partition('.')
         parameter = known.get(rest if first in actuators else name)
         if parameter and (fault := parameter.fault(name, value)):
-            faults.append(fault)
+            refused[name] = fault
+    faults = [*refused.values()]
     if names:
-        shared = [] if faults else shared_names(actuators_of(given))
+        usable = {name: value for name, value in given.items() if name not in refused}
+        shared = shared_names(actuators_of(usable))
         faults = [*_name_faults(names, every, others), *faults, *shared]
     return faults + unknown_parameters(given, branches, others)
 
