@@ -55,6 +55,9 @@ def find_faults(
     ]
     shared = defaultdict(list)
     for topic in (publisher.topic for publisher in publishers):
+        listeners = node.get_subscriptions_info_by_topic(topic)
+        if not listeners and topic not in exclusive:
+            continue
         offers = {
             full_name(end): end.qos_profile for end in node.get_publishers_info_by_topic(topic)
         }
@@ -62,7 +65,7 @@ def find_faults(
         if own_offer := offers.pop(own_name, None):
             faults += [
                 Condition.LISTENER_QOS(topic=topic, policy=policy, node=full_name(listener))
-                for listener in node.get_subscriptions_info_by_topic(topic)
+                for listener in listeners
                 for policy in _unmet(listener.qos_profile, own_offer)
             ]
         if topic in exclusive:
