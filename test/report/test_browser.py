@@ -26,7 +26,7 @@ pytestmark = pytest.mark.slow
 
 sync_api = pytest.importorskip('playwright.sync_api', reason='no playwright is installed')
 expect = sync_api.expect
-expect.set_options(timeout=30_000.0)  # a machine can be busy
+expect.set_options(timeout=60_000.0)  # a machine can be busy
 
 PIXEL = 1.0
 TIMES = [0.25 * k for k in range(41)]

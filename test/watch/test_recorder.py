@@ -12,7 +12,7 @@ from unittest.mock import MagicMock
 import pytest
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.qos import ReliabilityPolicy as Offer
-from watching import ENCODER, JUDGED, MOTOR, NAMESPACE, NODE, driving, gearkin, node
+from watching import DEADLINE, ENCODER, JUDGED, MOTOR, NAMESPACE, NODE, driving, gearkin, node
 
 from gear_kinematics.bag import Bag
 from gear_kinematics.commands.cli import main
@@ -116,7 +116,7 @@ def test_a_node_that_is_homed_meanwhile_is_recorded_with_its_first_zero(tmp_path
 
     def show(recorder, *_):
         recorder.poll()
-        assert asked.wait(10.0)
+        assert asked.wait(DEADLINE)
         zeros.append(1.5)  # rad, by ~/home
         recorder.inputs.add(MOTOR)
         recorder.heard[MOTOR] = SimpleNamespace(count=1, mean_rate=0.0, lost=0)

@@ -23,7 +23,7 @@ from rclpy.node import Node
 from rclpy.serialization import serialize_message
 from rich.console import Console
 from sensor_msgs.msg import JointState
-from watching import WatcherStandIn
+from watching import DEADLINE, WatcherStandIn
 
 from gear_kinematics.commands import init
 from gear_kinematics.commands.cli import main
@@ -526,7 +526,7 @@ JOINTS = {'rotor': ['/j', 'm'], 'output': ['/j', 'o']}
     ({'do': 'commission', **JOINTS, 'ratio': 'x'}, 'a gear ratio must be an integer'),
 ])  # fmt: skip
 def test_what_cannot_be_done_is_answered(running, command, answer):
-    text, done = running.ask(command).result(20.0)
+    text, done = running.ask(command).result(DEADLINE)
     assert (text[: len(answer)], done) == (answer, False)
 
 
@@ -588,9 +588,9 @@ def test_command_that_fails_in_an_unexpected_way_ends_nothing(running, monkeypat
 
     with monkeypatch.context() as patch:
         patch.setattr(Watcher, '_do', broken)
-        answer = running.ask({'do': 'home'}).result(20.0)
+        answer = running.ask({'do': 'home'}).result(DEADLINE)
     assert answer == ('That failed: TypeError: no such thing', False)
-    assert running.ask({'do': 'home'}).result(20.0)[0] == 'No node is ready.'
+    assert running.ask({'do': 'home'}).result(DEADLINE)[0] == 'No node is ready.'
 
 
 # gearkin init
@@ -784,7 +784,7 @@ async def serving(watcher):
 
 
 async def fetch(url, **headers) -> tuple[int, str, dict]:
-    request = HTTPRequest(url, headers=headers, request_timeout=20.0)
+    request = HTTPRequest(url, headers=headers, request_timeout=DEADLINE)
     answer = await AsyncHTTPClient().fetch(request, raise_error=False)
     return answer.code, answer.body.decode(), answer.headers
 
