@@ -47,6 +47,10 @@ def test_calibration_beside_the_bag_is_used(computed, file, tmp_path, capsys):
     assert main(['compute', str(computed), str(again)]) == 0
     with Bag(again) as bag, Bag(computed) as before:
         assert list(bag.messages(CORRECTED)) == list(before.messages(CORRECTED))
+    capsys.readouterr()
+    for path in beside, computed / 'actuator.yaml':
+        path.unlink()
+    assert not set(CORRECTED) & set(topics_of(computed, capsys))
 
 
 def test_calibration_that_the_config_names_is_used(computed, file, tmp_path, capsys):
@@ -54,16 +58,6 @@ def test_calibration_that_the_config_names_is_used(computed, file, tmp_path, cap
     config.write_text(f'/**:\n  ros__parameters:\n    calibration: {file.name}\n', 'utf-8')
     capsys.readouterr()
     assert set(CORRECTED) < set(topics_of(computed, capsys, '--config', config))
-
-
-def test_without_a_calibration_the_rest_is_validated_and_the_report_says_so(computed, capsys):
-    for name in ('actuator.yaml', 'calibration.yaml'):
-        (computed / name).unlink()
-    capsys.readouterr()
-    assert main(['validate', str(computed)]) == 0
-    shown = capsys.readouterr().out
-    assert 'the corrected output is not judged: no calibration is given' in shown
-    assert '/corrected_state position' not in shown
 
 
 @pytest.mark.parametrize('command', ['validate', 'compute'])

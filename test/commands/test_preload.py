@@ -115,11 +115,17 @@ def test_preload_of_a_ring_turn(capsys):
     }
 
 
-@pytest.mark.parametrize(('wish', 'figure'), [('preload', 'preload'), ('threshold', 'limit')])
-def test_preload_finds_the_ring_turn_for_a_wish(wish, figure, capsys):
+@pytest.mark.parametrize(
+    ('wish', 'figure', 'way'),
+    [('preload', 'preload', 1), ('preload', 'preload', -1), ('threshold', 'limit', 1)],
+)
+def test_preload_finds_the_ring_turn_for_a_wish(wish, figure, way, capsys):
+    """In either direction; it closes the backlash first."""
     known = ('--backlash', '0.001', *SOFT)
-    found = answer(capsys, 'preload', f'--wanted-{wish}', '2', *known)
+    found = answer(capsys, 'preload', f'--wanted-{wish}', 2 * way, *known)
     assert found[figure] == pytest.approx(2.0, rel=1e-12)
+    turn = way * 76 / 80 * (0.001 + found['preload'] * COMPLIANCE)
+    assert found['ring_turn'] == pytest.approx(turn)
     turned = answer(capsys, 'preload', '--degrees', degrees(found['ring_turn']), *known)
     assert turned['setting'] == found['setting']
     assert turned[figure] == pytest.approx(2.0, rel=1e-12)
@@ -127,17 +133,6 @@ def test_preload_finds_the_ring_turn_for_a_wish(wish, figure, capsys):
     assert nearest['ring_turn'] == pytest.approx(found['ring_turn'], abs=4.879 / 2 * SECOND)
     pinned = answer(capsys, 'preload', '--setting', *holes(nearest), *known)
     assert pinned[figure] == pytest.approx(nearest[figure], rel=1e-9)
-
-
-def test_preload_closes_the_backlash_first_and_turns_either_way(capsys):
-    one_way, back = (
-        answer(capsys, 'preload', '--wanted-preload', wanted, '--backlash', '0.002', *SOFT)
-        for wanted in ('0.5', '-0.5')
-    )
-    assert one_way['ring_turn'] == pytest.approx(76 / 80 * (0.002 + 0.5 * COMPLIANCE))
-    assert back['ring_turn'] == -one_way['ring_turn']
-    assert back['preload'] == pytest.approx(0.5, rel=1e-12)
-    assert back['setting']['preload'] == pytest.approx(one_way['setting']['preload'])
 
 
 def test_preload_reads_well(capsys, monkeypatch):
