@@ -30,42 +30,29 @@ def messages(factor, speed=100.0, rate=500, scatter=0.0, duration=1.0) -> list[b
     ]
 
 
-@pytest.mark.parametrize(
-    ('factor', 'meaning'),
-    [
-        (0.0, '0'),
-        (30.0 / math.pi, 'rpm'),
-        (0.5 / math.pi, 'turns/s'),
-        (180.0 / math.pi, 'deg/s'),
-        (-1.0 / 19.0, 'the velocity of the output'),
-        (-1.0, 'the velocity with the opposite sign'),
-        (3.0, 'an unknown quantity'),
-    ],
-)
-def test_wrong_velocities_are_named_and_not_passed_on(factor, meaning):
-    rotor = RotorInput(SETTINGS)
-    samples = [rotor.accept(data, int) for data in messages(factor)]
-    assert rotor.velocity_field.meaning.values['meaning'] == meaning
-    assert rotor.velocity_field.factor == pytest.approx(factor, abs=1e-6)
-    assert samples[-1].velocity is None
+FAST, SLOW = {}, {'speed': 1.0, 'rate': 25, 'duration': 8.0}
 
 
-@pytest.mark.parametrize(
-    ('factor', 'speed', 'meaning'),
-    [
-        (0.0, 1.0, '0'),
-        (0.5 / math.pi, 1.0, 'turns/s'),
-        (-1.0, -3.0, 'the velocity with the opposite sign'),
-        (1.0, 1.0, None),
-        (2.0, 1.0, None),  # whole rad/s, rounded up, of half as many
-    ],
-)
-def test_wrong_velocities_of_a_slow_rotor_are_named(factor, speed, meaning):
+@pytest.mark.parametrize(('factor', 'motion', 'meaning'), [
+    (0.0, FAST, '0'), (30.0 / math.pi, FAST, 'rpm'), (0.5 / math.pi, FAST, 'turns/s'),
+    (180.0 / math.pi, FAST, 'deg/s'), (-1.0 / 19.0, FAST, 'the velocity of the output'),
+    (-1.0, FAST, 'the velocity with the opposite sign'), (3.0, FAST, 'an unknown quantity'),
+    (1.0, {'scatter': 3.0}, None), (1.0, {'speed': -100.0}, None),
+    (0.0, {'speed': 0.5}, None),  # too slow to tell
+    (0.0, SLOW, '0'), (0.5 / math.pi, SLOW, 'turns/s'),
+    (-1.0, SLOW | {'speed': -3.0}, 'the velocity with the opposite sign'), (1.0, SLOW, None),
+    (2.0, SLOW, None),  # whole rad/s, rounded up, of half as many
+])  # fmt: skip
+def test_wrong_velocities_are_named_and_not_passed_on(factor, motion, meaning):
     rotor = RotorInput(SETTINGS)
-    for data in messages(factor, speed, rate=25, duration=8.0):
-        rotor.accept(data, int)
-    found = rotor.velocity_field.meaning
-    assert (found and found.values['meaning']) == meaning
+    samples = [rotor.accept(data, int) for data in messages(factor, **motion)]
+    found = rotor.velocity_field
+    assert (found.meaning and found.meaning.values['meaning']) == meaning
+    if meaning:
+        assert found.factor == pytest.approx(factor, abs=1e-6)
+        assert samples[-1].velocity is None
+    else:
+        assert all(sample.velocity is not None for sample in samples)
 
 
 @pytest.mark.parametrize('right', [3.3, 3.8])
@@ -140,13 +127,3 @@ def test_velocities_of_an_encoder_that_is_stuck_contradict_it():
         position = min(0.02 * k, 5.0)
         rotor.accept(rotor_bytes(k * SECOND // 500 + 1, position=[position], velocity=[10.0]), int)
     assert rotor.velocity_field.meaning == Condition.POSITIONS_STAND()
-
-
-@pytest.mark.parametrize(
-    ('factor', 'speed', 'scatter'), [(1.0, 100.0, 3.0), (1.0, -100.0, 0.0), (0.0, 0.5, 0.0)]
-)
-def test_right_velocities_and_slow_motion_raise_no_alarm(factor, speed, scatter):
-    rotor = RotorInput(SETTINGS)
-    samples = [rotor.accept(data, int) for data in messages(factor, speed, scatter=scatter)]
-    assert rotor.velocity_field.meaning is None
-    assert all(sample.velocity is not None for sample in samples)

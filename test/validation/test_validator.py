@@ -206,23 +206,6 @@ def test_a_value_that_is_not_finite_or_absent_is_found(
     assert shown.time[shown.start] == pytest.approx(moment)
 
 
-@pytest.mark.parametrize(
-    ('torque', 'outputs', 'passes'),
-    [
-        (0.0, without_effort, True),  # the node saw a motion without effort before
-        (0.0, fill('effort', -0.0), True),  # or a torque
-        (0.0, fill('effort', 1.0), False),
-        (1.0, without_effort, False),
-    ],
-)
-def test_what_an_effort_of_0_means_can_be_known_from_before_the_recording(
-    recorded, config, torque, outputs, passes
-):
-    changed = change_all(recorded, ROTOR, fill('effort', torque))
-    report = validate(change_all(changed, OUTPUT, outputs), config)
-    assert (report.verdict == Verdict.PASS) == passes
-
-
 def without_velocity(message) -> None:
     message.velocity = np.zeros(0)
 
@@ -231,20 +214,23 @@ def in_rpm(message) -> None:
     message.velocity = message.velocity * 30.0 / math.pi
 
 
-@pytest.mark.parametrize(
-    ('rotor', 'outputs', 'passes'),
-    [
-        (in_rpm, without_velocity, True),  # the node saw a steady motion before
-        (in_rpm, in_rpm, False),
-        (lambda _: None, without_velocity, False),
-    ],
-)
-def test_that_velocities_contradict_can_be_known_from_before_the_recording(
-    config, rotor, outputs, passes
+@pytest.mark.parametrize(('name', 'rotor', 'outputs', 'passes'), [
+    # An effort of 0: the node saw a motion without effort before, or a torque.
+    ('servo_point_to_point', fill('effort', 0.0), without_effort, True),
+    ('servo_point_to_point', fill('effort', 0.0), fill('effort', -0.0), True),
+    ('servo_point_to_point', fill('effort', 0.0), fill('effort', 1.0), False),
+    ('servo_point_to_point', fill('effort', 1.0), without_effort, False),
+    # Velocities that contradict: the node saw a steady motion before.
+    ('constant_speed_3000rpm', in_rpm, without_velocity, True),
+    ('constant_speed_3000rpm', in_rpm, in_rpm, False),
+    ('constant_speed_3000rpm', lambda _: None, without_velocity, False),
+])  # fmt: skip
+def test_what_values_mean_can_be_known_from_before_the_recording(
+    config, name, rotor, outputs, passes
 ):
-    recorded = read_bag(BAGS / 'constant_speed_3000rpm')
-    changed = change_all(change_all(recorded, ROTOR, rotor), OUTPUT, outputs)
-    assert (validate(changed, config).verdict == Verdict.PASS) is passes
+    changed = change_all(read_bag(BAGS / name), ROTOR, rotor)
+    report = validate(change_all(changed, OUTPUT, outputs), config)
+    assert (report.verdict == Verdict.PASS) is passes
 
 
 @pytest.mark.parametrize('value', [1.4e154, -1e200, 1.7976931348623157e308, 5e-324])
