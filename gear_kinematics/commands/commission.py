@@ -26,7 +26,7 @@ from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.measurement.commissioning import analysis
 from gear_kinematics.measurement.commissioning.document import document, write_file
 from gear_kinematics.measurement.formats import is_table, open_bag
-from gear_kinematics.measurement.reading import read
+from gear_kinematics.measurement.reading import as_recorded, read
 from gear_kinematics.measurement.rotor_fields import questions
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.arm_file import check_new
@@ -81,16 +81,14 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _read(options: argparse.Namespace, request: analysis.Request) -> analysis.Commissioning:
-    # Take positions as they are: no limit of the speed may rule out their wraps.
-    parameters = replace(NodeParameters.load(), max_rotor_speed=1e6, max_rotor_acceleration=1e9)
-    known = replace(sources(options), as_recorded=True)
+    source = replace(sources(options), as_recorded=True)
     recordings = []
     for path in options.recordings:
         with bags.naming(path):
             request = request if is_table(path) else _chosen(_recorded(path), request)
         rotor, output = request.rotor, request.output
-        joints = replace(parameters, rotor_joint=rotor.joint, output_encoder_joint=output.joint)
-        topics = replace(known, rotor_topic=rotor.topic, encoder_topic=output.topic)
+        joints = as_recorded(rotor.joint, output.joint)
+        topics = replace(source, rotor_topic=rotor.topic, encoder_topic=output.topic)
         with message_progress(path.name, quiet=options.quiet) as progress:
             recordings.append(read(path, joints, topics, progress, both=True))
     result = analysis.commission(recordings, request)
@@ -98,7 +96,8 @@ def _read(options: argparse.Namespace, request: analysis.Request) -> analysis.Co
     for recording in recordings:
         say_columns(recording, options)
         if heard := recording.rotor_messages:
-            found = questions(heard.data, heard.received, request.rotor.joint, result.between)
+            known = result.between, request.max_speed
+            found = questions(heard.data, heard.received, request.rotor.joint, *known)
             asked |= dict.fromkeys(map(str, found))
     return replace(result, questions=tuple(asked))
 

@@ -12,7 +12,8 @@ from gear_kinematics.commands.joints import ask, can_ask, choose_joint, joints_o
 from gear_kinematics.commands.output import Console, complain, warn_of_shared_memory
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.commissioning.analysis import Channel
-from gear_kinematics.measurement.rotor_fields import questions
+from gear_kinematics.measurement.rotor_fields import kind_of_encoder, questions
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.arm_file import add_actuators, check_new
 from gear_kinematics.parameters.new_config import (
     arm_head,
@@ -23,6 +24,8 @@ from gear_kinematics.parameters.new_config import (
 )
 from gear_kinematics.report.document import printable
 from gear_kinematics.wire.nearest import among, listed
+
+_ASSUMED = 'is assumed to be multi_turn, which was not seen'
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -61,11 +64,18 @@ def run(options: argparse.Namespace) -> ExitCode:
         chosen = [choose_joint(joints, given, 'rotor', '; gearkin init --arm sets up all')]
     topic = chosen[0].topic
     ratios = _ratios(options, [channel.joint for channel in chosen])
+    heard = next(driver.messages for driver in drivers if driver.topic == topic)
+    data, received = [m[2] for m in heard], [m[1] for m in heard]
+    encoders = {joint: kind_of_encoder(data, received, joint) for joint in ratios}
+    found = {
+        joint: (ratio, options.teeth, {e.name: e.value for e in encoders[joint] if e.value})
+        for joint, ratio in ratios.items()
+    }
     command = start_command(topic, str(path))
     if options.arm or options.actuator:
         blocks = {
-            options.actuator or _actuator(joint): new_actuator(topic, joint, ratio, options.teeth)
-            for joint, ratio in ratios.items()
+            options.actuator or _actuator(joint): new_actuator(topic, joint, *gear)
+            for joint, gear in found.items()
         }
         if len(blocks) < len(ratios):
             raise ValueError('two joints have nearly the same name: add each with --actuator')
@@ -76,16 +86,17 @@ def run(options: argparse.Namespace) -> ExitCode:
         print(f'{path}: added {", ".join(map(printable, blocks))}. Start the node:')
     else:
         [(joint, ratio)] = ratios.items()
-        write_new(path, new_config(topic, joint, str(path), ratio, options.teeth))
+        write_new(path, new_config(topic, joint, str(path), *found[joint]))
         print(
             f'{path} is for the joint {printable(joint)} on {topic}, with the gear ratio {ratio}. '
             'Start the node:'
         )
     print(f'    {command}')
-    heard = next(driver.messages for driver in drivers if driver.topic == topic)
-    data, received = [m[2] for m in heard], [m[1] for m in heard]
+    limit = NodeParameters.load().max_rotor_speed
     for joint, ratio in ratios.items():
-        for question in questions(data, received, joint, ratio):
+        kind = [each for each in encoders[joint] if each.value != 'multi_turn']
+        told = [f'{e.name} {e.value or _ASSUMED}: {e.evidence}' for e in kind]
+        for question in (*told, *questions(data, received, joint, ratio, limit)):
             complain(f'{topic}: {f"{printable(joint)}: " * options.arm}{question}')
     return ExitCode.DONE
 

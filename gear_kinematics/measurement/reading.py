@@ -91,6 +91,17 @@ def _read_bag(
     return replace(recording, rotor_messages=heard) if heard.data else recording
 
 
+def as_recorded(rotor_joint: str, output_joint: str) -> NodeParameters:
+    """Return the parameters to take positions as they are: no limit rules out their wraps."""
+    return replace(
+        NodeParameters.load(),
+        rotor_joint=rotor_joint,
+        output_encoder_joint=output_joint,
+        max_rotor_speed=1e6,
+        max_rotor_acceleration=1e9,
+    )
+
+
 class States:
     """States of the rotor and of the output's encoder, collected batch by batch."""
 

@@ -7,23 +7,30 @@ from fractions import Fraction
 import numpy as np
 
 from gear_kinematics.bag import Bag, DamagedBagError
-from gear_kinematics.measurement.commissioning.encoder_range import unwrapped
+from gear_kinematics.measurement.commissioning.analysis import Value, encoder_kind
+from gear_kinematics.measurement.commissioning.encoder_range import find_range
 from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.state.effort_field import EffortField, questioned
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.state.velocity_field import VelocityField, VelocityMeaning
-from gear_kinematics.wire.batches import decode_joint_states
+from gear_kinematics.state.wraps import too_seldom
+from gear_kinematics.wire.batches import Array, JointStates, decode_joint_states
 from gear_kinematics.wire.cdr import SECOND
 
 MOST = 500_000  # messages that are examined; they take about 200 bytes each
 _FEWEST = 10
 _MOVED = 1.0  # rad: a rotor that travels as far has certainly moved
+_STEP = Step(0.0, seen=False)
 _EQUAL = 1e-9  # rad: positions that differ by less differ by rounding alone
 
 
 def questions(
-    data: Sequence[bytes], received: Sequence[int], joint: str, ratio: Fraction | None = None
+    data: Sequence[bytes],
+    received: Sequence[int],
+    joint: str,
+    ratio: Fraction | None = None,
+    max_speed: float = 0.0,
 ) -> Iterator[Observed | Fact]:
     """Yield what seems to be wrong with the fields of n messages.
 
@@ -32,22 +39,20 @@ def questions(
         received: times of reception, ns, which replace missing stamps.
         joint: name of the rotor's joint; '' takes the only one.
         ratio: gear ratio if known, to recognise velocities of the output.
+        max_speed: limit of the rotor if known, rad/s, up to which its turns are to be counted.
     """
     states = decode_joint_states(data, joint)
+    stamp = _stamps(states, received)
     if unfit := int(np.count_nonzero(states.joint_found & ~states.arrays_fit)):
         yield Observation.SIZES_DIFFER(count=unfit)
-    stamp = np.where(states.stamp == 0, np.asarray(received, np.int64), states.stamp)
     repeated = int(np.count_nonzero(np.diff(stamp) == 0))
     if 2 * repeated > len(stamp):
         yield Observation.STAMPS_REPEAT(count=repeated, total=len(stamp))
-    newest = np.append(np.iinfo(np.int64).min, np.maximum.accumulate(stamp)[:-1])
-    usable = states.arrays_fit & np.isfinite(states.values[:, 0])
-    rows = np.flatnonzero(usable & (stamp > newest))
-    if len(rows) < _FEWEST:
+    stamp, values = _in_order(states, stamp)
+    if len(stamp) < _FEWEST:
         return
-    stamp, values = stamp[rows], states.values[rows]
-    seconds = (stamp - stamp[0]) / SECOND
-    values[:, 0] = unwrapped(values[:, 0], seconds, Step(0.0, seen=False))
+    period, _ = find_range(values[:, 0], (stamp - stamp[0]) / SECOND, _STEP)
+    values[:, 0] = np.unwrap(values[:, 0], period=period) if period else values[:, 0]
     steps = np.abs(np.diff(values[:, 0]))
     given = values[np.isfinite(values[:, 1]), 1]
     velocities = VelocityField(float(1 / ratio) if ratio else np.nan)
@@ -57,6 +62,10 @@ def questions(
         yield Condition.VELOCITIES_ARE(meaning=VelocityMeaning.ZERO)
     elif velocities.meaning:
         yield velocities.meaning
+    elif not len(given) and period:
+        usual = float(np.median(np.diff(stamp))) / SECOND
+        if seldom := too_seldom(period, max_speed, usual):
+            yield seldom
     field = EffortField()
     field.all_believed(values[:, 0], values[:, 2])
     if field.absent:
@@ -64,6 +73,29 @@ def questions(
     efforts = values[np.isfinite(values[:, 2]), 2]
     if question := questioned(float(np.max(np.abs(efforts), initial=0.0))):
         yield question
+
+
+def kind_of_encoder(data: Sequence[bytes], received: Sequence[int], joint: str) -> list[Value]:
+    """Return the parameters of the rotor's encoder that messages show; see `questions`."""
+    states = decode_joint_states(data, joint)
+    stamp, values = _in_order(states, _stamps(states, received))
+    positions, found = values[:, 0], (0.0, 0)
+    if len(stamp) >= _FEWEST:
+        found = find_range(positions, (stamp - stamp[0]) / SECOND, _STEP)
+    turned = np.unwrap(positions, period=found[0]) if found[0] else positions
+    return [*encoder_kind([found], float(np.ptp(turned)) if len(turned) else 0.0)]
+
+
+def _stamps(states: JointStates, received: Sequence[int]) -> Array:
+    return np.where(states.stamp == 0, np.asarray(received, np.int64), states.stamp)
+
+
+def _in_order(states: JointStates, stamp: Array) -> tuple[Array, Array]:
+    """Return stamps and values of the messages with a position, each later than those before."""
+    newest = np.append(np.iinfo(np.int64).min, np.maximum.accumulate(stamp)[:-1])
+    usable = states.arrays_fit & np.isfinite(states.values[:, 0])
+    rows = np.flatnonzero(usable & (stamp > newest))
+    return stamp[rows], states.values[rows]
 
 
 def recorded_questions(

@@ -6,7 +6,9 @@ import re
 import shlex
 import shutil
 import sys
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 
 import yaml
 
@@ -19,13 +21,19 @@ from gear_kinematics.wire.topics import OUTPUT_ENCODER, ROTOR_STATE
 
 
 def new_config(
-    topic: str, joint: str, name: str, ratio: GearRatio, teeth: tuple[int, int] | None = None
+    topic: str,
+    joint: str,
+    name: str,
+    ratio: GearRatio,
+    teeth: tuple[int, int] | None = None,
+    encoder: Mapping[str, str | float] = MappingProxyType({}),
 ) -> str:
     """Return the text of a named parameter file for a joint, or its index, on a driver's topic.
 
-    Without the `teeth` of ring and satellite, only the ratio of the gear is known.
+    Without the `teeth` of ring and satellite, only the ratio of the gear is known. `encoder` has
+    what is known of the parameters of the rotor's encoder.
     """
-    values = _gear(joint, ratio, teeth)
+    values = _gear(joint, ratio, teeth, encoder)
     # Leave out the head, which describes the default file itself.
     body = re.sub(r'\A(#.*\n)+', '', default_config().read_text('utf-8'))
     line = rf'(?m)^( +({"|".join(values)}): ).*'
@@ -40,11 +48,16 @@ def new_config(
 
 
 def new_actuator(
-    topic: str, joint: str, ratio: GearRatio, teeth: tuple[int, int] | None = None
+    topic: str,
+    joint: str,
+    ratio: GearRatio,
+    teeth: tuple[int, int] | None = None,
+    encoder: Mapping[str, str | float] = MappingProxyType({}),
 ) -> list[str]:
     """Return the lines of an actuator in the parameter file of an arm; see `new_config`."""
     place = f'# The joint {_one_line(joint)} on {_one_line(topic)}, with the gear ratio {ratio}.'
-    return [place, *(f'{name}: {value}' for name, value in _gear(joint, ratio, teeth).items())]
+    values = _gear(joint, ratio, teeth, encoder)
+    return [place, *(f'{name}: {value}' for name, value in values.items())]
 
 
 def arm_head(command: str) -> list[str]:
@@ -58,13 +71,21 @@ def arm_head(command: str) -> list[str]:
     ]
 
 
-def _gear(joint: str, ratio: GearRatio, teeth: tuple[int, int] | None) -> dict[str, str]:
+def _gear(
+    joint: str,
+    ratio: GearRatio,
+    teeth: tuple[int, int] | None,
+    encoder: Mapping[str, str | float],
+) -> dict[str, str]:
     """Return the parameters that are known of a gear, as scalars of YAML."""
     values = {'rotor_joint': quoted(joint), 'gear_ratio': quoted(str(ratio))}
     if teeth:
         values |= zip(('ring_teeth', 'satellite_teeth'), map(str, teeth), strict=True)
         values['gear_ratio'] = "''"
-    return values
+    scalars = {
+        name: quoted(v) if isinstance(v, str) else f'{v:.9f}' for name, v in encoder.items()
+    }
+    return values | scalars
 
 
 def quoted(text: str) -> str:

@@ -20,11 +20,11 @@ from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.commissioning.analysis import Commissioning, Request, commission
 from gear_kinematics.measurement.commissioning.document import write_file
 from gear_kinematics.measurement.gate import gated
-from gear_kinematics.measurement.reading import States
+from gear_kinematics.measurement.reading import States, as_recorded
 from gear_kinematics.measurement.rotor_fields import questions
 from gear_kinematics.measurement.sentences import Observation
 from gear_kinematics.measurement.wording import shown
-from gear_kinematics.parameters import PARAMETERS, NodeParameters, default_config
+from gear_kinematics.parameters import PARAMETERS, default_config
 from gear_kinematics.watch.gear import GearNode
 from gear_kinematics.watch.view import Entry, Guide, Tone
 
@@ -43,8 +43,7 @@ class LiveCommissioning:
         """Start with a request; its ratio can be replaced at any time."""
         self.request, self.shown = request, Guide(GUIDE)
         self._topics = request.rotor.topic, request.output.topic
-        rotor, output = request.rotor.joint, request.output.joint
-        parameters = replace(NodeParameters.load(), rotor_joint=rotor, output_encoder_joint=output)
+        parameters = as_recorded(request.rotor.joint, request.output.joint)
         self._rotor = deque[Message](maxlen=_MOST_STATES)
         self._states = States(*self._topics, parameters, _MOST_STATES)
         self._taken: SimpleQueue[list[Message]] = SimpleQueue()
@@ -73,7 +72,9 @@ class LiveCommissioning:
             later = Observation.WITH_LATER_MESSAGES(answer=result.answer)
             result = replace(found, notes=(*found.notes, later))
         data, received = [m[2] for m in self._rotor], [m[1] for m in self._rotor]
-        asked = questions(data, received, self.request.rotor.joint, result.between)
+        asked = questions(
+            data, received, self.request.rotor.joint, result.between, self.request.max_speed
+        )
         return replace(result, questions=tuple(map(str, asked)))
 
     def _analyse(self) -> Commissioning:
@@ -126,6 +127,9 @@ class LiveCommissioning:
         for found in result.values:
             tone: Tone = 'notable' if found.value is None else ''
             entries.append(Entry(found.name, shown(found.value), str(found.evidence), tone))
-        advice = str(result.answer) if min(moved) == 1.0 else GUIDE
+        advice = str(result.answer)
+        if min(moved) < 1.0:
+            told = {v.evidence.what: v.evidence for v in result.values}
+            advice = str(told.get(Observation.WRAPS_UNCLEAR, GUIDE))
         known = float(np.mean([*moved, bool(result.between)]))
         return Guide(advice, known, tuple(entries)), result

@@ -15,7 +15,12 @@ from hypothesis import strategies as st
 from simulated_encoders import TURN, Drive, ramped_strokes, stamps
 
 from gear_kinematics.kinematics.gear_ratio import GearRatio
-from gear_kinematics.measurement.commissioning.analysis import Channel, Request, commission
+from gear_kinematics.measurement.commissioning.analysis import (
+    Channel,
+    Request,
+    commission,
+    encoder_kind,
+)
 from gear_kinematics.measurement.commissioning.document import actuator_file, document
 from gear_kinematics.measurement.commissioning.encoder_range import find_range
 from gear_kinematics.measurement.encoder_step import Step
@@ -136,6 +141,16 @@ def test_steps_of_a_servo_and_a_restart_are_no_range():
     for values in (servo, restarted):
         noisy = values + 1e-4 * np.sin(np.arange(len(values)))
         assert find_range(noisy, times, Step(0.0, seen=False)) == (0.0, 0)
+
+
+def test_gaps_hide_no_wraps_and_wraps_that_are_too_fast_are_named():
+    late = np.random.default_rng(1).random(600) < 0.05
+    times = np.arange(600)[~late] / 100.0
+    for speed, found in ((100.0, TURN), (270.0, 0.0)):
+        rotor = wrapped(speed * times, TURN)
+        assert find_range(rotor, times, Step(0.0, seen=False))[0] == found
+    (kind,) = encoder_kind([(0.0, 0)], float(np.ptp(rotor)), 270.0 * 6.0 / 19.0)
+    assert (kind.value, kind.evidence.what) == (None, Observation.WRAPS_UNCLEAR)
 
 
 @given(

@@ -1,6 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Live commissioning: what is said when, what is kept, and both forms beside a driver."""
 
+import math
 import re
 import sys
 import time
@@ -94,6 +95,25 @@ def test_parameters_are_those_of_the_gear(monkeypatch):
         'output_encoder_zero': 0.0,
     }
     assert abs(zero) < 121 * 1e-4  # both start at 0, within the play
+
+
+@pytest.mark.parametrize(('rate', 'known'), [(100, True), (40, False)])
+def test_wraps_are_counted_at_any_speed_or_named_as_too_fast(monkeypatch, rate, known):
+    monkeypatch.setattr(commissioning, '_PAUSE', 0.0)
+    times = np.arange(0.0, 8.0, 1.0 / rate)
+    rotor = 25.0 * math.tau * (1.0 - np.cos(times * math.tau / 8.0))  # up to 123 rad/s
+    stamped = zip(map(int, stamps(times)), np.mod(rotor, math.tau), rotor / -19.0, strict=True)
+    live = LiveCommissioning(Request(rotor=Channel('/j', 'm'), output=Channel('/j', 'o')))
+    live.take([('/j', s, rotor_bytes(s, ('m', 'o'), both)) for s, *both in stamped])
+
+    def analysed():
+        live.take([])
+        return live.shown.known > 0.0
+
+    wait_until(analysed, 'the analysis')
+    assert (live.shown.known == 1.0) is known
+    said = 'The gear has the ratio -19' if known else 'the rotor wraps too fast to be counted'
+    assert live.shown.advice.startswith(said)
 
 
 def test_ratio_that_was_shown_is_not_lost_with_later_messages(monkeypatch):

@@ -756,6 +756,41 @@ def test_init_questions_velocities_that_contradict_the_positions(monkeypatch, ca
     assert capsys.readouterr().err == f'gearkin: /motor: {seem}\n'
 
 
+FEW = ': 100 Hz are too few to count turns at max_rotor_speed, 650 rad/s: set it to 251 or less'
+
+
+@pytest.mark.usefixtures('listening')
+@pytest.mark.parametrize(
+    ('speed', 'period', 'written', 'said'),
+    [
+        (40.0, math.tau, ('single_turn', 0.0), [': 13 wraps of a turn', FEW]),
+        (99.0, 25.0, ('multi_turn', 25.0), [': 8 wraps by equal steps of 25 rad']),
+        (0.5, math.tau, ('multi_turn', 0.0), ['which was not seen: the rotor turned 0.1']),
+        (
+            900.0,
+            360.0,
+            ('multi_turn', 0.0),
+            ['not seen: 5 wraps of 360: let the driver send rad'],
+        ),
+        (40.0, 1e6, ('multi_turn', 0.0), []),
+    ],
+)
+def test_init_finds_the_encoder_where_the_rotor_turned_enough(
+    monkeypatch, capsys, speed, period, written, said
+):
+    moving = [
+        ('/motor', stamp, rotor_bytes(stamp, ['m1'], [math.remainder(speed * 0.01 * k, period)]))
+        for k in range(1, 200)
+        if (stamp := k * 10_000_000)
+    ]
+    monkeypatch.setattr(drivers, 'listen', lambda: [DriverTopic('/motor', ('m1',), 99.0, moving)])
+    assert main(['init', '--joint', 'm1', '--ratio', '-19']) == 0
+    config = NodeParameters.load(Path('actuator.yaml'))
+    assert (config.rotor_encoder, config.rotor_encoder_range) == written
+    lines = capsys.readouterr().err.splitlines()
+    assert [text in line for line, text in zip(lines, said, strict=True)] == [True] * len(said)
+
+
 def test_init_without_a_driver_says_so(listening, monkeypatch, capsys):
     monkeypatch.setattr(drivers, 'listen', list)
     assert main(['init']) == 2

@@ -27,6 +27,7 @@ from gear_kinematics.report.document import number
 
 _FASTER = 2.0  # proposed limit over the greatest recorded speed, which the motor may well exceed
 _ONE_TURN = 1.05  # turns beyond which positions are multi-turn: one, and a margin for noise
+_DEGREES = 360.0  # after which positions repeat that are no rad
 _MOST_TEETH, _SHOWN = 200, 10
 """Most teeth of the ring gears in proposed pairs, as pairs have multiples; number of pairs."""
 
@@ -48,6 +49,11 @@ class Request:
     teeth: tuple[int, int] | None = None  # teeth of ring gear and satellite, with this ratio
     zero_here: float | Literal['START', 'END'] | None = None  # moment of the last recording, s
     file: NodeParameters | None = None  # file to be judged; zeros that agree are kept
+
+    @property
+    def max_speed(self) -> float:
+        """Limit of the rotor, rad/s, in the file or by default."""
+        return (self.file or NodeParameters.load()).max_rotor_speed
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +112,9 @@ def commission(recordings: Sequence[Recording], request: Request) -> Commissioni
         for name, (topic, joint) in named
         if topic and not request.file
     ]
-    values += _kind(joints)
+    ranges = [(joint.rotor_range, joint.rotor_wraps) for joint in joints]
+    turned = max(float(np.ptp(joint.turned)) for joint in joints)
+    values += encoder_kind(ranges, turned, longest.travel)
     if between:
         repeats = longest.rotor_range not in {0.0, TURN}
         what = Observation.RATIO_AND_RANGE if repeats else Observation.GEAR_RATIO
@@ -154,14 +162,23 @@ def _decided(
     return ratio, None, Observation.GIVEN_RATIO_DISAGREES(**seen, given=exact)
 
 
-def _kind(joints: Sequence[Joint]) -> Iterator[Value]:
-    """Yield the kind of the rotor's encoder, and its range."""
-    ranges = {joint.rotor_range for joint in joints if joint.rotor_range}
-    wraps = sum(joint.rotor_wraps for joint in joints)
-    turns = max(float(np.ptp(joint.turned)) for joint in joints) / TURN
-    if len(ranges) > 1:
-        found = ' and '.join(number(each) for each in sorted(ranges))
-        yield Value('rotor_encoder_range', None, Observation.RANGES_DIFFER(ranges=found))
+def encoder_kind(
+    found: Sequence[tuple[float, int]], turned: float, travel: float = 0.0
+) -> Iterator[Value]:
+    """Yield the kind of the rotor's encoder, and its range.
+
+    Args:
+        found: for each recording what `find_range` finds.
+        turned: the most travel of the rotor in one of them, rad.
+        travel: of the output, rad.
+    """
+    ranges, wraps = {size for size, _ in found if size}, sum(count for _, count in found)
+    turns = turned / TURN
+    if any(abs(size - _DEGREES) < 0.01 * _DEGREES for size in ranges):
+        yield Value('rotor_encoder', None, Observation.DEGREES(wraps=wraps))
+    elif len(ranges) > 1:
+        differ = ' and '.join(number(each) for each in sorted(ranges))
+        yield Value('rotor_encoder_range', None, Observation.RANGES_DIFFER(ranges=differ))
     elif ranges == {TURN}:
         yield Value('rotor_encoder', 'single_turn', Observation.WRAPS_OF_A_TURN(wraps=wraps))
     elif ranges:
@@ -171,6 +188,8 @@ def _kind(joints: Sequence[Joint]) -> Iterator[Value]:
         whole = round(size / TURN) if size == TURN * round(size / TURN) else 0
         evidence = Observation.EQUAL_STEPS(wraps=wraps, size=size, turns=whole)
         yield Value('rotor_encoder_range', size, evidence)
+    elif turns <= _ONE_TURN and travel > 2.0 * _ONE_TURN * TURN:
+        yield Value('rotor_encoder', None, Observation.WRAPS_UNCLEAR())
     elif turns <= _ONE_TURN:
         yield Value('rotor_encoder', None, Observation.TURNED_TOO_LITTLE(turns=turns))
     else:

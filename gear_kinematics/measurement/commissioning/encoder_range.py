@@ -11,6 +11,7 @@ from gear_kinematics.measurement.recording import Array
 
 _UNCLEAR = 0.3, 0.7  # steps, in ranges, that may be a motion or a wrap
 _MOST_UNCLEAR = 0.05  # number of unclear steps, as in gaps, per wrap; with more, there is no wrap
+_GAP = 1.5  # usual times between samples
 _MOST_SPAN = 1.001  # ranges that wrapped positions span at most, with noise and rounding
 _EQUAL = 0.02  # share by which the range that steps show may be wrong, as the speed changes
 _AROUND = 8  # samples before and after a wrap in which the motion goes on
@@ -21,13 +22,21 @@ _DECIMALS, _BY_CHANCE = 3, 0.05
 """Most decimals of a round range; probability below which it is no coincidence."""
 
 
-def count_wraps(values: Array, turn: float, error: float = 1.0) -> int:
-    """Count the wraps of positions in the order of time, (n,); `error` is a share of the turn."""
+def count_wraps(
+    values: Array, turn: float, error: float = 1.0, seconds: Array | None = None
+) -> int:
+    """Count the wraps of positions in the order of time, (n,); `error` is a share of the turn.
+
+    With times, the steps in gaps, in which any motion is possible, do not contradict wraps.
+    """
     size = np.abs(np.diff(values)) / turn
     low, high = _UNCLEAR
     wraps = np.flatnonzero(size >= high)
-    unclear = np.count_nonzero((size > low) & (size < high))
-    if not len(wraps) or unclear > _MOST_UNCLEAR * len(wraps):
+    unclear = (size > low) & (size < high)
+    if len(wraps) and seconds is not None:
+        spans = np.diff(seconds)
+        unclear &= spans < _GAP * np.median(spans)
+    if not len(wraps) or np.count_nonzero(unclear) > _MOST_UNCLEAR * len(wraps):
         return 0
     motion = np.abs(size - np.round(size))[np.maximum(wraps - 1, 0)]  # goes on in the wrap
     same = abs(float(np.median(size[wraps] + motion)) - 1.0) < error
@@ -56,7 +65,7 @@ def find_range(values: Array, seconds: Array, step: Step) -> tuple[float, int]:
 
     Returns the range, rad, and the number of wraps that show it; 0 and 0 if they do not repeat.
     """
-    if wraps := count_wraps(values, TURN):
+    if wraps := count_wraps(values, TURN, seconds=seconds):
         return TURN, wraps
     steps = np.diff(values)
     edges = np.flatnonzero(np.abs(steps) > 0.5 * np.ptp(values)).tolist()
@@ -67,7 +76,7 @@ def find_range(values: Array, seconds: Array, step: Step) -> tuple[float, int]:
         sizes.append(size)
         goes_on += moves
     size = float(np.median(sizes)) if sizes else 0.0
-    counted = count_wraps(values, size, _EQUAL) if size else 0
+    counted = count_wraps(values, size, _EQUAL, seconds) if size else 0
     if counted <= 1 or 2 * goes_on <= len(edges):
         return 0.0, 0
     spread = 1.5 * float(np.median(np.abs(np.subtract(sizes, size)))) / math.sqrt(len(sizes))
