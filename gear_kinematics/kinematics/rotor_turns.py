@@ -199,9 +199,9 @@ class RotorTurns:
         self.reset()
 
     @property
-    def usual_gap(self) -> float:
-        """Time between samples, s, if it is usually too long for the speed; otherwise 0."""
-        return self._gap if self._gaps >= _USUAL else 0.0
+    def usual_gap(self) -> tuple[float, float, float]:
+        """Period, greatest speed, and time between samples if usually too long for it, or 0."""
+        return self.period, self.max_speed, self._gap if self._gaps >= _USUAL else 0.0
 
     @property
     def position(self) -> RotorPosition | None:

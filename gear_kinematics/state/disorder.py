@@ -1,11 +1,14 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Tells a clock that was set back from messages that are late, by stamps that are out of order."""
+"""Tells a clock that was set back from messages that are late, and finds bursts of messages."""
 
 from itertools import pairwise
 
 import numpy as np
 
 from gear_kinematics.wire.batches import Array, once_for_joints
+from gear_kinematics.wire.cdr import SECOND
+
+_MANY, _SOON = 64, 0.5  # times that are usual together; a share of the usual one
 
 
 class Disorder:
@@ -22,6 +25,19 @@ class Disorder:
         stamps, self.stamps = self.stamps, []
         rising = len(stamps) > 1 and all(a < b for a, b in pairwise([*stamps, stamp]))
         return last - stamps[0] if rising else 0
+
+
+class Bursts:
+    """Finds bursts of messages without a stamp, by their times of reception."""
+
+    def __init__(self) -> None:
+        self._last, self._usual = 0, 0.0  # ns: the last time, and the usual one between two
+
+    def go_on(self, received: int) -> bool:
+        """Take a time of reception, ns; whether it is so soon after the last to show no speed."""
+        elapsed, self._last = min(received - self._last, SECOND), received
+        self._usual += (elapsed - self._usual) / _MANY
+        return elapsed < _SOON * self._usual
 
 
 @once_for_joints

@@ -11,7 +11,7 @@ import numpy as np
 from gear_kinematics.kinematics import RotorPosition, RotorSample, RotorTurns, split_turns
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.parameters import PARAMETERS, NodeParameters
-from gear_kinematics.state.disorder import Disorder, order
+from gear_kinematics.state.disorder import Bursts, Disorder, order
 from gear_kinematics.state.effort_field import EffortField
 from gear_kinematics.state.plausibility import BELIEVED, Belief, Plausibility
 from gear_kinematics.state.rotor_samples import RotorSamples, Row
@@ -30,11 +30,8 @@ from gear_kinematics.wire.joint_reader import (
 )
 
 _new = tuple.__new__  # faster than RotorSample(...)
-_ENCODERS = [
-    name
-    for name in PARAMETERS
-    if name.startswith(('rotor_', 'output_encoder_')) and name != 'rotor_effort_factor'
-]
+_ENCODERS = {name for name in PARAMETERS if name.startswith(('rotor_', 'output_encoder_'))}
+_ENCODERS -= {'rotor_effort_factor'}
 """Parameters on which the turns depend that an absolute encoder at the output has found."""
 
 
@@ -66,7 +63,7 @@ class RotorInput:
         self.origin: Fact | None = None  # source of the turn count: homing or the output's encoder
         self._restarts = 0  # by homing, references and changed parameters of encoders
         self.rezeroed = 0  # number of these that gave the same motion another zero
-        self._disorder = Disorder()
+        self._disorder, self._bursts = Disorder(), Bursts()
         speed, acceleration, period = limits = _limits(parameters)
         self.plausibility = Plausibility(*limits)
         self.turns = RotorTurns(
@@ -123,9 +120,7 @@ class RotorInput:
     @property
     def why_lost(self) -> Fact | None:
         """How the turns were lost, as far as that is known."""
-        turns = self.turns
-        few = too_seldom(turns.period, turns.max_speed, turns.usual_gap)
-        return self.plausibility.jumped or few
+        return self.plausibility.jumped or too_seldom(*self.turns.usual_gap)
 
     @property
     def mostly_rejected(self) -> bool:
@@ -221,8 +216,8 @@ class RotorInput:
         parameters, last = self._parameters, self.last
         in_order, _ = order(stamps)
         in_order &= not (last and len(stamps) and stamps[0] < last.stamp)
-        simple = in_order and not (parameters.rotor_period or parameters.absolute)
-        if simple and self.plausibility.believes(stamps, values[:, 0]):
+        in_order &= not (parameters.rotor_period or parameters.absolute)
+        if in_order and self.plausibility.believes(stamps, values[:, 0]):
             return self._all_at_once(rows, stamps, values, clock, rejected)
         return self._one_by_one(rows, stamps, values, clock, rejected)
 
@@ -286,6 +281,8 @@ class RotorInput:
         stamp = now()
         if stamp > LATEST:
             raise RejectedInputError(Rejection.STAMP_OUT_OF_RANGE)
+        if self._bursts.go_on(stamp):
+            self.plausibility.reset()
         return stamp
 
     def _take(

@@ -58,8 +58,9 @@ class InputHealth:
 
     def report(self, rotor_input: RotorInput, topic: str) -> InputReport:
         """Report on everything so far."""
-        # Messages without a stamp have that of their reception, and wraps are no motion.
-        timed = not (rotor_input.zero_stamps or rotor_input.plausibility.wraps.period)
+        # The times of reception, as in bursts, show no speeds, and wraps are no motion.
+        timed = 2 * rotor_input.zero_stamps <= rotor_input.received
+        timed &= not rotor_input.plausibility.wraps.period
         return InputReport(
             topic=topic,
             joint=rotor_input.parameters.rotor_joint,

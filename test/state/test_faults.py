@@ -40,6 +40,7 @@ class Row(NamedTuple):
     settings: NodeParameters = MULTI
     verdict: Verdict = Verdict.PASS
     also: FindingCause | None = None
+    burst: int = 1  # messages that are received together
 
 
 def message(number: int, changed) -> bytes:
@@ -108,6 +109,12 @@ ROWS = {
     ),
     'repeated stamp': Row(part({'stamp': START + 59 * PERIOD}), {'duplicates': 1}),
     'no stamp': Row(part({'stamp': 0}), {'zero_stamps': 1}, found=FindingCause.ZERO_STAMPS),
+    'no stamps, in bursts': Row(
+        [{'stamp': 0, 'position': [math.sin(0.4 * k)]} for k in range(COUNT)],
+        {'zero_stamps': COUNT},
+        found=FindingCause.ZERO_STAMPS,
+        burst=6,
+    ),
     'no stamp, and a reading that repeats': Row(
         part({'stamp': 0}),
         {'zero_stamps': 1},
@@ -177,6 +184,7 @@ def test_a_fault_is_counted_diagnosed_and_found(fault):
     row = ROWS[fault]
     driven = [message(*each) for each in enumerate(row.driven)]
     stamps = [START + k * PERIOD + 500 for k in range(COUNT)]
+    stamps = [stamps[k - k % row.burst] + 20_000 * (k % row.burst) for k in range(COUNT)]
     messages = [(ROTOR, stamp, data) for stamp, data in zip(stamps, driven, strict=True)]
     gear = GearState(row.settings)
     gear.monitor.last_input = 0.0

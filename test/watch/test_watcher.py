@@ -768,7 +768,7 @@ FEW = ': 100 Hz are too few to count turns at max_rotor_speed, 650 rad/s: set it
         (0.5, math.tau, ('multi_turn', 0.0), ['which was not seen: the rotor turned 0.1']),
         (
             900.0,
-            360.0,
+            359.99,
             ('multi_turn', 0.0),
             ['not seen: 5 wraps of 360: let the driver send rad'],
         ),
