@@ -96,7 +96,7 @@ def _read(options: argparse.Namespace, request: analysis.Request) -> analysis.Co
     for recording in recordings:
         say_columns(recording, options)
         if heard := recording.rotor_messages:
-            known = result.between, request.max_speed
+            known = result.between, request.limits
             found = questions(heard.data, heard.received, request.rotor.joint, *known)
             asked |= dict.fromkeys(map(str, found))
     return replace(result, questions=tuple(asked))

@@ -92,11 +92,11 @@ def run(options: argparse.Namespace) -> ExitCode:
             'Start the node:'
         )
     print(f'    {command}')
-    limit = NodeParameters.load().max_rotor_speed
+    limits = NodeParameters.load().rotor_limits
     for joint, ratio in ratios.items():
         kind = [each for each in encoders[joint] if each.value != 'multi_turn']
         told = [f'{e.name} {e.value or _ASSUMED}: {e.evidence}' for e in kind]
-        for question in (*told, *questions(data, received, joint, ratio, limit)):
+        for question in (*told, *questions(data, received, joint, ratio, limits)):
             complain(f'{topic}: {f"{printable(joint)}: " * options.arm}{question}')
     return ExitCode.DONE
 

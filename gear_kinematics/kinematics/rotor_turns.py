@@ -199,9 +199,10 @@ class RotorTurns:
         self.reset()
 
     @property
-    def usual_gap(self) -> tuple[float, float, float]:
-        """Period, greatest speed, and time between samples if usually too long for it, or 0."""
-        return self.period, self.max_speed, self._gap if self._gaps >= _USUAL else 0.0
+    def usual_gap(self) -> tuple[float, float, float, float]:
+        """Period, limits, and the usual time between samples if it is too long for them, or 0."""
+        gap = self._gap if self._gaps >= _USUAL else 0.0
+        return self.period, self.max_speed, self.max_acceleration, gap
 
     @property
     def position(self) -> RotorPosition | None:

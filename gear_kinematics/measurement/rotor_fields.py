@@ -30,7 +30,7 @@ def questions(
     received: Sequence[int],
     joint: str,
     ratio: Fraction | None = None,
-    max_speed: float = 0.0,
+    limits: tuple[float, float] | None = None,
 ) -> Iterator[Observed | Fact]:
     """Yield what seems to be wrong with the fields of n messages.
 
@@ -39,7 +39,8 @@ def questions(
         received: times of reception, ns, which replace missing stamps.
         joint: name of the rotor's joint; '' takes the only one.
         ratio: gear ratio if known, to recognise velocities of the output.
-        max_speed: limit of the rotor if known, rad/s, up to which its turns are to be counted.
+        limits: of the rotor's speed, rad/s, and acceleration, rad/s², up to which its turns are
+            to be counted.
     """
     states = decode_joint_states(data, joint)
     stamp = _stamps(states, received)
@@ -58,14 +59,15 @@ def questions(
     velocities = VelocityField(float(1 / ratio) if ratio else np.nan)
     noise = 2.0 * float(np.min(steps[steps > _EQUAL], initial=1.0))
     velocities.believed(stamp, values, noise)
-    if len(given) and not given.any() and np.ptp(values[:, 0]) > _MOVED:
+    absent = len(given) and not given.any() and np.ptp(values[:, 0]) > _MOVED
+    if absent:
         yield Condition.VELOCITIES_ARE(meaning=VelocityMeaning.ZERO)
     elif velocities.meaning:
         yield velocities.meaning
-    elif not len(given) and period:
-        usual = float(np.median(np.diff(stamp))) / SECOND
-        if seldom := too_seldom(period, max_speed, usual):
-            yield seldom
+    usual, known = float(np.median(np.diff(stamp))) / SECOND, len(given) and not absent
+    known = bool(known and not velocities.contradicts)
+    if period and limits and (seldom := too_seldom(period, *limits, usual, known=known)):
+        yield seldom
     field = EffortField()
     field.all_believed(values[:, 0], values[:, 2])
     if field.absent:

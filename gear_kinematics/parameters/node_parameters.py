@@ -289,6 +289,11 @@ class NodeParameters:
         return self.rotor_encoder_range or TURN * (self.rotor_encoder == 'single_turn')
 
     @property
+    def rotor_limits(self) -> tuple[float, float]:
+        """Greatest speed, rad/s, and acceleration, rad/s², of the rotor."""
+        return self.max_rotor_speed, self.max_rotor_acceleration
+
+    @property
     def absolute(self) -> bool:
         """Whether the encoder at the output finds the turns of the rotor."""
         return self.output_encoder_reference == 'absolute'

@@ -37,8 +37,7 @@ _ENCODERS -= {'rotor_effort_factor'}
 
 def _limits(parameters: NodeParameters) -> tuple[float, float, float]:
     """Greatest speed and acceleration of the rotor, and the period of its encoder."""
-    bounds = parameters.max_rotor_speed, parameters.max_rotor_acceleration
-    return *bounds, parameters.rotor_period
+    return *parameters.rotor_limits, parameters.rotor_period
 
 
 def _longest_silence(parameters: NodeParameters) -> float:

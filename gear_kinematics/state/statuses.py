@@ -33,7 +33,7 @@ _EFFORT = (
 )
 _TOO_SELDOM = (
     '{rate:.0f} Hz are too few to count turns at max_rotor_speed, {limit:.4g} rad/s: set it to '
-    '{speed:.3g} or less, or let the driver send {least:.0f} Hz, or velocities'
+    '{speed:.3g} or less, or let the driver send {least:.0f} Hz{other}'
 )
 _PEAK_TO_PEAK = 'peak to peak {angle:.3g} rad'
 
@@ -51,12 +51,12 @@ class Condition(Enum):
     WRAPS = (
         ERROR,
         'the positions wrap after {angle:.4g} rad: set {setting}',
-        f'Change the parameter, {_HOME_IT}.',
+        _HOME,
     )
     TOO_SELDOM = (
         ERROR,
         _TOO_SELDOM,
-        f'Change the parameter or the driver, {_HOME_IT}.',
+        _HOME,
     )
     REJECTED = (
         WARN,

@@ -67,13 +67,25 @@ class Wraps:
         return len(self._steps) == _FEWEST
 
 
-def too_seldom(period: float, max_speed: float, interval: float) -> Fact | None:
+def too_seldom(
+    period: float, max_speed: float, max_acceleration: float, gap: float, *, known: bool = False
+) -> Fact | None:
     """Return what to change if a rotor can turn by half a period between messages.
 
-    The period is in rad, the greatest speed in rad/s, and the interval in s.
+    Args:
+        period: after which its positions repeat, rad.
+        max_speed: rad/s.
+        max_acceleration: rad/s².
+        gap: time between messages, s.
+        known: whether the messages have its velocities, which narrow where it can be.
     """
-    if 2.0 * max_speed * interval <= period:
+    enough = 0.5 * max_acceleration * gap * gap < period
+    if 2.0 * max_speed * gap <= period or (known and enough):
         return None
-    speed = 0.5 * period / (_RESERVE * interval)
-    least = _RESERVE * 2.0 * max_speed / period
-    return Condition.TOO_SELDOM(rate=1.0 / interval, limit=max_speed, speed=speed, least=least)
+    return Condition.TOO_SELDOM(
+        rate=1.0 / gap,
+        limit=max_speed,
+        speed=0.5 * period / (_RESERVE * gap),
+        least=_RESERVE * 2.0 * max_speed / period,
+        other=', or velocities' if enough else '',
+    )

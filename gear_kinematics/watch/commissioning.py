@@ -73,7 +73,7 @@ class LiveCommissioning:
             result = replace(found, notes=(*found.notes, later))
         data, received = [m[2] for m in self._rotor], [m[1] for m in self._rotor]
         asked = questions(
-            data, received, self.request.rotor.joint, result.between, self.request.max_speed
+            data, received, self.request.rotor.joint, result.between, self.request.limits
         )
         return replace(result, questions=tuple(map(str, asked)))
 

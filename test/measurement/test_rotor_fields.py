@@ -2,16 +2,18 @@
 """Velocities and efforts of drivers that are no rad/s and N·m of the rotor."""
 
 import math
+import re
 from fractions import Fraction
 
 import numpy as np
 import pytest
 from gear_recordings import Samples, write_recording
+from live import rotor_bytes
 from simulated_encoders import stamps
 
 from gear_kinematics.bag import Bag
 from gear_kinematics.commands.cli import main
-from gear_kinematics.measurement.rotor_fields import recorded_questions
+from gear_kinematics.measurement.rotor_fields import questions, recorded_questions
 from gear_kinematics.measurement.sentences import Observation
 
 TIMES = np.arange(0.0, 8.0, 0.01)
@@ -59,6 +61,8 @@ def test_wrong_fields_are_named(factor, efforts, asked, wrap, tmp_path, capsys, 
     assert main(['commission', str(path)]) == 0
     assert len(read) == 1  # once for the encoders and for these fields
     told = capsys.readouterr().out
+    if wrap == math.tau and CONTRADICTS in ''.join(asked):
+        asked = [*asked, '100 Hz are too few to count turns at max_rotor_speed, 650 rad/s']
     assert [
         line[5 : 5 + len(want)] for line, want in zip(told.splitlines()[1:], asked, strict=True)
     ] == asked
@@ -71,3 +75,23 @@ def test_stamps_that_repeat_are_named(tmp_path):
     with Bag(path) as bag:
         (asked,) = recorded_questions(bag, '/rotor_state', 'rotor')
     assert asked == Observation.STAMPS_REPEAT(count=792, total=800)
+
+
+@pytest.mark.parametrize(
+    ('rate', 'velocity', 'asked'),
+    [
+        (50, [], ['.*, or let the driver send 259 Hz, or velocities']),
+        (50, [15.0], []),
+        (50, [0.0], [CONTRADICTS + '0', '50 Hz are too few .* to 126 or less, .*, or velocities']),
+        (20, [15.0], ['20 Hz are too few .* or let the driver send 259 Hz']),
+        (500, [], []),
+    ],
+)
+def test_messages_too_few_for_turns_are_named_unless_velocities_help(rate, velocity, asked):
+    times = np.arange(0.0, 4.0, 1.0 / rate)
+    positions = np.mod(15.0 * times, math.tau)[:, np.newaxis].tolist()
+    both = zip(map(int, stamps(times)), positions, strict=True)
+    data = [rotor_bytes(stamp, position=position, velocity=velocity) for stamp, position in both]
+    found = questions(data, [0] * len(data), 'rotor', None, (650.0, 6500.0))
+    matches = [re.fullmatch(said, str(each)) for said, each in zip(asked, found, strict=True)]
+    assert all(matches)

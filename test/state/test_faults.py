@@ -85,6 +85,7 @@ TOO_SELDOM = Condition.TOO_SELDOM(
     limit=650.0,
     speed=pytest.approx(80.0 * math.pi),
     least=pytest.approx(1.25 * 650.0 / math.pi),
+    other=', or velocities',
 )
 OUTSIDE = Condition.OUTSIDE(
     angle_deg=pytest.approx(-71.77, abs=0.01), low_deg=0.0, high_deg=math.degrees(1.0)

@@ -17,6 +17,7 @@ VALUES = {
     'rate': 100.0,
     'limit': 650.0,
     'least': 258.6,
+    'other': ', or velocities',
     'time': 1_700_000_000.5,
     'counts': {'joint missing': 12, 'not a JointState': 1},
     'count': 12,

@@ -51,9 +51,9 @@ class Request:
     file: NodeParameters | None = None  # file to be judged; zeros that agree are kept
 
     @property
-    def max_speed(self) -> float:
-        """Limit of the rotor, rad/s, in the file or by default."""
-        return (self.file or NodeParameters.load()).max_rotor_speed
+    def limits(self) -> tuple[float, float]:
+        """Greatest speed, rad/s, and acceleration, rad/s², of the rotor, given or by default."""
+        return (self.file or NodeParameters.load()).rotor_limits
 
 
 @dataclass(frozen=True, slots=True)
