@@ -36,7 +36,7 @@ class DriverLog:
         self._log, self._node, self._inputs = node.get_logger(), node, inputs
         self._topic = node.resolve_topic_name(ROTOR_STATE)
         self._missing = 0  # updates since there was a publisher
-        self._said = self._lost_turns()
+        self._said = self._faults()
         self._before: dict[str, RotorSample] = {}  # the silence
         self.awaited = False  # whether it was logged that the driver is missing or silent
 
@@ -55,17 +55,21 @@ class DriverLog:
             text = f'no joint {", ".join(joints.values())} on {self._topic}{hint}'
             self._log.warning(labelled(', '.join(joints), text))
 
-    def _lost_turns(self) -> dict[tuple[str, Condition, float], Fact]:
-        """Return how turns were lost, by actuator, condition and time of a jump."""
-        lost = ((name, each.why_lost) for name, each in self._inputs.items())
-        return {(name, f.condition, f.values.get('time', 0.0)): f for name, f in lost if f}
+    def _faults(self) -> dict[tuple[str, Condition, float], Fact]:
+        """Return how turns were lost, and what velocities are, by what tells one from another."""
+        return {
+            (name, fact.condition, fact.values.get('time', 0.0)): fact
+            for name, each in self._inputs.items()
+            for fact in (each.why_lost, each.velocity_field.meaning)
+            if fact
+        }
 
     def update(self, publishers: int, silence: float) -> None:
         """Take, once a second, the number of publishers and the time since the last message, s."""
-        said, self._said = self._said, self._lost_turns()
-        for key in self._said.keys() - said.keys():
-            fact = self._said[key]
-            self._log.warning(labelled(key[0], f'{fact}. {fact.advice}'))
+        faults, said = self._faults(), self._said
+        for key in faults.keys() - said.keys():
+            self._log.warning(labelled(key[0], f'{faults[key]}. {faults[key].advice}'))
+        self._said = faults | {key: fact for key, fact in said.items() if not key[2]}
         self._missing = 0 if publishers else self._missing + 1
         if self.awaited:
             return
@@ -93,7 +97,7 @@ class DriverLog:
                 turned = f'the rotor is {math.degrees(moved):.0f}° from where it was'
                 elsewhere.append(labelled(name, turned))
         if elsewhere:
-            self._said = self._lost_turns()
+            self._said |= self._faults()
             at = '; '.join(elsewhere)
             self._log.warning(f'{self._topic} is heard again, but {at}: {_HOME}')
         else:

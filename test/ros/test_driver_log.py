@@ -52,9 +52,10 @@ class Graph:
         end = SimpleNamespace(node_name=name, node_namespace=topic.rpartition('/')[0])
         return [] if topic in {'/rotor_state', '/subscribed'} else [end]
 
-    def hear(self, stamp, position):
+    def hear(self, stamp, position, **fields):
         """Take a message as the node does."""
-        data = rotor_bytes(round(stamp * SECOND), position=[position])
+        fields = {name: [value] for name, value in fields.items()}
+        data = rotor_bytes(round(stamp * SECOND), position=[position], **fields)
         sample = self.input.accept(data, lambda: SECOND)
         if self.driver_log.awaited:
             self.driver_log.heard({'': sample})
@@ -105,6 +106,17 @@ def test_jump_of_the_encoder_is_one_warning():
     graph.driver_log.update(1, 0.0)
     said = "the rotor's encoder jumped by 100 rad at 1.004 s. Check whether the drive restarted, "
     assert [(level, text[: len(said)]) for level, text in graph.logged] == [('W', said)]
+
+
+def test_velocities_that_contradict_the_positions_are_one_warning():
+    graph = Graph()
+    for number in range(200):
+        graph.hear(1.0 + 0.01 * number, 0.5 * number, velocity=50.0 * 30.0 / math.pi)
+        graph.driver_log.update(1, 0.0)
+    said = (
+        'the velocities contradict the positions: they seem to be rpm. Let the driver send rad/s '
+    )
+    assert graph.logged == [('W', f'{said}of the rotor, or no velocities.')]
 
 
 def test_positions_that_wrap_are_named_once_instead_of_every_jump():
