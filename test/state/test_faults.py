@@ -12,6 +12,7 @@ from node_loop import answered
 from shipped_bags import ROTOR
 from validating import validate
 
+from gear_kinematics.bag import Message
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state.gear_state import GearState
@@ -180,17 +181,34 @@ ROWS = {
 }
 
 
-@pytest.mark.parametrize('fault', ROWS)
-def test_a_fault_is_counted_diagnosed_and_found(fault):
-    row = ROWS[fault]
+def recorded_of(row: Row, gear: GearState) -> list[Message]:
     driven = [message(*each) for each in enumerate(row.driven)]
     stamps = [START + k * PERIOD + 500 for k in range(COUNT)]
     stamps = [stamps[k - k % row.burst] + 20_000 * (k % row.burst) for k in range(COUNT)]
     messages = [(ROTOR, stamp, data) for stamp, data in zip(stamps, driven, strict=True)]
+    homed = 1 if row.settings.rotor_period else -1
+    return answered(row.settings, messages, gear=gear, home_after=homed)
+
+
+@pytest.mark.parametrize(
+    'fault', ['driver restarts', 'positions wrap', 'messages too few for turns']
+)
+def test_input_that_loses_turns_is_named_before_the_outputs_that_are_missing(fault):
+    settings = ROWS[fault].settings
+    recorded = recorded_of(ROWS[fault], GearState(settings))
+    outputs = [row for row, (topic, *_) in enumerate(recorded) if topic == '/output_state']
+    found = validate([m for row, m in enumerate(recorded) if row not in outputs[50:60]], settings)
+    assert found.verdict == Verdict.FAIL
+    assert [each.cause for each in found.causes][:1] == [FindingCause.JUMPED]
+    assert found.topics[0].missing == 10
+
+
+@pytest.mark.parametrize('fault', ROWS)
+def test_a_fault_is_counted_diagnosed_and_found(fault):
+    row = ROWS[fault]
     gear = GearState(row.settings)
     gear.monitor.last_input = 0.0
-    homed = 1 if row.settings.rotor_period else -1
-    recorded = answered(row.settings, messages, gear=gear, home_after=homed)
+    recorded = recorded_of(row, gear)
     report = gear.report(0.0, Connections())['rotor input']
     assert tuple(report.facts) == row.diagnosed
     found = validate(recorded, row.settings)
