@@ -213,6 +213,7 @@ class RotorTurns:
         """Forget the position and the turns; the next update counts as the first."""
         self._position: tuple[int, float] | None = None
         self.forget_turns()
+        self.longest_gap = 0.0  # s, of those in which a period may have been missed, while unknown
         self.periods = 0
         """Number of periods that are added to the readings."""
         self._offset = 0, 0, 0.0  # periods, and their sum as turns and angle, rad
@@ -261,6 +262,7 @@ class RotorTurns:
             if wide or outside > _NOISE + (period - width - outside) / 8.0:
                 self.referenced = False
                 self.unknown_gaps += 1
+                self.longest_gap = max(self.longest_gap, elapsed)
                 self.unseen_travel += self.max_speed * elapsed + 0.5 * period
             self.periods += more
             if self.periods != self._offset[0]:
@@ -324,6 +326,7 @@ class RotorTurns:
     def refer(self) -> None:
         """Treat the counted turns as known from now on."""
         self.referenced, self.unseen_travel, self._lost = True, 0.0, False
+        self.longest_gap = 0.0
 
     def zero_for(self, rotor_angle: float, direction: int) -> float:
         """Return the zero that `home` would give, and change nothing.

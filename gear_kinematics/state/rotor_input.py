@@ -119,7 +119,9 @@ class RotorInput:
     @property
     def why_lost(self) -> Fact | None:
         """How the turns were lost, as far as that is known."""
-        return self.plausibility.jumped or too_seldom(*self.turns.usual_gap)
+        gap = self.turns.longest_gap
+        known = self.plausibility.jumped or too_seldom(*self.turns.usual_gap)
+        return known or (Condition.GAP(gap=gap) if gap else None)
 
     @property
     def mostly_rejected(self) -> bool:

@@ -58,6 +58,11 @@ class Condition(Enum):
         _TOO_SELDOM,
         _HOME,
     )
+    GAP = (
+        ERROR,
+        'a gap of {gap:.3f} s could hide a turn of the rotor',
+        'Let the driver send without gaps, or lower max_rotor_speed.',
+    )
     REJECTED = (
         WARN,
         'rejected: {counts}',

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.statuses import Condition
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.report import Finding, Gap, InputReport
 from gear_kinematics.wire.batches import once_for_joints
@@ -61,6 +62,7 @@ class InputHealth:
         # The times of reception, as in bursts, show no speeds, and wraps are no motion.
         timed = 2 * rotor_input.zero_stamps <= rotor_input.received
         timed &= not rotor_input.plausibility.wraps.period
+        lost = rotor_input.why_lost  # gaps are counted
         return InputReport(
             topic=topic,
             joint=rotor_input.parameters.rotor_joint,
@@ -81,7 +83,7 @@ class InputHealth:
             max_speed=self._fastest * timed,
             longest_gaps=tuple(self._longest),
             referenced=not (rotor_input.turns.unknown_gaps or rotor_input.plausibility.jumped),
-            jumped=str(rotor_input.why_lost or ''),
+            jumped='' if lost and lost.condition is Condition.GAP else str(lost or ''),
             velocity_is=str(rotor_input.velocity_field.meaning or ''),
             beyond_limits=str(rotor_input.plausibility.beyond_limits or ''),
         )

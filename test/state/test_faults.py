@@ -142,7 +142,7 @@ ROWS = {
     'turns unseen': Row(
         moved(stamp=SECOND),
         {'jumps': 1},
-        (Condition.NOT_REFERENCED(),),
+        (Condition.GAP(gap=pytest.approx(1.01)), Condition.NOT_REFERENCED()),
         FindingCause.JUMPS,
         SINGLE,
     ),

@@ -18,6 +18,7 @@ VALUES = {
     'limit': 650.0,
     'least': 258.6,
     'other': ', or velocities',
+    'gap': 1.01,
     'time': 1_700_000_000.5,
     'counts': {'joint missing': 12, 'not a JointState': 1},
     'count': 12,
