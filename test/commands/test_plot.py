@@ -100,8 +100,6 @@ SCHEME, OUTPUT = ['plot', 'scheme', 'a.png'], ['plot', 'output', 'a.png']
     ([*OUTPUT, '--bag', 'none'], 'none: no such file or folder'), (OUTPUT, 'output needs --bag'),
     ([*PLOT, '--ring-teeth', '1001', '--satellite-teeth', '1000'], 'petals'),
     ([*PLOT, '--duration', '1'], '--duration needs --bag'),
-    ([*OUTPUT, '--bag', SERVO, '--start-offset', '7'], 'no rotor states from 7 s to inf s'),
-    ([*OUTPUT, '--bag', SERVO, '--rotor-topic', '/motor'], 'no topic /motor of type sensor_m'),
     ([*ANIMATE, '--start-offset', '1'], '--start-offset needs --bag'),
     ([*ANIMATE, '--rate', '0.05'], 'frames are more than 2000; reduce --duration or raise --rate'),
     (['animate', 'a.png'], 'a.png: the suffix must be gif'),

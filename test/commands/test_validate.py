@@ -159,8 +159,6 @@ def test_options_decide(name, options, code, bags, capsys):
     (['--tolerance-effort=-1e-9'], '--tolerance-effort: must be at least 0, not -1e-9'),
     (['--tolerance-position', 'nan'], '--tolerance-position: must be at least 0, not nan'),
     (['--tolerance-angle', 'small'], "invalid number value: 'small'; see gearkin validate"),
-    (['--joint', 'm1'], "no joint 'm1' in it; there are: rotor; give the right --config"),
-    (['--rotor-topic', '/nope'], 'good: no topic /nope of type sensor_msgs/msg/JointState'),
     (['--poses-topic', '/output_state'], 'good: no topic /output_state of type geometry_msgs'),
     (['--output-topic', '/nope'], 'good: no topic /nope of type sensor_msgs'),
     (['--json', '-', '--junit', '-'], 'only one report can go to stdout'),

@@ -74,8 +74,6 @@ def test_bags_without_a_motion_are_refused(tmp_path):
     still = write_recording(tmp_path / 'still', Samples([MS, MS], [0.0, 1.0]))
     with pytest.raises(BagError, match='/rotor_state has fewer than two rotor states'):
         read_trajectory(still, config())
-    with pytest.raises(BagError, match='no topic /motor of type sensor_msgs/msg/JointState'):
-        read_trajectory(still, config(), '/motor')
 
 
 def test_constant_speed_turns_from_zero(actuator):
