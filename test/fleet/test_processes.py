@@ -13,7 +13,6 @@ from pathlib import Path
 
 import pytest
 from blocked_bags import BAGS, DEADLINE, GEARKIN, BlockedBag, gearkin, running_gearkin, wait_until
-from shipped_bags import ROTOR, TYPES, write_bag
 
 from gear_kinematics.bag import Bag, BagError
 from gear_kinematics.fleet.processes import Work, on_this_machine
@@ -50,28 +49,6 @@ def test_a_shipped_bag_is_reported():
     assert [topic.compared for topic in report.topics] == [1265, 1265]
     assert told[-1] == (report.messages, report.messages) == (1314 + 2 * 1265,) * 2
     assert {total for _, total in told} == {report.messages}
-
-
-def of_wrong_type(path: Path) -> None:
-    write_bag(path, [], TYPES | {ROTOR: 'std_msgs/msg/String'})
-
-
-@pytest.mark.parametrize(
-    ('make', 'error'),
-    [
-        (lambda _: None, 'no such file'),
-        (lambda path: path.write_bytes(b'\x00garbage\xff' * 1000), 'not a bag of a known kind'),
-        (of_wrong_type, 'no topic rotor_state of type sensor_msgs/msg/JointState'),
-        (lambda path: write_bag(path, []), 'no usable rotor states'),
-    ],
-)
-def test_a_bad_bag_is_reported_as_unusable_in_one_line(make, error, tmp_path):
-    make(tmp_path / 'bad.mcap')
-    report = validate_bag(task(tmp_path / 'bad.mcap'))
-    assert report.verdict == Verdict.UNUSABLE
-    assert report.bag == str(tmp_path / 'bad.mcap')
-    assert error in report.error
-    assert '\n' not in report.error
 
 
 BROKEN = """import gear_kinematics.validation.validate_bag as fleet
