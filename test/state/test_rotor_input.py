@@ -2,7 +2,6 @@
 """The rotor input, by the rows of the contract's table of bad input."""
 
 import math
-import struct
 from contextlib import suppress
 from dataclasses import replace
 
@@ -73,34 +72,6 @@ def test_a_rejected_message_changes_nothing(stamp, position, cause):
     assert rotor_input.resets == 0
     assert accept(rotor_input, START + 1_000_000, -3.0).position.turns == 1
     assert rotor_input.referenced
-
-
-def test_zero_stamp_is_replaced_by_the_clock_and_counted(rotor_input):
-    sample = rotor_input.accept(rotor_bytes(0, position=[1.0]), clock)
-    assert sample.stamp == NOW
-    assert rotor_input.zero_stamps == 1
-    accept(rotor_input, NOW + 1, 1.0)
-    assert rotor_input.zero_stamps == 1
-    with pytest.raises(RejectedInputError, match=r'^out of order$'):
-        rotor_input.accept(rotor_bytes(0, position=[1.0]), clock)
-
-
-def test_unnormalised_stamp_is_normalised_and_counted(rotor_input):
-    def restamped(seconds, nanoseconds):
-        data = rotor_bytes(START, position=[1.0])
-        return data[:4] + struct.pack('<iI', seconds, nanoseconds) + data[12:]
-
-    assert rotor_input.accept(restamped(100, 3_158_772_736), no_clock).stamp == 103_158_772_736
-    assert rotor_input.unnormalised_stamps == 1
-    # The order is that of the times that stamps mean, not that of their seconds.
-    with pytest.raises(RejectedInputError, match=r'^out of order$'):
-        rotor_input.accept(restamped(103, 0), no_clock)
-    assert rotor_input.accept(restamped(102, 2 * SECOND), no_clock).stamp == 104 * SECOND
-    assert rotor_input.unnormalised_stamps == 2
-    with pytest.raises(RejectedInputError, match=r'^stamp out of range$'):
-        rotor_input.accept(restamped(2**31 - 1, SECOND), no_clock)
-    assert (rotor_input.unnormalised_stamps, rotor_input.zero_stamps) == (2, 0)
-    assert rotor_input.rejected == {'out of order': 1, 'stamp out of range': 1}
 
 
 @pytest.mark.parametrize('age', [SECOND + 1, START - 1, START + 5])
