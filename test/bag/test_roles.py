@@ -132,28 +132,6 @@ def test_poses_are_not_looked_for_where_there_are_none():
 
 
 @pytest.mark.parametrize(
-    ('topics', 'name', 'kind', 'error'),
-    [
-        ([], '/a', '', 'no topic /a in it; there are no topics'),
-        (['/ab', '/c'], '/a', '', 'no topic /a in it; did you mean `/ab`? there are: /ab, /c'),
-        (
-            [f'/{k:02}' for k in range(12)],
-            '/motor',
-            'a/msg/A',
-            'no topic /motor of type a/msg/A in it; there are: '
-            + ', '.join(f'/{k:02}' for k in range(10))
-            + ' and 2 more',
-        ),
-    ],
-)
-def test_a_missing_topic_is_told_with_what_is_there(topics, name, kind, error):
-    bag = described(dict.fromkeys(topics, 'std_msgs/msg/String'))
-    with pytest.raises(BagError) as raised:
-        bag.type_of(name, kind)
-    assert str(raised.value) == f'some.mcap: {error}'
-
-
-@pytest.mark.parametrize(
     ('name', 'cause'), [('/b', 'in it;'), ('/motor', 'in it, it is of no known type;')]
 )
 def test_topics_without_a_type_are_said_to_have_none(name, cause):
