@@ -201,6 +201,8 @@ class OutputTopic:
         self.missing = Missing()
         self._gear, self._tolerances, self._changes = expectation
         self._wrong = 0
+        self._latest_wrong = Occurrences()  # since the latest right one
+        self._right: tuple[float, ...] = ()  # rotor angles, rad, of the first and latest right one
         self._wrong_without_velocity = 0  # besides, if velocities were expected
         self._without_velocity: Array | bool = False  # messages of the latest batch, (n,)
         self._unrecorded = 0  # messages whose input was not recorded
@@ -262,6 +264,11 @@ class OutputTopic:
             wrong |= np.abs(field.error) > errors.tolerance
             wrong[field.one_sided] = True
         self._wrong += int(np.count_nonzero(wrong))
+        if len(right := np.flatnonzero(~wrong)):
+            self._latest_wrong = Occurrences()
+            first, latest = angle[right[[0, -1]]].tolist()
+            self._right = (*self._right[:1], first)[0], latest
+        self._latest_wrong.add(samples['stamp'][right[-1] + 1 if len(right) else 0 :])
         self._wrong_without_velocity += int(np.count_nonzero(self._without_velocity & ~wrong))
         self.series.update(samples['stamp'], angle, *fields)
 

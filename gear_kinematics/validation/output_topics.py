@@ -29,6 +29,7 @@ Array = NDArray[Any]
 Bounds = tuple[Array, Array]
 
 _AHEAD = 1000  # samples that are compared with a message that has no stamp in common with any
+_CHANGED = 10  # wrong outputs, at least, that begin at a time and go on to the end
 _NEAR = 500_000_000  # ns between the reception of an input and the stamp of its output
 
 STATE_UNITS = dict(zip(FIELDS, ('rad', 'rad/s', 'N·m'), strict=True))
@@ -171,6 +172,11 @@ class OutputState(JointStateTopic):
 
     def causes(self) -> Iterator[Finding]:
         """Yield what explains errors of the angle, or else of the velocity and the effort."""
+        since = self._latest_wrong
+        # Right ones at a single angle are what other errors leave, too, such as another ratio.
+        if _CHANGED <= self._wrong == since.count and len({*self._right}) > 1:
+            yield Finding(FindingCause.CHANGED, stamp=since.first, explains=True)
+            return
         if not self.errors[0].report().passed:
             if found := diagnose(self._gear, self.fit, self._tolerances.angle):
                 yield found

@@ -453,7 +453,26 @@ def test_the_offset_that_homing_leaves_passes_and_is_said(recorded, config, chan
     assert not any(topic.passed for topic in failed.topics)
     # A step at half time, as by homing during the recording, is no constant offset.
     step = change_all(recorded[450:], OUTPUT, add('position', 0.125))
-    assert validate(recorded[:450] + step, homed).verdict == Verdict.FAIL
+    failed = validate(recorded[:450] + step, homed)
+    assert failed.verdict == Verdict.FAIL
+    causes = [finding.cause for finding in failed.findings if finding.explains]
+    assert causes == [FindingCause.CHANGED]
+
+
+@pytest.mark.parametrize('change', [{'rotor_direction': -1}, {'rotor_zero': 2.0}])
+def test_a_parameter_that_was_changed_while_the_node_ran_is_the_likely_cause(
+    recorded, config, change
+):
+    rotor = [message for message in recorded if message[0] == ROTOR]
+    before, after = (answered(each, rotor) for each in (config, replace(config, **change)))
+    begin = rotor[200][1]
+    messages = [m for m in before if m[1] < begin] + [m for m in after if m[1] >= begin]
+    report = validate(messages, config, strict=True)
+    assert not report.passed
+    [cause] = [finding for finding in report.findings if finding.explains]
+    stamp = replaying.stamp_of(replaying.decode(rotor[200][2], JOINT_STATE))
+    assert (cause.cause, cause.stamp) == (FindingCause.CHANGED, stamp)
+    assert validate(before, config).passed
 
 
 @pytest.mark.parametrize('encoder', ['multi_turn', 'single_turn'])
