@@ -145,8 +145,8 @@ def _steps(error: Array, ideal: Array, period: float) -> _Steps | None:
     The error and the ideal output angle, (n,) each, are in rad, a period of samples in s.
     """
     level, moved = usual(error), np.diff(ideal)
-    calm = np.diff(level)
-    fastest = float(np.quantile(np.abs(np.diff(usual(ideal))), 0.98))
+    calm, speeds = np.diff(level), np.abs(np.diff(usual(ideal)))
+    fastest = float(np.quantile(speeds, 0.98))
     usually = float(np.quantile(np.abs(calm), 0.98))
     limit = max(_STEPS * usually, _LEAST_STEP)
     lost = _lost_motion(calm, moved, fastest)
@@ -158,8 +158,11 @@ def _steps(error: Array, ideal: Array, period: float) -> _Steps | None:
     lost = _lost_motion(steps, moved, fastest) & (np.abs(steps) <= most)
     # With a delay, the output reverses earlier or later, by twice the motion meanwhile.
     delay = _DELAY / period
-    reverses, _ = _reversals(moved, _REVERSAL + math.ceil(delay))
-    lost |= reverses & (np.abs(steps) <= 2.2 * delay * fastest)
+    around = _REVERSAL + math.ceil(delay)
+    reverses, _ = _reversals(moved, around)
+    rows = np.flatnonzero(reverses & (np.abs(steps) > limit) & ~lost)
+    near = np.lib.stride_tricks.sliding_window_view(np.pad(speeds, around), 2 * around + 1)
+    lost[rows] = np.abs(steps[rows]) <= 2.2 * delay * near[rows].max(axis=1)
     slipped = _slipped(level, ideal, usually)
     return _Steps(((np.abs(steps) > limit) & ~lost) | slipped, slipped, limit)
 
@@ -311,4 +314,5 @@ def _without(both: Encoders, rotor: Array, kept: Array, stray: Array) -> Encoder
         before=places[both.before[kept]],
         share=both.share[kept],
         measured=measured[kept],
+        start=both.start + float(both.rotor.seconds[good][0]),
     )

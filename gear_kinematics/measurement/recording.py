@@ -104,6 +104,7 @@ class Encoders:
     rotor_step: Step  #: rad of the rotor, between readings of its encoder
     output_step: Step  #: rad, between readings of the output's encoder
     unmatched: Mapping[str, int] = field(default_factory=dict)  #: numbers left out, by cause
+    start: float = 0.0  #: of the rotor's samples in the recording, s or samples, if it was divided
 
     @property
     def duration(self) -> float:
@@ -117,8 +118,8 @@ class Encoders:
 
     @property
     def moment(self) -> Array:
-        """Times as `seconds`, or sample numbers that count from 1, as reports give them."""
-        return self.seconds if self.timed else self.seconds + 1.0
+        """Times in the recording, or sample numbers that count from 1, as reports give them."""
+        return self.start + self.seconds + (not self.timed)
 
     @property
     def _after(self) -> Array:

@@ -109,9 +109,10 @@ def test_a_gear_whose_only_error_is_its_play_is_not_taken_for_computed(gate):
         {(700, 2): 3.0},
         {(700, 1): 0.0},
         {(371, 1): -136.0},
+        {(371, 1): -68.8},
         {(100, 2): 3.0, (300, 1): 0.0, (301, 1): 9e3, (900, 2): 9},
     ],
-    ids=['output', 'rotor', 'rotor at a reversal', 'several'],
+    ids=['output', 'rotor', 'rotor at a reversal', 'rotor by a degree there', 'several'],
 )
 def test_stray_readings_are_left_out_and_named(clean, gate, wrong):
     for place, value in wrong.items():
@@ -158,6 +159,9 @@ def test_a_jump_divides_and_is_named_with_its_moment(clean, gate, column, size, 
     clean[900:, column] += size
     _, found = gate(clean)
     assert found.encoders.measured == pytest.approx(clean[:900, 2], abs=1e-9)
+    clean[300:, column] += size
+    _, other = gate(clean)
+    assert other.encoders.moment[[0, -1]] == pytest.approx([12.0, 35.96])  # of the recording
     jump = found.faults[0].values
     assert (found.faults[0].what, jump['moment']) == (Observation.JUMPED, pytest.approx(36.0))
     assert np.degrees(jump['angle']) == pytest.approx(degrees, abs=0.1)  # and the gear's own error

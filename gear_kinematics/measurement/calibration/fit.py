@@ -201,7 +201,7 @@ def _moved(samples: Sequence[Samples], after: Array, least: float) -> Observed |
         place = 1 + int(np.argmax(explained))
         angle = float(left[place:].mean() - left[:place].mean())
         if abs(angle) > least and explained[place - 1] > _MOST * len(left) * np.var(left):
-            moment, timed = float(s.encoders.seconds[s.used[place]]), s.encoders.timed
+            moment, timed = float(s.encoders.moment[s.used[place]]), s.encoders.timed
             name = s.recording.name
             return Observation.MOVED(recording=name, angle=angle, moment=moment, timed=timed)
     return None
