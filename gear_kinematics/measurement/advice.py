@@ -17,7 +17,8 @@ from gear_kinematics.measurement.recording import Array
 _TRIED, _FEWEST, _ROWS = 12, 10, 10_000
 """Number of columns that are tried for an example; least and most rows that are compared."""
 _NO_ANGLE = re.compile(
-    r'(?i)torq|effort|curr|vel(?!_mapper)|speed|rpm|/ ?s|temp|time|stamp|target|goal|cmd|elec|^t$'
+    r'(?i)torq|effort|force|curr|vel(?!_mapper)|speed|rpm|/ ?s|temp|time|stamp|target|goal|cmd|'
+    r'elec|^t$'
 )
 """Words in names of columns that are not proposed as angles."""
 _LIKELY = re.compile(r'(?i)pos|ang|enc|theta|winkel|(rad|deg|rev|inc|cnt|counts)\b')

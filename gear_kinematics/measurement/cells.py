@@ -3,6 +3,7 @@
 
 import csv
 import re
+import warnings
 from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import Any, NamedTuple
@@ -58,6 +59,7 @@ def numbers(column: Any, point: str = '.') -> Any:
         others = np.count_nonzero(~np.isfinite(values) & ~text.str.lower().isin(MISSING))
         return values if known >= others else np.full(len(values), np.nan)
     text = text.str.replace(',', '.')
+    text = text.str.replace(r'(?<=:\d\d):(?=\d{3,}$)', '.', regex=True)  # 9:00:00:040
     moments = pd.to_datetime(text, format='ISO8601', utc=True, errors='coerce')
     if not moments.notna().any():
         half = text.str.lower().str.extract(r'(?:^| )(\d+):.*([ap])m$')  # 12:00 AM is midnight
@@ -72,7 +74,10 @@ def numbers(column: Any, point: str = '.') -> Any:
         dates = text.where(text.str.match(date))
         dates = dates.str.replace(r'([./])(\d\d)(?= )', r'\g<1>20\2', regex=True)
         day_first = dates.str.match(r'\d+\.').any()
-        moments = pd.to_datetime(dates, dayfirst=day_first, utc=True, errors='coerce') + later
+        with warnings.catch_warnings():
+            warnings.simplefilter('ignore', UserWarning)  # of what is in no common format
+            moments = pd.to_datetime(dates, dayfirst=day_first, utc=True, errors='coerce')
+        moments = moments + later
     moments = moments.dt.tz_localize(None)
     return moments.to_numpy('datetime64[ns]') if moments.notna().any() else values
 

@@ -34,6 +34,8 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
         return clock._replace(unit='date')
     known = np.isfinite(times) & np.isfinite(angle)
     times, angle = times[known].astype(float), angle[known]
+    if _newest_first(times):
+        times, angle = times[::-1], angle[::-1]
     later = np.diff(times) > 0.0
     if not later.any():
         cause = 'they stand still' if known.any() else 'no numbers nor ISO 8601'
@@ -101,6 +103,8 @@ def stamps(
     if lost := np.count_nonzero(~readable):
         remarks.append(Observation.NO_TIMES(rows=lost, column=clock.name))
     rows, stamp = rows[readable], stamp[readable]
+    if _newest_first(stamp):
+        rows, stamp = rows[::-1], stamp[::-1]
     if stamp.min() >= 0 and stamp.max() < _DAY:  # times of the day begin again at midnight
         stamp = stamp + _DAY * np.cumsum(np.diff(stamp, prepend=stamp[0]) < -0.5 * _DAY)
     for before, size in _restore(stamp) if alone else ():
@@ -123,6 +127,11 @@ def stamps(
         places = np.arange(len(stamp)) - np.repeat(new, counts)
         stamp = stamp + (np.repeat(steps / counts, counts) * places).astype(np.int64)
     return stamp, rows
+
+
+def _newest_first(times: Array) -> bool:
+    """Return whether times only go back, as in an export of a database."""
+    return len(times) > 0 and times[-1] < times[0] and bool(np.all(np.diff(times) <= 0))
 
 
 def _restore(stamp: Array) -> Iterator[tuple[int, int]]:

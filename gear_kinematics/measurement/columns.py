@@ -27,13 +27,13 @@ _TORQUE = (
 _KNOWN_WORDS = (*_ROTOR, *_OUTPUT, *_ANGLE, *_TORQUE, 'current')
 _TIME = (
     'time', 't', *_STAMP, 'today', 'datetime', 'elapsed', 'zeit', 'uhrzeit', 'temps', 'tempo',
-    'tiempo', 'tout', 'xtime', 'x',
+    'tiempo', 'tout', 'xtime', 'ts', 'zeitstempel', 'horodatage', 'x',
 )  # fmt: skip
 _FILLING = {
     'header', 'receive', 'log', 'measured', 'actual', 'act', 'filtered', 'raw', 'field', 'data',
     'value', 'values', 'feedback', 'state', 'states', 'axis', 'present', 'sensor', 'abs', 'side',
     'in', 'ist', 'host', 'pi', 'ros', 'system', 'unix', 'epoch', 'fb', 'fbk', 'ave', 'estimate',
-    'scalars',
+    'scalars', 'date', 'datum', 'utc', 'wall',
 }  # fmt: skip
 """Words that may accompany the others; any other word shows a command, a speed or the like."""
 _COUNTS = ('counts', 'count', 'cnt', 'inc', 'increments', 'ticks', 'pulse', 'pulses')

@@ -125,7 +125,7 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
         head = file.handle.read(_HEAD)
         size = len(head) + sum(map(len, iter(partial(file.handle.read, _BLOCK), b'')))
     encoding = _encoding(head)
-    text = codecs.getincrementaldecoder(encoding)('replace').decode(head)
+    text = codecs.getincrementaldecoder(encoding)('replace').decode(head).rstrip('\0')
     lines = [*io.StringIO(text, newline=None)]
     if size > _HEAD and not (lines := lines[:-1]):
         raise ValueError(f'the first row is longer than {_HEAD} characters')
@@ -176,7 +176,7 @@ def _encoding(head: bytes) -> str:
     """Return the encoding of a text; ValueError if it is not text."""
     if encoding := next((_BOMS[mark] for mark in _BOMS if head.startswith(mark)), ''):
         return encoding
-    if 0 in head:
+    if 0 in head.rstrip(b'\0'):  # with which a crash can leave the end
         zeros = head[::2].count(0), head[1::2].count(0)
         if min(zeros) == 0 and max(zeros) > len(head) // 4:
             return 'utf-16-le' if zeros[1] else 'utf-16-be'

@@ -170,7 +170,7 @@ class _Samples:
                             'thousands: write the numbers without them'
                         )
                     values[role] = signed(values[role], found[role].scale)
-            gaps = 0 if apart else np.cumsum(np.diff(chosen, prepend=chosen[0]) > _GAP)
+            gaps = 0 if apart else np.cumsum(np.abs(np.diff(chosen, prepend=chosen[0])) > _GAP)
             self.series |= dict.fromkeys(roles, _Series(stamp, values, gaps + 0 * stamp))
         angles = (role for role in found if role != 'torque')
         self._shown = {role: find_step(self.series[role].values[role]) for role in angles}
