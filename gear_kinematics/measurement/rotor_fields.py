@@ -62,8 +62,8 @@ def questions(
     absent = len(given) and not given.any() and np.ptp(values[:, 0]) > _MOVED
     if absent:
         yield Condition.VELOCITIES_ARE(meaning=VelocityMeaning.ZERO)
-    elif velocities.meaning:
-        yield velocities.meaning
+    elif meaning := velocities.in_recording:
+        yield meaning
     usual, known = float(np.median(np.diff(stamp))) / SECOND, len(given) and not absent
     known = bool(known and not velocities.contradicts)
     if period and limits and (seldom := too_seldom(period, *limits, usual, known=known)):

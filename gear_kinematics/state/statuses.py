@@ -87,7 +87,9 @@ class Condition(Enum):
         'the velocities contradict the positions, which stand',
         'Check whether the encoder is stuck, its cable, and whose velocities the driver sends.',
     )
-    EFFORT_TOO_LARGE = OK, _EFFORT, ''  # said of recordings alone
+    # These two are said of recordings alone.
+    VELOCITIES_WERE = OK, '{doubt}, until {time:.3f} s', ''
+    EFFORT_TOO_LARGE = OK, _EFFORT, ''
     BEYOND_LIMITS = (
         WARN,
         '{which}',

@@ -13,6 +13,7 @@ import numpy as np
 
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.wire.batches import Array
+from gear_kinematics.wire.cdr import SECOND
 
 SPAN = 100_000_000  # ns, between the readings that are compared; four times that decides
 _PAUSE = 10 * SPAN  # after velocities that were found right
@@ -62,6 +63,7 @@ class VelocityField:
         self.contradicts = False  # whether the velocities contradict the positions
         self.delay = 0.0  # s, by which the velocities are late, if it is too long
         self._may_be_late = False
+        self._past: Fact | None = None  # the last contradiction that ended
         self.decided: int | None = None  # ns, the stamp of the reading that decided first
         self._candidate = VelocityMeaning.UNDECIDED
         self._moved = False  # whether there was a velocity other than 0
@@ -92,6 +94,11 @@ class VelocityField:
         if self.finding is VelocityMeaning.UNKNOWN:
             return Condition.VELOCITIES_UNKNOWN(meaning=self.finding, factor=self.factor)
         return Condition.VELOCITIES_ARE(meaning=self.finding)
+
+    @property
+    def in_recording(self) -> Fact | None:
+        """What the velocities seem to be, or have seemed until they agreed with the positions."""
+        return self.meaning or self._past
 
     def believed(self, stamps: Array, values: Array, noise: float) -> Array:
         """Note readings in order of time, and return their velocities, (n,).
@@ -235,6 +242,9 @@ class VelocityField:
         if found is self._candidate:
             if self.decided is None:
                 self.decided = self._readings[-1][0]
+            if self.contradicts and found is VelocityMeaning.RIGHT:
+                end = self._readings[-1][0] / SECOND
+                self._past = Condition.VELOCITIES_WERE(time=end, doubt=self.meaning)
             self.finding, self.factor = found, factor
             self.contradicts = found is not VelocityMeaning.RIGHT
             if not self.contradicts:

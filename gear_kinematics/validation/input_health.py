@@ -86,7 +86,7 @@ class InputHealth:
             longest_gaps=tuple(self._longest),
             referenced=not (rotor_input.turns.unknown_gaps or rotor_input.plausibility.jumped),
             jumped='' if lost and lost.condition is Condition.GAP else str(lost or ''),
-            velocity_is=str(rotor_input.velocity_field.meaning or ''),
+            velocity_is=str(rotor_input.velocity_field.in_recording or ''),
             beyond_limits=str(rotor_input.plausibility.beyond_limits or ''),
         )
 

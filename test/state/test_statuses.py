@@ -23,6 +23,7 @@ VALUES = {
     'counts': {'joint missing': 12, 'not a JointState': 1},
     'count': 12,
     'meaning': 'rpm',
+    'doubt': Condition.VELOCITIES_ARE(meaning='0'),
     'factor': 9.5493,
     'delay': 0.0604,
     'which': [

@@ -2,6 +2,7 @@
 """Velocities that contradict the positions, as drivers send them."""
 
 import math
+import re
 from contextlib import suppress
 
 import numpy as np
@@ -63,6 +64,18 @@ def test_velocities_that_become_wrong_are_found_after_a_pause_of_a_second(right)
         stamp = SECOND + k * SECOND // rate
         rotor.accept(rotor_bytes(stamp, position=[50.0 * k / rate], velocity=velocity), int)
     assert rotor.velocity_field.contradicts
+
+
+def test_velocities_that_become_right_are_named_in_a_recording():
+    """As of a driver that sends zeros until it has measured for a while."""
+    rotor, rate = RotorInput(SETTINGS), 100
+    for k in range(4 * rate):
+        stamp, velocity = SECOND + k * SECOND // rate, [50.0 * (k >= 2 * rate)]
+        rotor.accept(rotor_bytes(stamp, position=[50.0 * k / rate], velocity=velocity), int)
+    field = rotor.velocity_field
+    assert (field.contradicts, field.meaning) == (False, None)
+    said = str(field.in_recording)
+    assert re.fullmatch(r'the velocities contradict .* seem to be 0, until 3\.\d+ s', said)
 
 
 def stop_and_go(t):
