@@ -87,7 +87,8 @@ class Condition(Enum):
         'the velocities contradict the positions, which stand',
         'Check whether the encoder is stuck, its cable, and whose velocities the driver sends.',
     )
-    # These two are said of recordings alone.
+    # These are said of recordings alone.
+    CLOCK_SET_BACK = OK, 'the clock was set back by at least {size:.3g} s after {time:.3f} s', ''
     VELOCITIES_WERE = OK, '{doubt}, until {time:.3f} s', ''
     EFFORT_TOO_LARGE = OK, _EFFORT, ''
     BEYOND_LIMITS = (

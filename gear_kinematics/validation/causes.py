@@ -83,10 +83,7 @@ class FindingCause(Enum):
     JUMPED = '{rotor.jumped}'
     VELOCITY_IS = '{rotor.velocity_is}'
     BEYOND_LIMITS = '{rotor.beyond_limits}'
-    OVERSPEED = (
-        '{rotor.overspeed} steps of {rotor.topic} are faster than max_rotor_speed, at most '
-        '{rotor.max_speed:.4g} rad/s'
-    )
+    SET_BACK = '{rotor.set_back}'
     OF_OTHERS = (
         '{rotor.of_others} messages of {rotor.topic} belong to other joints, which is no fault'
     )

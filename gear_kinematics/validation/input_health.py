@@ -87,6 +87,7 @@ class InputHealth:
             referenced=not (rotor_input.turns.unknown_gaps or rotor_input.plausibility.jumped),
             jumped='' if lost and lost.condition is Condition.GAP else str(lost or ''),
             velocity_is=str(rotor_input.velocity_field.in_recording or ''),
+            set_back=str(rotor_input.set_back or ''),
             beyond_limits=str(rotor_input.plausibility.beyond_limits or ''),
         )
 
@@ -124,7 +125,7 @@ def _counted(rotor: InputReport) -> Iterator[Finding]:
             yield Finding(FindingCause[name.upper()], values={'rotor': rotor})
 
 
-_NOTED = 'jumped', 'jumps', 'velocity_is', 'beyond_limits', 'overspeed', 'of_others', 'zero_stamps'
+_NOTED = 'jumped', 'jumps', 'velocity_is', 'beyond_limits', 'set_back', 'of_others', 'zero_stamps'
 """Fields of `InputReport` that are noted; their causes have the same names."""
 
 CHECKS: Sequence[Callable[[InputReport], Iterator[Finding]]] = (

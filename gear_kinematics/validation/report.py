@@ -121,6 +121,7 @@ class InputReport:
     jumped: str = ''  #: how turns were lost, as by the last jump of the encoder, in words; or ''
     velocity_is: str = ''  #: what velocities that contradict the positions seem to be; or ''
     beyond_limits: str = ''  #: speed and acceleration beyond their limits, in words; or ''
+    set_back: str = ''  #: by how much the clock was set back last, less than a second; or ''
     overspeed: int = 0  #: steps faster than `max_rotor_speed`
     max_speed: float = 0.0  #: greatest speed between two positions, rad/s
     longest_gaps: tuple[Gap, ...] = ()  #: the longest gaps, at most ten, longest first
