@@ -96,6 +96,7 @@ class FindingCause(Enum):
         'their nanoseconds were lost: where messages are missing, outputs are compared with the '
         'wrong inputs; record the stamps with their nanoseconds'
     )
+    REJECTED = '{rotor.topic}: rejected: {causes}'
     MOSTLY_REJECTED = (
         '{rejected} of {rotor.messages} messages of {rotor.topic} were rejected ({causes}): too '
         'few are left to pass'

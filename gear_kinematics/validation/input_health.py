@@ -110,12 +110,13 @@ def _repeats_stamps(rotor: InputReport) -> Iterator[Finding]:
         yield Finding(FindingCause.REPEATED_STAMPS, values={'rotor': rotor})
 
 
-def _mostly_rejected(rotor: InputReport) -> Iterator[Finding]:
-    rejected = sum(rotor.rejected.values())
-    if 2 * rejected > rotor.messages - rotor.of_others:
+def _rejected(rotor: InputReport) -> Iterator[Finding]:
+    if rejected := sum(rotor.rejected.values()):
+        mostly = 2 * rejected > rotor.messages - rotor.of_others
         causes = ', '.join(f'{cause} {count}' for cause, count in rotor.rejected.items())
         values = {'rotor': rotor, 'rejected': rejected, 'causes': causes}
-        yield Finding(FindingCause.MOSTLY_REJECTED, values=values, fails=True)
+        cause = FindingCause.MOSTLY_REJECTED if mostly else FindingCause.REJECTED
+        yield Finding(cause, values=values, fails=mostly)
 
 
 def _counted(rotor: InputReport) -> Iterator[Finding]:
@@ -130,7 +131,7 @@ _NOTED = 'jumped', 'jumps', 'velocity_is', 'beyond_limits', 'set_back', 'of_othe
 
 CHECKS: Sequence[Callable[[InputReport], Iterator[Finding]]] = (
     _repeats_stamps,
-    _mostly_rejected,
+    _rejected,
     _counted,
 )
 """Checks of the contents of the rotor topic."""
