@@ -25,6 +25,7 @@ from gear_kinematics.wire.topics import (
 _PARTS = {'rotor': ROTOR_STATE, 'output': OUTPUT_STATE, 'poses': BODY_POSES}
 """Topics by their parts in a validation."""
 _OPTIONS = {topic: part for part, topic in _PARTS.items()} | {OUTPUT_ENCODER: 'encoder'}
+_NOT_CDR = ' (not CDR)'  # after a topic or its type, whose messages are in JSON or the like
 _PEEKED = 20  # topics whose joints are looked up
 _JUDGED = 1000  # messages that are searched for other joints
 
@@ -66,7 +67,7 @@ def find_topics(
     left_out = {'output': not outputs, 'poses': not (outputs and poses)}
     parts = [part for part in _PARTS if not left_out.get(part)]
     found = {part: topic for part in parts if (topic := given.get(part))}
-    left = {topic: kind for topic, kind in bag.topics.items() if topic not in bag.not_cdr}
+    left = {name: kind + _NOT_CDR * (name in bag.not_cdr) for name, kind in bag.topics.items()}
     for part, topic in found.items():
         if left.get(topic) != (wanted := TOPICS[_PARTS[part]].type):
             raise missing_topic(bag.path, left, topic, wanted)
@@ -193,7 +194,8 @@ def _find_topic(
         topic for topic in of_type if base_name(topic) not in TOPICS
     ]
     if not candidates:
-        raise missing_topic(bag.path, bag.topics, name, TOPICS[name].type, suggest=False)
+        there = {t + _NOT_CDR * (t in bag.not_cdr): kind for t, kind in bag.topics.items()}
+        raise missing_topic(bag.path, there, name, TOPICS[name].type, suggest=False)
     candidates = [t for t in candidates if t.rpartition('/')[0] == namespace] or candidates
     joints: dict[str, list[str]] = {}
     if len(candidates) > 1 and name == ROTOR_STATE:

@@ -141,6 +141,21 @@ def test_topics_without_a_type_are_said_to_have_none(name, cause):
         bag.type_of(name, JOINT_STATE)
 
 
+@pytest.mark.parametrize(
+    ('given', 'error'),
+    [
+        ({}, f'{NO_ROTOR}/rotor_state (not CDR), /rosout'),
+        ({'rotor': '/rotor_state'}, f'in it, it is of type {JOINT_STATE} (not CDR); there are: '),
+    ],
+)
+def test_that_the_messages_of_a_topic_are_json_is_the_cause(given, error):
+    bag = bag_with('/rotor_state')
+    bag.not_cdr = {'/rotor_state'}
+    with pytest.raises(BagError) as raised:
+        find_topics(bag, given, outputs=False)
+    assert error in str(raised.value)
+
+
 def test_topics_of_the_wanted_type_are_named_first():
     bag = described({'/a': 'x/msg/X', '/wheel': JOINT_STATE, '/moto': 'x/msg/X'})
     with pytest.raises(BagError, match=r'in it; there are: /wheel, /a, /moto$'):
