@@ -134,6 +134,18 @@ def test_position_that_repeats_after_another_range(size, low, step, found, every
     assert np.max(np.abs(wrapped(error, size / 19, -size / 38))) < 4e-3
 
 
+def test_a_slip_of_a_position_that_repeats_is_named(tmp_path):
+    times, rotor, output = readings(zeros=(7.0, 0.0))
+    row = len(times) * 11 // 20
+    slipped = output + 0.15 * (np.arange(len(times)) >= row)
+    result = commissioned(recorded(wrapped(rotor, 25.0, -12.5), slipped, times))
+    assert (result.between, result.answer.what) == (-19, Observation.RATIO_AND_RANGE)
+    jump, *_ = result.longest.recording.faults
+    assert (jump.what, jump.values['moment']) == (Observation.JUMPED, pytest.approx(times[row]))
+    error = (rotor - parameters(result, tmp_path).rotor_zero) / -19.0 - output
+    assert np.max(np.abs(wrapped(error[:row], 25.0 / 19, -25.0 / 38))) < 4e-3
+
+
 def test_steps_of_a_servo_and_a_restart_are_no_range():
     times, rotor, _ = readings()
     servo = np.where(np.arange(len(rotor)) // 50 % 2, 1.5, -1.5)

@@ -10,6 +10,7 @@ import numpy as np
 from gear_kinematics.kinematics.rotor_turns import TURN, split_turns
 from gear_kinematics.measurement.commissioning.encoder_range import count_wraps, find_range
 from gear_kinematics.measurement.encoder_step import Step
+from gear_kinematics.measurement.gate import gated
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RecordingError
 from gear_kinematics.report.document import counted
 from gear_kinematics.wire.cdr import SECOND
@@ -68,6 +69,13 @@ class Joint:
         turns, angle = split_turns(rotor)
         motion = motion._replace(turns=turns, angle=angle)
         unwrapped = replace(encoders, rotor=motion, measured=measured)
+        if period not in {
+            0.0,
+            TURN,
+        }:  # whose steps the gate took for a range that it does not know
+            recording = gated(replace(recording, encoders=unwrapped))
+            unwrapped = recording.both
+            rotor = unwrapped.rotor.turns * TURN + unwrapped.rotor.angle
         return cls(recording, unwrapped, unwrapped.at_measured(rotor), wraps, output_wraps, period)
 
     @property
