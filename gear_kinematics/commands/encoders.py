@@ -9,7 +9,7 @@ from typing import Any
 from gear_kinematics.commands import arguments
 from gear_kinematics.commands.bags import add_rotor
 from gear_kinematics.kinematics import GearRatio
-from gear_kinematics.measurement.columns import ANGLE_UNITS, Sources
+from gear_kinematics.measurement.columns import GIVEN_UNITS, Sources
 from gear_kinematics.measurement.formats import is_table
 from gear_kinematics.measurement.recording import Recording
 from gear_kinematics.parameters import default_config
@@ -52,7 +52,7 @@ def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
     for role in ('time', *roles):
         group.add_argument(f'--{role}-column', metavar='NAME', help=_COLUMNS[role])
     text = 'unit of all angles (default: by name, or rad unless something contradicts it)'
-    group.add_argument('--angle-unit', choices=ANGLE_UNITS, help=text)
+    group.add_argument('--angle-unit', choices=GIVEN_UNITS, help=text)
     if 'torque' in roles:
         text = (
             'take angle and torque as those of the rotor, unless a column is named after '
@@ -126,7 +126,7 @@ def sources(options: argparse.Namespace) -> Sources:
         output_counts=options.output_counts,
         rotor_topic=options.rotor_topic,
         encoder_topic=getattr(options, 'encoder_topic', None),
-        command=options.parser.prog,
+        command=options.command_line,
     )
 
 

@@ -1,70 +1,129 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Advice where the columns of a table are not found: a command line that works."""
+"""Advice where the columns or units of a table are unknown: a command line that works."""
 
 import re
 import shlex
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
-from itertools import filterfalse, permutations
+from itertools import filterfalse, permutations, product
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from gear_kinematics.measurement.columns import Sources, may_be_angle, sides
+from gear_kinematics.measurement.columns import ColumnsError, Sources
 from gear_kinematics.measurement.dialects import TableFile
+from gear_kinematics.measurement.names import ANGLE_UNITS, meaning
 from gear_kinematics.measurement.recording import Array
 
 _TRIED, _FEWEST, _ROWS = 12, 10, 10_000
 """Number of columns that are tried for an example; least and most rows that are compared."""
+_ALIKE = 0.3  # least correlation of the steps of both encoders
+_LISTED = 600  # characters of the list of columns
 _NO_ANGLE = re.compile(
-    r'(?i)torq|effort|force|curr|vel(?!_mapper)|speed|rpm|/ ?s|temp|time|stamp|target|goal|cmd|'
-    r'elec|^t$'
+    r'(?i)torq|effort|curr|vel(?!_mapper)|speed|rpm|/ ?s|temp|time|stamp|target|goal|cmd|elec|'
+    r'tau|cell|^t$|^[ft][xyz]'
 )
 """Words in names of columns that are not proposed as angles."""
-_LIKELY = re.compile(r'(?i)pos|ang|enc|theta|winkel|(rad|deg|rev|inc|cnt|counts)\b')
+_LIKELY = re.compile(
+    r'(?i)pos|\bq|_q|ang|enc|theta|winkel|rotation|(rad|deg|rev|inc|cnt|counts)\b'
+)
 """Words in names of columns that are proposed first."""
-_COUNTS = '--rotor-counts', '4096', '--output-counts', '4096'  # an example for whole numbers
+_TORQUE = re.compile(r'(?i)torq|effort|moment|tau|load|n[·.* -]?m\b|^[tm][xyz]$')
+"""Words in names of columns that are proposed as torques."""
 
 
-def advise(
-    path: Path, table: TableFile, sources: Sources, try_to_read: Callable[[Sources], object]
+def advice(
+    error: ColumnsError,
+    path: Path,
+    table: TableFile,
+    sources: Sources,
+    read: Callable[[Sources], object],
 ) -> str:
-    """List the columns with their first values, and end with a command line that works, if any.
+    """Return an error with a command line that works, if any, and the columns if it needs them.
 
-    `try_to_read` raises ValueError if the table cannot be read with columns that are named.
+    `read` raises ValueError if the table cannot be read with what is given.
     """
-    names = [name for name in table.names if name]
-    listed = ', '.join(f'{name} ({table.first.get(name, "")})' for name in names)
-    text = f'among the columns {listed}; name them'
-    angles = filter(may_be_angle, filterfalse(_NO_ANGLE.search, names))
-    single = [name for name in angles if names.count(name) == 1]
-    likely = [*filter(_LIKELY.search, single)]
-    raw, _ = table.load((likely if len(likely) > 1 else single)[:_TRIED])
-    raw = {name: array.astype(float) for name, array in raw.items() if array.dtype.kind in 'iuf'}
-    for rotor, output in _alike(raw):
-        words = ['--rotor-column', rotor, '--output-column', output]
+    text = str(error)
+    examples: Iterable[Mapping[str, str]] = [error.example]
+    if not error.example:
+        examples = _examples(table)
+        columns = (f'{name} ({table.first.get(name, "")})' for name in table.names if name)
+        if len(listed := ', '.join(columns)) > _LISTED:
+            listed = f'{listed[: _LISTED // 2]} ... {listed[-_LISTED // 2 :]}'
+        text += f' among the columns {listed}; name them with their units'
+    for example in examples:
+        if complete := _completed(example, sources, read):
+            words = [word for field in complete for word in (_option(field), complete[field])]
+            assumed = [
+                value.rpartition('[')[2].rstrip(']')
+                for value in complete.values()
+                if value not in table.names
+            ]
+            if assumed:
+                text += f', with what is right in place of {", ".join(dict.fromkeys(assumed))}'
+            command = sources.command or shlex.join(['gearkin', 'lost-motion', str(path)])
+            return f'{text}, for example: {command} {shlex.join(words)}'
+    if error.example or '--' in str(error):
+        return str(error)
+    return f'{text}, by {", ".join(map(_option, ("angle", "torque", "rotor", "output")))}'
+
+
+def _option(field: str) -> str:
+    """Return the option for a field of `Sources`."""
+    name = {'unit': 'angle-unit'}.get(field, field.replace('_', '-'))
+    return f'--{name}' if '-' in name else f'--{name}-column'
+
+
+def _completed(
+    example: Mapping[str, str], sources: Sources, read: Callable[[Sources], object]
+) -> dict[str, str]:
+    """Add what else is missing to an example of `Sources`; empty if the table is not read so."""
+    complete: dict[str, str] = {}
+    while example.items() - complete.items():
+        complete |= example
+        given: dict[str, Any] = {k: int(v) if 'counts' in k else v for k, v in complete.items()}
         try:
-            try_to_read(replace(sources, rotor=rotor, output=output, as_recorded=False))
-        except ValueError as error:
-            if not (option := re.search('--angle-unit|-counts', str(error))):
-                continue
-            fractions = np.concatenate([raw[rotor], raw[output]]) % 1.0
-            unit = ['deg'] if np.any(fractions > 0.0) else ['counts', *_COUNTS]
-            words += _COUNTS if option[0] == '-counts' else ['--angle-unit', *unit]
-        command = shlex.join([*sources.command.split(), str(path), *words])
-        counts = f' and their counts per turn in place of {_COUNTS[1]}' * (_COUNTS[1] in words)
-        return f'{text} with their units{counts}, for example: {command}'
-    return f'{text} with --angle-column, --torque-column, --rotor-column, --output-column'
+            read(replace(sources, **given, as_recorded=False))
+        except ColumnsError as error:
+            example = error.example
+        except ValueError:
+            break
+        else:
+            return complete
+    return {}
 
 
-def _alike(columns: Mapping[str, Array]) -> Iterator[tuple[str, str]]:
-    """Yield the pairs of columns that move alike, the likeliest first, and in each the faster."""
+def _examples(table: TableFile) -> Iterator[Mapping[str, str]]:
+    """Yield columns that may be both encoders or angle and torque, the likeliest first."""
+    names = [name for name in table.names if name and list(table.names).count(name) == 1]
+    known = {'', *ANGLE_UNITS}
+    angles = [n for n in filterfalse(_NO_ANGLE.search, names) if meaning(n).unit in known]
+    likely = [*filter(_LIKELY.search, angles)]
+    raw, _ = table.load((likely if len(likely) > 1 else angles)[:_TRIED])
+    raw = {name: array.astype(float) for name, array in raw.items() if array.dtype.kind in 'iuf'}
+    pairs = [*_alike(raw)]
+    yield from ({'rotor': rotor, 'output': output} for sure, rotor, output in pairs if sure)
+    for angle, torque in product(likely, filter(_TORQUE.search, names)):
+        if angle != torque:
+            yield {'angle': angle, 'torque': torque}
+    yield from ({'rotor': rotor, 'output': output} for sure, rotor, output in pairs if not sure)
+
+
+def _alike(columns: Mapping[str, Array]) -> Iterator[tuple[bool, str, str]]:
+    """Yield the pairs of columns that move alike, the likeliest first, and in each the faster.
+
+    They are sure if they move much alike and the names do not contradict.
+    """
     pairs = {}
     for rotor, output in permutations(columns, 2):
-        if len(columns[rotor]) != len(columns[output]) or sides(rotor)[1] or sides(output)[0]:
+        if len(columns[rotor]) != len(columns[output]):
             continue
         pair = np.array([columns[rotor], columns[output]])[:, :_ROWS]
         pair = np.diff(pair[:, np.isfinite(pair).all(axis=0)])
         if pair.shape[1] > _FEWEST and (spread := np.std(pair, axis=1))[0] > spread[1] > 0.0:
-            pairs[abs(np.corrcoef(pair)[0, 1])] = rotor, output
-    yield from (pairs[likeness] for likeness in sorted(pairs, reverse=True)[:_FEWEST])
+            likeness = abs(np.corrcoef(pair)[0, 1])
+            named = not (meaning(rotor).on_output or meaning(output).on_rotor)
+            pairs[named and likeness > _ALIKE, likeness] = rotor, output
+    for sure, likeness in sorted(pairs, reverse=True)[:_FEWEST]:
+        yield sure, *pairs[sure, likeness]

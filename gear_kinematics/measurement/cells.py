@@ -82,6 +82,23 @@ def numbers(column: Any, point: str = '.') -> Any:
     return moments.to_numpy('datetime64[ns]') if moments.notna().any() else values
 
 
+def may_be_divided(column: Any) -> bool:
+    """Return whether numbers may be whole ones whose thousands are divided, as 1.024 for 1024."""
+    if column.dtype.kind != 'f':
+        return False
+    values = np.abs(column.dropna().to_numpy())
+    small, rest = values[values > 0.0].min(initial=1.0) < 1.0, np.round(1000.0 * values, 6) % 1.0
+    large = values.max(initial=0.0) >= 1000.0  # noqa: PLR2004, as said above
+    return bool((values % 1.0).any() and not (small or large or rest.any()))
+
+
+def are_divided(text: Any, point: str) -> bool:
+    """Return whether only numbers from 1000 on have decimals, which are always three."""
+    text, mark = text.dropna().str.strip(), re.escape(point)
+    whole = text.str.fullmatch(rf'[-+]?([1-9]\d{{0,2}}({mark}\d{{3}})?|0)')
+    return bool(whole.all() and not text.str.contains(mark).all())
+
+
 def weight(cell: str, point: str) -> float:
     """Return how certainly a cell is a number or a time: 0 to 1."""
     if elements := _array(cell):

@@ -8,7 +8,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.measurement.columns import TIME_UNITS, Column
+from gear_kinematics.measurement.columns import Column, ColumnsError
+from gear_kinematics.measurement.names import TIME_UNITS
 from gear_kinematics.measurement.recording import Array
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.wire.cdr import SECOND
@@ -29,7 +30,7 @@ FASTEST, MOST = 1000.0, 0.9
 
 
 def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
-    """Return the clock with the unit that the sampling shows; ValueError if it shows none."""
+    """Return the clock with the unit that the sampling shows; ColumnsError if it shows none."""
     if times.dtype.kind == 'M':
         return clock._replace(unit='date')
     known = np.isfinite(times) & np.isfinite(angle)
@@ -57,14 +58,22 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
         likely = common
     elif 's' in likely and not np.all(times == np.round(times)):
         likely = ['s']
-    if len(likely) != 1 and role == 'rotor':
-        such = f'--time-column {shlex.quote(f"{clock.name} [ms]")}'
-        raise ValueError(
+    if (len(likely) != 1 and role == 'rotor') or (
+        is_temps(clock) and times[0] > _LATE_ROWS * step
+    ):
+        such = f'{clock.name} [ms]'
+        raise ColumnsError(
             f'the times in {clock.name}: steps of {step:.6g} do not tell their unit: give it, '
-            f'as in {such}'
+            f'as in --time-column {shlex.quote(such)}',
+            time=such,
         )
     unit = likely[0] if likely else 's'
     return clock._replace(unit=unit, scale=TIME_UNITS[unit])
+
+
+def is_temps(clock: Column) -> bool:
+    """Return whether a name means times in French, or temperatures in English."""
+    return clock.name.lower() == 'temps' and not clock.unit
 
 
 def stamps(
@@ -95,10 +104,11 @@ def stamps(
         seconds = times * round(factor) if exact else np.where(readable, times, 0.0) * factor
         stamp = np.round(seconds).astype(np.int64)
     if np.mean(~readable) > _UNREADABLE:
-        example = shlex.quote(f'{clock.name} [ns]')
-        raise ValueError(
+        such = f'{clock.name} [ns]'
+        raise ColumnsError(
             f'the times in {clock.name}: no numbers nor ISO 8601, or too large: give their unit, '
-            f'as in --time-column {example}'
+            f'as in --time-column {shlex.quote(such)}',
+            time=such,
         )
     if lost := np.count_nonzero(~readable):
         remarks.append(Observation.NO_TIMES(rows=lost, column=clock.name))

@@ -19,12 +19,15 @@ from gear_kinematics.measurement.cells import (
     MISSING,
     MOMENT,
     Element,
+    are_divided,
     cells_of,
     elements_of,
+    may_be_divided,
     numbers,
     weight,
 )
-from gear_kinematics.measurement.columns import known_units, time_among
+from gear_kinematics.measurement.columns import likeliest
+from gear_kinematics.measurement.names import known_units, meaning
 
 _MOST_ROWS = 1_000_000  # 15 minutes at 1 kHz; a row takes up to 250 bytes besides those of pandas
 _HEAD, _BLOCK = 2**16, 2**17  # bytes that show the dialect; characters that are read at a time
@@ -131,7 +134,7 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
         raise ValueError(f'the first row is longer than {_HEAD} characters')
     layout = _layout(lines)
 
-    def read(places: Sequence[int], every: int) -> Any:
+    def read(places: Sequence[int], every: int, kind: Any = None) -> Any:
         with opened(mode='r', compression='infer', encoding=encoding, errors='replace') as file:
             for _ in range(layout.start):  # pandas would heed quotation marks in them
                 file.handle.readline()
@@ -145,6 +148,7 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
                 index_col=False,
                 skipinitialspace=True,
                 low_memory=False,
+                dtype=kind,
             )
 
     lower = [name.lower().strip('_') for name in layout.names]
@@ -161,6 +165,12 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
         sources = [elements.get(name) or layout.names.index(name) for name in wanted]
         places = {k for one in sources for k in (one[:2] if isinstance(one, Element) else [one])}
         frame = read(sorted(places), every)
+        for place in filter(lambda place: may_be_divided(frame[place]), sorted(places)):
+            if are_divided(read([place], every, str)[place], layout.point):
+                raise ValueError(
+                    f'{layout.names[place]} has three decimals or none, as if points divided '
+                    'thousands: write the numbers without them'
+                )
         columns = (one.of(frame) if isinstance(one, Element) else frame[one] for one in sources)
         values = (numbers(column, layout.point) for column in columns)
         return dict(zip(wanted, values, strict=True)), every
@@ -256,14 +266,13 @@ def _names(
     alike = [row[:width] for row in rows if row[2:] and len({*row[:width:2]}) == 1]
     pairs = {row[0].lower(): row[1::2] for row in alike}
     for key, names in pairs.items():
-        is_time, unit = time_among([key])
-        if key not in _CLOCKS and not is_time:
+        if key not in _CLOCKS and meaning(key).role != 'time':
             continue
-        unit = _CLOCKS.get(key, unit)
+        unit = _CLOCKS.get(key, meaning(key).unit)
         clocks = {name: f'time of {name}' + f' [{unit}]' * bool(unit) for name in names}
         units = known_units(pairs.get('unit') or pairs.get('') or label[1::2])
         columns = [one for name in names for one in (clocks[name], name)]
-        return columns, dict(zip(names, units, strict=False)), clocks
+        return columns, _named(names, units), clocks
     if label:  # such as Y_Unit_Label of LabVIEW
         units = known_units(['', *label[1:]][len(label) > len(rows[-1]) :])
     elif len(rows) > 1 and len(rows[-2]) > 1:
@@ -283,7 +292,11 @@ def _names(
     if len(names) < numbers or (separator == ' ' and len(names) > width):
         raise ValueError(f'rows of {width} cells are below {len(names)} names: {", ".join(names)}')
     names = [*names[:width], *[''] * (width - len(names))]
-    return names, dict(zip(names, units, strict=False)), {}
+    return names, _named(names, units), {}
+
+
+def _named(names: Sequence[str], units: Sequence[str]) -> dict[str, str]:
+    return {name: unit for name, unit in zip(names, units, strict=False) if unit}
 
 
 def _joint_state(row: Sequence[str]) -> tuple[list[str], dict[str, str], dict[str, str]]:
@@ -300,11 +313,11 @@ def _joint_state(row: Sequence[str]) -> tuple[list[str], dict[str, str], dict[st
 
 def _long(frame: Any, point: str, topic: str, value: str) -> TableFile:
     """Return the series of a table with a row for each value, as exported from plots."""
-    clock, unit = time_among(frame.columns)
+    clock = likeliest(frame.columns).get('time')
     columns, clocks = {}, {}
     for name, series in frame.groupby(topic, sort=False):
         columns[str(name)] = numbers(series[value], point)
         if clock:
             clocks[str(name)] = own = f'{clock} of {name}'
             columns[own] = numbers(series[clock], point)
-    return loaded(columns, dict.fromkeys(clocks.values(), f'={unit}'), clocks)
+    return loaded(columns, dict.fromkeys(clocks.values(), meaning(clock or '').unit), clocks)

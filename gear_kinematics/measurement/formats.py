@@ -3,8 +3,8 @@
 
 A table becomes a recording in steps, each in a module of its own: `open_table` here chooses the
 reader; `dialects` finds names, units and numbers in a text, whose `cells` are numbers, times or
-arrays; `columns` finds the meaning of names and units, or `advice` proposes columns; `clocks`
-gives the rows their times; and `tables` decides which rows are used.
+arrays; `names` has the words and units in names, by which `columns` chooses, or `advice` proposes
+columns; `clocks` gives the rows their times; and `tables` decides which rows are used.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -90,15 +90,17 @@ def _of_channels(channels: Iterable[tuple[Any, str, Any, str, Any]]) -> TableFil
     A channel is its group, name, values, unit, and times, s, or None.
     """
     columns: dict[str, Any] = {}
-    units, clocks = {}, {}
+    units, clocks = dict[str, str](), dict[str, str]()
     found = [*channels]
     several = len({name for _, name, *_ in found}) < len(found)
     for group, own, values, unit, times in found:
         name = f'{group}/{own}' if several else own
-        columns[name], units[name] = values, unit
+        columns[name] = values
+        if unit:
+            units[name] = unit
         if times is not None:
             clocks[name] = clock = f'time of {name}'
-            columns[clock], units[clock] = times, '=s'
+            columns[clock], units[clock] = times, 's'
     return loaded(columns, units, clocks)
 
 

@@ -55,11 +55,10 @@ def read(
     """
     sources = sources or Sources()
     if is_table(path):
-        recording = read_table(path, sources, parameters.gear.gear_ratio, parameters.rotor_period)
+        ratio, period = parameters.gear.gear_ratio, parameters.rotor_period
+        recording = read_table(path, sources, ratio, period, both=both)
     else:
         recording = _read_bag(path, parameters, sources, progress, both=both)
-    if both:
-        recording.both  # noqa: B018, raises the error
     return gated(recording)
 
 

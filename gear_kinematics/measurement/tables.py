@@ -1,19 +1,20 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Tables as recordings: the rows that are used, their units and times."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+import shlex
+from collections.abc import Callable
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
-from gear_kinematics.measurement.advice import advise
-from gear_kinematics.measurement.clocks import FASTEST, MOST, stamps, with_unit
+from gear_kinematics.measurement.advice import advice
+from gear_kinematics.measurement.clocks import FASTEST, MOST, is_temps, stamps, with_unit
 from gear_kinematics.measurement.columns import (
+    Column,
     ColumnsError,
     Sources,
     described,
@@ -26,6 +27,7 @@ from gear_kinematics.measurement.dialects import TableFile
 from gear_kinematics.measurement.encoder_step import Step, find_step
 from gear_kinematics.measurement.formats import open_table
 from gear_kinematics.measurement.gate import output_by_rotor
+from gear_kinematics.measurement.names import meaning
 from gear_kinematics.measurement.recording import (
     Array,
     Encoders,
@@ -39,6 +41,8 @@ from gear_kinematics.measurement.recording import (
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.wire.cdr import SECOND
 
+T = TypeVar('T')
+_SHOWN = 1500  # characters of an error, which may quote a long file
 _LEAST = 1e-30
 """Smaller numbers are taken as 0, so that no squares or inverses underflow later."""
 _GAP = 5  # greatest gap, in usual intervals of the rotor's samples, that is interpolated
@@ -48,20 +52,34 @@ _BLOCKS, _LIKE = 10, (0.08, 1.0)
 """Number of parts of a recording; error of the output within a part that shows degrees, rad."""
 _WHOLE = 50  # number of different whole numbers that are no coincidence
 _FEWEST, _ROWS = 10, 10_000  # least number of samples of a part; greatest number in all
-_THOUSAND = 1000.0
-_SHOWN = 800  # characters of an error, which may quote a long file
 
 
-def read_table(path: Path, sources: Sources, ratio: Fraction, period: float = 0.0) -> Recording:
+def read_table(
+    path: Path, sources: Sources, ratio: Fraction, period: float = 0.0, *, both: bool = False
+) -> Recording:
     """Read a table of a gear with a ratio.
 
     Positions of the rotor repeat after a period, rad; 0 if that is to be found.
 
     Raises:
-        RecordingError: if it cannot be read, or has no such columns.
+        RecordingError: if it cannot be read, or has no such columns, or lacks one of `both`
+            encoders.
     """
-    with _naming(path):
-        return _recording(path, open_table(path), sources, ratio, period)
+
+    def recording(table: TableFile, sources: Sources) -> Recording:
+        read = _Samples(table, sources, ratio)
+        encoders = None if 'angle' in read.found else read.encoders(period)
+        if both and not encoders:
+            raise ColumnsError(
+                'not both a rotor and an output: give --rotor-column and --output-column'
+            )
+        locked = None if encoders else read.locked(period)
+        said, remarks, faults = tuple(read.said), tuple(read.remarks), tuple(read.faults)
+        return Recording(
+            path, path.name, said, read.used, encoders, locked, remarks, faults=faults
+        )
+
+    return _advised(path, sources, recording)
 
 
 def read_rotor(path: Path, sources: Sources, ratio: Fraction) -> tuple[Array, Array, Array, str]:
@@ -73,10 +91,11 @@ def read_rotor(path: Path, sources: Sources, ratio: Fraction) -> tuple[Array, Ar
     Raises:
         RecordingError: if it cannot be read, or has no such columns.
     """
-    with _naming(path):
-        read = _Samples(path, open_table(path), sources, ratio)
+
+    def motion(table: TableFile, sources: Sources) -> tuple[Array, Array, Array, str]:
+        read = _Samples(table, sources, ratio)
         if 'torque' not in read.found or not read.timed:
-            raise ValueError('no times or no torque: give --time-column and --torque-column')
+            raise ColumnsError('no times or no torque: give --time-column and --torque-column')
         read.steps()
         role = 'rotor' if 'rotor' in read.found else 'angle'
         on_rotor = role == 'rotor' or read.found[role].on_rotor
@@ -84,12 +103,18 @@ def read_rotor(path: Path, sources: Sources, ratio: Fraction) -> tuple[Array, Ar
         torque = read.torque_at(read.series[role]) / float(ratio)
         return read.series[role].stamp, angle, torque, ', '.join(read.said)
 
+    return _advised(path, sources, motion)
 
-@contextmanager
-def _naming(path: Path) -> Iterator[None]:
-    """Turn errors into a RecordingError that names the path."""
+
+def _advised(path: Path, sources: Sources, read: Callable[[TableFile, Sources], T]) -> T:
+    """Read a table; a RecordingError names the path, and ends with advice on unknown columns."""
     try:
-        yield
+        table = open_table(path)
+        try:
+            return read(table, sources)
+        except ColumnsError as error:
+            text = advice(error, path, table, sources, partial(read, table))
+            raise ValueError(text) from error
     except (OSError, ValueError) as error:  # pandas raises the latter as well
         text = getattr(error, 'strerror', None) or ' '.join(str(error).split())
         if len(text) > _SHOWN:
@@ -109,77 +134,95 @@ class _Series(NamedTuple):
 class _Samples:
     """Columns and samples of a table by role, with remarks and faults."""
 
-    def __init__(self, path: Path, table: TableFile, sources: Sources, ratio: Fraction) -> None:
+    def __init__(self, table: TableFile, sources: Sources, ratio: Fraction) -> None:
         """Read the columns; ValueError if they are missing or contain no numbers."""
         self._sources, self._ratio = sources, ratio
-        try:
-            found = find_columns(table.names, sources, table.units, table.clocks)
-        except ColumnsError as error:
-            advice = advise(path, table, sources, partial(_recording, path, table, ratio=ratio))
-            raise ValueError(f'{error} {advice}') from error
-        clock = found.pop('time', None)
-        rest = nanoseconds_of(clock.name, table.names) if clock else None
+        self.remarks, self.faults = list[Observed](), list[Observed]()
+        self.found = find_columns(table.names, sources, table.units, table.clocks)
+        clock = self.found.pop('time', None)
         usual = clock.name if clock else ''
-        clocks = {role: table.clocks.get(column.name, usual) for role, column in found.items()}
-        wanted = {column.name for column in found.values()} | {*clocks.values(), rest or ''}
-        raw, every = table.load(sorted(wanted - {''}))
-        self.remarks = [Observation.ROWS_THINNED(every=every)] if every > 1 else []
-        self.faults = list[Observed]()
-        if clock and not (sources.time or table.first.get(usual, usual)):
-            filled = raw[usual] == raw[usual]  # NaN is not equal to itself
-            clock = clock if filled.any() else None
-        if clock and rest:
-            raw[usual] = raw[usual].astype(np.int64) * SECOND + raw[rest].astype(np.int64)
-            clock = clock._replace(unit='ns', scale=1.0 / SECOND)
-        if dates := [c.name for c in found.values() if raw[c.name].dtype.kind == 'M']:
-            raise ValueError(f'{dates[0]} has dates in place of numbers')
-        data = {role: raw[column.name] * column.scale for role, column in found.items()}
+        clocks = {role: table.clocks.get(one.name, usual) for role, one in self.found.items()}
+        raw, clock = self._loaded(table, clock, {*clocks.values()})
+        data = {role: raw[column.name] * column.scale for role, column in self.found.items()}
         usable = {role: np.abs(values) <= LARGEST_ANGLE for role, values in data.items()}  # no NaN
-        if 'rotor' in found and 'torque' in found and not usable['torque'].any():
-            del found['torque'], data['torque'], usable['torque']
-        counts = [*map(np.count_nonzero, usable.values())]
-        fewest, apart = min(counts), len({*clocks.values()}) > 1
-        if not apart and len(lengths := {*map(len, raw.values())}) > 1:
-            raise ValueError(
-                f'columns of {" and ".join(map(str, sorted(lengths)))} rows, without times of each'
-            )
-        both = np.zeros(1, bool) if apart else np.all([*usable.values()], axis=0)
-        # PlotJuggler writes each series at its own times, and leaves the other columns empty.
-        apart = apart or bool(clock and 2 * np.count_nonzero(both) < max(counts))
-        if not fewest or not (apart or both.any()):
-            names = ', '.join(column.name for column in found.values())
-            raise ValueError(f'no usable rows: none has numbers in all of {names}')
+        if 'rotor' in self.found and 'torque' in self.found and not usable['torque'].any():
+            del self.found['torque'], data['torque'], usable['torque']
+        together = self._together(usable, clock, clocks)
         if clock and not clock.unit:
-            role = 'rotor' if 'rotor' in found else 'angle'
+            role = 'rotor' if 'rotor' in self.found else 'angle'
             clock = with_unit(clock, raw[clocks[role]], data[role], role)
-        self.found, self.timed = found, clock is not None
+        self._clock, self.timed = clock, clock is not None
         self.series: dict[str, _Series] = {}
-        for roles in [[role] for role in found] if apart else [[*found]]:
-            kept = usable[roles[0]] if apart else both
-            if (left_out := np.count_nonzero(~kept)) and not apart:
-                self.remarks.append(Observation.ROWS_LEFT_OUT(rows=left_out))
-            times = raw.get(clocks[roles[0]])
-            stamp, chosen = stamps(clock, times, kept, self.remarks, self.faults, alone=not apart)
-            values = {role: data[role][chosen] for role in roles}
-            values = {role: np.where(np.abs(v) < _LEAST, 0.0, v) for role, v in values.items()}
-            for role in roles:
-                if 'counts' in found[role].unit:
-                    if _divided(raw[found[role].name]):
-                        raise ValueError(
-                            f'{found[role].name} has fractions of counts, as if points divided '
-                            'thousands: write the numbers without them'
-                        )
-                    values[role] = signed(values[role], found[role].scale)
-            gaps = 0 if apart else np.cumsum(np.abs(np.diff(chosen, prepend=chosen[0])) > _GAP)
-            self.series |= dict.fromkeys(roles, _Series(stamp, values, gaps + 0 * stamp))
-        angles = (role for role in found if role != 'torque')
+        for roles in [[role] for role in usable] if together is None else [[*usable]]:
+            times, values = raw.get(clocks[roles[0]]), {role: data[role] for role in roles}
+            kept, alone = (usable[roles[0]], False) if together is None else (together, True)
+            one = self._sampled(values, kept, times, alone=alone)
+            self.series |= dict.fromkeys(roles, one)
+        angles = (role for role in self.found if role != 'torque')
         self._shown = {role: find_step(self.series[role].values[role]) for role in angles}
-        base = self.series['output' if 'output' in found else 'angle']
-        self.used = len(base.stamp)
+        self.used = len(self.series['output' if 'output' in self.found else 'angle'].stamp)
         self.said = [f'time [{clock.unit}] from {clock.name}'] if clock else []
-        self.said += map(described, found, found.values())
-        rows = fewest if apart else len(data[next(iter(base.values))])
+        self.said += map(described, self.found, self.found.values())
+        fewest = min(map(np.count_nonzero, usable.values()))
+        rows = fewest if together is None else len(together)
         self.said.append(f'{self.used} of {rows} rows')
+
+    def _loaded(
+        self, table: TableFile, clock: Column | None, clocks: set[str]
+    ) -> tuple[dict[str, Array], Column | None]:
+        """Load columns by name; also return the column of times with its unit, if it has any."""
+        rest = nanoseconds_of(clock.name, table.names) if clock else None
+        wanted = {column.name for column in self.found.values()} | clocks | {rest or ''}
+        raw, every = table.load(sorted(wanted - {''}))
+        if every > 1:
+            self.remarks.append(Observation.ROWS_THINNED(every=every))
+        if len(clocks) == 1 and len(lengths := {*map(len, raw.values())}) > 1:
+            number = ' and '.join(map(str, sorted(lengths)))
+            raise ValueError(f'columns of {number} rows, without times of each')
+        if dates := [c.name for c in self.found.values() if raw[c.name].dtype.kind == 'M']:
+            raise ValueError(f'{dates[0]} has dates in place of numbers')
+        if clock and not self._sources.time:
+            times = raw[clock.name]
+            filled = times == times  # noqa: PLR0124, as NaN is not equal to itself
+            empty = not (filled.any() or table.first.get(clock.name, clock.name))
+            rising = not is_temps(clock) or np.all(times[filled][1:] > times[filled][:-1])
+            clock = None if empty or not rising else clock
+        if clock and rest:
+            seconds, nanoseconds = (raw[name].astype(np.int64) for name in (clock.name, rest))
+            raw[clock.name] = seconds * SECOND + nanoseconds
+            clock = clock._replace(unit='ns', scale=1.0 / SECOND)
+        return raw, clock
+
+    def _together(
+        self, usable: dict[str, Array], clock: Column | None, clocks: dict[str, str]
+    ) -> Array | None:
+        """Return the rows with all quantities; None if each is to be read at its own times."""
+        names = ', '.join(column.name for column in self.found.values())
+        counts = [*map(np.count_nonzero, usable.values())]
+        rows = None
+        if len({*clocks.values()}) == 1:
+            rows = np.all([*usable.values()], axis=0)
+            # PlotJuggler writes each series at its own times, and leaves the other columns empty.
+            if clock and 2 * np.count_nonzero(rows) < max(counts):
+                rows = None
+        if not min(counts) or (rows is not None and not rows.any()):
+            raise ValueError(f'no usable rows: none has numbers in all of {names}')
+        return rows
+
+    def _sampled(
+        self, data: dict[str, Array], kept: Array, times: Array | None, *, alone: bool
+    ) -> _Series:
+        """Return the kept rows in the order of time; `alone` if the table has no other series."""
+        if (left_out := np.count_nonzero(~kept)) and alone:
+            self.remarks.append(Observation.ROWS_LEFT_OUT(rows=left_out))
+        stamp, chosen = stamps(self._clock, times, kept, self.remarks, self.faults, alone=alone)
+        values = {role: one[chosen] for role, one in data.items()}
+        values = {role: np.where(np.abs(v) < _LEAST, 0.0, v) for role, v in values.items()}
+        for role in values:
+            if 'counts' in self.found[role].unit:
+                values[role] = signed(values[role], self.found[role].scale)
+        gaps = np.cumsum(np.diff(chosen, prepend=chosen[0]) > _GAP) if alone else 0 * stamp
+        return _Series(stamp, values, gaps)
 
     def unwrapped(self, role: str, period: float = 0.0) -> Array:
         """Return positions unwrapped by a period, rad, or by the one that they show."""
@@ -202,36 +245,44 @@ class _Samples:
                 of_output = role == 'output'
                 known = self._sources.output_counts if of_output else self._sources.rotor_counts
                 steps[role] = Step(TURN / known, seen=False) if known else self._shown[role]
-            if cause := self._against(role, steps.get(role)):
-                unit = 'Nmm' if role == 'torque' else 'counts'
-                option = f"as in --{role}-column '{column.name} [{unit}]'"
-                how = option if role == 'torque' or column.borrowed else 'with --angle-unit'
-                raise ValueError(f'{column.name} has {cause}: give its unit {how}')
+            if against := self._against(role, steps.get(role)):
+                cause, unit = against
+                such = f'{column.name} [{unit}]'
+                if role != 'torque' and not column.borrowed:
+                    how, example = 'with --angle-unit', {'unit': unit}
+                else:
+                    how, example = f'as in --{role}-column {shlex.quote(such)}', {role: such}
+                raise ColumnsError(f'{column.name} {cause}: give its unit {how}', **example)
         return steps
 
-    def _against(self, role: str, step: Step | None) -> str:
-        """Return what shows that numbers without a unit are not in rad or N·m, if anything."""
+    def _against(self, role: str, step: Step | None) -> tuple[str, str] | None:
+        """Return what shows that numbers without a unit have another, and a likely one."""
         column, stamp = self.found[role], self.series[role].stamp
         if column.unit and not column.borrowed:
-            return ''
+            return None
         values = self.series[role].values[role]
         numbers = np.round(values / column.scale, 6)  # as they are in the table
         moved, whole = np.abs(np.diff(values)), bool(np.all(numbers == np.round(numbers)))
+        says = meaning(column.name)
         if not step:
-            return 'whole numbers' if whole and len(np.unique(values)) > _WHOLE else ''
+            if whole and len(np.unique(values)) > _WHOLE:
+                return 'has whole numbers', 'Nmm'
+            return ('is raw', 'N·m') if 'raw' in says.words else None
+        if not (says.role or column.unit):
+            return 'does not say that it is an angle', 'counts' if whole else 'deg'
         if whole and np.ptp(values) > TURN:
-            return 'whole numbers, such as counts'
+            return 'has whole numbers, such as counts', 'counts'
         if column.borrowed:
-            return ''
+            return None
         if _HALF_TURN < np.max(moved, initial=0.0) <= np.ptp(values) <= 2.0 * _HALF_TURN:
-            return 'turns of 360, such as degrees'
+            return 'has turns of 360, such as degrees', 'deg'
         if unit := other_unit(values, step).partition(':')[0]:
-            return f'positions in {unit}'
+            return f'has positions in {unit}', 'rev' if 'turns' in unit else 'deg'
         if self.timed and (moving := moved > 0.0).any():
             seconds = np.maximum(np.diff(stamp)[moving], 1) / SECOND
             if (speed := np.quantile(moved[moving] / seconds, MOST)) > FASTEST:
-                return f'speeds of {speed:.3g} a second, as in degrees'
-        return ''
+                return f'has speeds of {speed:.3g} a second, as in degrees', 'deg'
+        return None
 
     def locked(self, period: float) -> Loading:
         """Return the angles under torque; ValueError if the shaft turns."""
@@ -247,7 +298,7 @@ class _Samples:
         # A few readings may be stray.
         if np.ptp(np.quantile(locked.angle, (0.01, 0.99))) > _MOST_TWIST:
             twist = np.ptp(locked.angle)
-            raise ValueError(
+            raise ColumnsError(
                 f'the output turns by {np.degrees(twist):.3g}° under torque: it is not '
                 'locked, or the unit is another, which --angle-unit gives'
             )
@@ -273,32 +324,12 @@ class _Samples:
             error = _error(both.at_measured(turned), both.measured)
             if min(_LIKE) < error < max(_LIKE):
                 names = (self.found[role].name for role in ('output', 'rotor'))
-                raise ValueError(
+                raise ColumnsError(
                     f'{" differs from ".join(names)} by more than gears do in rad, as in degrees: '
-                    'give the unit with --angle-unit'
+                    'give the unit with --angle-unit',
+                    unit='deg',
                 )
         return both
-
-
-def _divided(counts: Array) -> bool:
-    """Return whether counts have three decimal places, as those of 1.024 in place of 1024.
-
-    Eighths, which have as many, are means of up to eight readings, and fewer places are others.
-    """
-    sizes = np.abs(counts[np.isfinite(counts)])
-    third = (np.round(100.0 * sizes, 6) % 1.0 > 0.0) & (8.0 * sizes % 1.0 > 0.0)
-    fractions = third.any() and not (np.round(_THOUSAND * sizes, 6) % 1.0).any()
-    return bool(fractions and sizes.max() < _THOUSAND and not ((sizes > 0) & (sizes < 1)).any())
-
-
-def _recording(
-    path: Path, table: TableFile, sources: Sources, ratio: Fraction, period: float = 0.0
-) -> Recording:
-    read = _Samples(path, table, sources, ratio)
-    encoders = None if 'angle' in read.found else read.encoders(period)
-    locked = None if encoders else read.locked(period)
-    said, remarks, faults = tuple(read.said), tuple(read.remarks), tuple(read.faults)
-    return Recording(path, path.name, said, read.used, encoders, locked, remarks, faults=faults)
 
 
 def _error(rotor: Array, output: Array) -> float:

@@ -134,13 +134,6 @@ ENCODERS = {
     'cp1252': lambda t, r, o: written(
         [t, r * DEG, o * DEG], 'Prüfling 3\ntime,rotor [°],output [°]').encode('cp1252'),
     'CR LF': lambda t, r, o: written([t, r, o], NAMES).replace('\n', '\r\n'),
-    'the newest row first': lambda t, r, o: written([t[::-1], r[::-1], o[::-1]], NAMES),
-    'the newest date first': lambda t, r, o: written(
-        [t[::-1], r[::-1], o[::-1]], 'Zeitstempel,rotor,output', (moment(), *DECIMALS[1:])),
-    'a colon before milliseconds': lambda t, r, o: written(
-        [t, r, o], NAMES, (lambda v: ':'.join(moment(' ')(v).rsplit('.', 1)), *DECIMALS[1:])),
-    'zeros after a crash': lambda t, r, o: (
-        written([t, r, o], 'Date/Time,rotor,output') + 900 * '\0'),
     'decimal comma and spaces': lambda t, r, o: in_german(
         written([t, r, o], 'time rotor output', mark=' ')),
     'decimal comma in quotes': lambda t, r, o: written(
@@ -324,6 +317,13 @@ ENCODERS = {
         [t, r, o], NAMES,
         (lambda v: (NOON + timedelta(seconds=v)).strftime('%Y-%m-%d %I:%M:%S.%f %p'),
          *DECIMALS[1:])),
+    'shafts': lambda t, r, o: written([t, r, o], 'time,motor_shaft_pos,output_shaft_pos'),
+    'rotations': lambda t, r, o: written(
+        [t, r * REV, o * REV], 'Timestamp,/Motor/PositionRotations,/Output/PositionRotations',
+        3 * ['{:.7f}']),
+    'times and temperatures in French and English': lambda t, r, o: written(
+        [t, r, o, 40.0 + np.sin(t)], 'Temps;Angle moteur;Angle sortie;Temps'.replace(
+            ';Temps', ';motor_temps'), 4 * ['{:.5f}'], ';'),
     'counts of 16 bits': lambda t, r, o: written(
         [t, np.round(r * REV * 4096) % 65536, o], 'time,rotor_counts,output_rad',
         ('{:.2f}', '{:.0f}', '{:.5f}')),
@@ -340,6 +340,9 @@ RAMPS = {
     'N.m': lambda t, a, q: written([t, a * DEG, q], 't,angle [deg.],torque [N.m]'),
     'the motor in other units': lambda t, a, q: written(
         [t, a * -30 * DEG, q / -30 * 1e3], 'time,MotorPosition (deg),MotorTorque (mNm)'),
+    'Verdrehwinkel': lambda _, a, q: written(
+        [q, a / ARCMIN], "Drehmoment [Nm];Verdrehwinkel [']", 2 * ['{:.6f}'], ';'),
+    'τ and φ': lambda t, a, q: written([t, a, q], 't,φ,τ', 3 * ['{:.6f}']),
     'moteus': lambda t, a, q: written(
         [t, a * REV, q, t], '# bench\n#time,position,torque,q_current', 4 * ['{:.9f}']),
     'time in ms': lambda t, a, q: written([t * 1e3, a, q], 'time,angle,torque', 3 * ['{:.6f}']),
@@ -375,13 +378,16 @@ def test_every_dialect_is_read(tmp_path, gear, reference, dialect):
     assert recording.encoders is None or recording.encoders.timed or 'without times' in dialect
 
 
-@pytest.mark.parametrize('readings', [2, 8, 10])
-def test_means_of_counts_are_no_thousands(tmp_path, gear, reference, readings):
+@pytest.mark.parametrize('readings', [2, 7, 8, 10])
+@pytest.mark.parametrize('form', ['{:.5f}', '{:.3f}'])
+def test_means_of_counts_are_no_thousands(tmp_path, gear, reference, readings, form):
     t, r, o = reference('encoders')
     counts = np.round((r - r.min()) * REV * 20 * readings) / readings + 1.0
     assert 500.0 < counts.max() < 1000.0
-    path = saved(tmp_path, written([t, counts, o], 'time,rotor_counts,output_rad'))
-    assert read(path, gear, Sources(rotor_counts=20)).both
+    form = '{:.2f}', form, '{:.5f}'
+    path = saved(tmp_path, written([t, counts, o], 'time,rotor_counts,output_rad', form))
+    turned = read(path, gear, Sources(rotor_counts=20)).both.rotor.turned
+    np.testing.assert_allclose(turned - turned[-1], r - r[-1], atol=1.01 * math.pi / 20.0)
 
 
 def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, gear, reference):
@@ -416,14 +422,24 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         (lambda t, r, o: written(
             [t, r * 1e3, o], 'time;rotor_counts;output_rad',
             ('{:.2f}', lambda v: f'{v:,.0f}'.replace(',', '.'), '{:.5f}'), ';'),
-         'rotor_counts has fractions of counts, as if points divided'),
+         'rotor_counts has three decimals or none, as if points divided'),
+        (lambda t, r, o: written(
+            [t * 1e3, r, o], 'time_ms;rotor_rad;output_rad',
+            (lambda v: f'{v:,.0f}'.replace(',', '.'), '{:.5f}', '{:.5f}'), ';'),
+         'time_ms has three decimals or none, as if points divided'),
+        (lambda t, r, o: written([40 + t, r, o], 'temps,rotor_rad,output_rad'),
+         "temps: steps of 0.04 do not tell their unit: .* --time-column 'temps .ms.'"),
+        (lambda t, r, o: written([t, r, o], 'time,input,output'), 'neither an angle and'),
+        (lambda t, _, o: written([t, 1e-3 * o, o], 'time,angle,torque%'), 'neither an angle and'),
+        (lambda t, _, o: written([t, 1e-3 * o, o], 'time,angle,torque [mA]'),
+         r'torque \[mA\] is in ma: convert it to one of N·m, '),
+        (lambda t, _, o: written([t, 1e-3 * o, o], 'time,angle,torque_raw'), 'torque_raw is raw'),
+        (lambda t, _, o: written([t, 1e-3 * o, o], 'time,angle,torque [MN·m]'), 'is not known'),
         (lambda t, r, o: written(
             [t, r, o], NAMES,
             ('{:.2f}', lambda v: f'{v:.3f} or so' if abs(v) > 5 else '7', '{:.5f}')),
          'no usable rows: none has numbers in all of rotor, output'),
         (lambda t, r, o: written([t, r, o], NAMES, ('26.11.2026 {:.0f}', *DECIMALS[1:])),
-         'the times in time: no numbers nor ISO 8601'),
-        (lambda t, r, o: written([t, r, o], NAMES, ('2026-13-26 09:{:05.2f}', *DECIMALS[1:])),
          'the times in time: no numbers nor ISO 8601'),
         (lambda t, r, o: written([25 * t, r / 3, o / 3], NAMES),
          'steps of 1 do not .* --time-column'),
@@ -436,9 +452,7 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
          'torque has whole numbers: give its unit as in --torque-column .torque .Nmm'),
         (' (1764230000.000000) can0 141#A100000000000000\n', 'a log of CAN frames: decode'),
         ('date Thu Nov 26 09:12:33 2026\nbase hex\n', 'a log of CAN frames: decode'),
-        ('t,angle [deg],force [N]\n0,1,2\n1,2,3\n', 'name them with --angle-column'),
-        (lambda t, r, o: written([t, r, o], 'time,force_N,angle_rad'),
-         'name them with --angle-column'),
+        ('t,angle [deg],force [N]\n0,1,2\n1,2,3\n', 'with their units, by --angle-column'),
         ('time,angle_grad,torque\n0,1,2\n',
          "known; known: rad, .*counts; give it, as in --angle-column 'angle_grad .rad.'"),
         ('time,angle,torque\ns,gon,Nm\n0,1,2\n', 'the unit gon is not known'),
@@ -459,10 +473,88 @@ def test_what_speaks_against_a_unit_is_said(tmp_path, gear, reference, table, wr
             given = {'angle': angle[0]}
     else:
         path = saved(tmp_path, written_as(*reference('encoders')))
-    counts = 4096 if 'fractions of counts' in cause else None
+    counts = 4096 if 'three decimals' in cause else None
     with pytest.raises(RecordingError, match=cause) as caught:
         read(path, gear, Sources(**given, rotor_counts=counts))
     assert '\n' not in str(caught.value)
+
+
+UNTOLD = {
+    'counts': lambda t, r, o: written(
+        [t, np.round(r * REV * 4096), np.round(o * REV * 4096)], 'time,motor_inc,load_inc'),
+    'counts without unit': lambda t, r, o: written(
+        [t, np.round(r * REV * 4096), np.round(o * REV * 4096)],
+        'time,motor_present_position,load_present_position', ('{:.2f}', '{:.0f}', '{:.0f}')),
+    'counts of numbered servos': lambda t, r, o: written(
+        [t * 1e3, np.round(r * REV * 4096), np.round(o * REV * 4096)],
+        'Time(ms),[ID:001] Present Position,[ID:002] Present Position', 3 * ['{:.0f}']),
+    'counts as raw readings': lambda t, r, o: written(
+        [t, np.round(r * REV * 4096), np.round(o * REV * 4096)], 'time,motor_raw,output_raw'),
+    'degrees': lambda t, r, o: written([t, r * DEG, o * DEG], NAMES),
+    'degrees at which the output differs': lambda t, r, o: written(
+        [10 * t, r * DEG, o * DEG], NAMES),
+    'angles of unknown sides': lambda t, r, o: written([t, r * DEG, o * DEG], 't,pos_a,pos_b'),
+    'revolutions': lambda t, r, o: written([t, r * REV % 1.0, o * REV % 1.0], NAMES),
+    'a unit of one encoder alone': lambda t, r, o: written(
+        [t, np.round(r * REV * 4096), o * DEG], 'time,rotor,output [deg]'),
+    'unknown word': lambda t, r, o: written([t, r, o], 'time,motor_pos_x,output_pos_x'),
+    'times': lambda t, r, o: written([25 * t, r / 3, o / 3], NAMES),
+    'both motors': lambda t, r, o: written([t, r, o], 'time,motor1_pos,motor2_pos'),
+    'a torque beside': lambda t, r, o: written([t, r, o, t], 'time,POSITION,ABS_POSITION,TORQUE',
+                                               4 * ['{:.5f}']),
+    'no locked output': lambda t, r, o: written(
+        [t, r, o, np.sin(t)], 'time,M1_position_rad,J1_position_rad,torque_Nm', 4 * ['{:.5f}']),
+}  # fmt: skip
+UNTOLD_RAMPS = {
+    'two torques': lambda t, a, q: written(
+        [t, a * DEG, q, q], 'time,angle_deg,torque_raw_Nm,torque_filtered_Nm', 4 * ['{:.6f}']),
+    'a torque in whole numbers': lambda t, a, q: written([t, a, np.round(q * 1e3)],
+        'time,angle,torque', ('{:.2f}', '{:.6f}', '{:.0f}')),
+    'units of rotation': lambda t, a, q: written(
+        [t, a * DEG, q], '"Time","Rotation","Axial Torque"\n"(s)","(Degrees)","(N-m)"',
+        3 * ['"{:.6f}"']),
+    'a unit that is a word': lambda t, a, q: written([t, a, q], 'time,angle_grad,torque',
+                                                     3 * ['{:.6f}']),
+}  # fmt: skip
+
+
+def followed(error):
+    """The sources that the command line at the end of an error gives."""
+    words = shlex.split(str(error).split('for example: ')[1])
+    assert words[:2] == ['gearkin', 'lost-motion']
+    parser = argparse.ArgumentParser()
+    parser.set_defaults(command_line='')
+    add_recordings(parser, 'angle', 'torque', 'rotor', 'output')
+    return sources(parser.parse_args(words[2:]))
+
+
+@pytest.mark.parametrize('untold', [*UNTOLD, *UNTOLD_RAMPS])
+def test_every_refusal_ends_with_a_command_line_that_works(tmp_path, gear, reference, untold):
+    ramps = untold in UNTOLD_RAMPS
+    content = (UNTOLD | UNTOLD_RAMPS)[untold](*reference('ramps' if ramps else 'encoders'))
+    path = saved(tmp_path, content)
+    for as_recorded in (False, True):
+        given = Sources(as_recorded=as_recorded)
+        if as_recorded and untold == 'counts':
+            assert read(path, gear, given, both=True).encoders
+            continue
+        with pytest.raises(
+            RecordingError, match=f'for example: gearkin lost-motion {path}'
+        ) as told:
+            read(path, gear, given, both=as_recorded and not ramps)
+        recording = read(path, gear, followed(told.value))
+        assert (recording.locked is not None) == ramps
+    if 'counts' in untold or 'degrees' in untold or untold in {'both motors', 'two torques'}:
+        assert_measured(recording, gear)
+
+
+def test_advice_repeats_the_options_that_were_given(tmp_path, gear, reference):
+    t, r, o = reference('encoders')
+    counts = [np.round(one * REV * 4096) for one in (r, o)]
+    path = saved(tmp_path, written([t, *counts], 'time,motor_inc,load_inc'))
+    line = f'gearkin calibrate {path} --ratio -30 --rotor-counts 4096'
+    with pytest.raises(RecordingError, match=f'for example: {line} --output-counts 4096$'):
+        read(path, gear, Sources(rotor_counts=4096, command=line))
 
 
 @pytest.mark.parametrize(
@@ -483,14 +575,11 @@ def test_the_command_line_of_the_advice_works(tmp_path, gear, reference, name, u
     with pytest.raises(RecordingError, match=r'among the columns t \(0.00000\), .*1') as caught:
         read(path, gear, Sources(as_recorded=as_recorded))
     text, command = str(caught.value).split('for example: ')
-    assert ('counts per turn in place of 4096' in text) == ('4096' in unit)
-    parser = argparse.ArgumentParser()
-    parser.set_defaults(parser=parser)
-    add_recordings(parser, 'angle', 'torque', 'rotor', 'output')
+    assert (' in place of ' in text and '4096' in text) == ('4096' in unit)
     words = shlex.split(command)
     assert words[:3] == ['gearkin', 'lost-motion', str(path)]
     assert words[7:] == unit
-    assert read(path, gear, sources(parser.parse_args(words[2:]))).encoders
+    assert read(path, gear, followed(caught.value)).encoders
 
 
 def test_names_can_be_given_with_units(tmp_path, gear, reference):
@@ -621,6 +710,16 @@ def test_the_advice_gives_the_output_the_column_that_is_named_after_it(tmp_path,
         RecordingError, match=r'--rotor-column motor\d_pos --output-column output_'
     ):
         read(saved(tmp_path, content), gear)
+
+
+def test_temperatures_are_no_times(tmp_path, gear, reference):
+    t, r, o = reference('encoders')
+    for others in ('motor_pos,output_pos,time,temps', 'motor_pos,output_pos,x,temps'):
+        content = written([r, o, t, 40.0 + np.round(t / 9.0)], others, 4 * ['{:.5f}'])
+        recording = read(saved(tmp_path, content), gear)
+        assert recording.encoders.timed == ('time' in others)
+    with pytest.raises(RecordingError, match=r'steps of 0\.04 do not tell their unit'):
+        read(saved(tmp_path, written([40 + t, r, o], 'temps,rotor,output')), gear)
 
 
 def test_columns_of_different_lengths_are_refused(tmp_path, gear, reference):

@@ -1,0 +1,213 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The names of a table's columns: their words and units, and what these mean."""
+
+import re
+from collections.abc import Mapping, Sequence
+from functools import cache
+from typing import Any, NamedTuple
+
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.measurement.encoder_step import UNITS
+
+_VOCABULARY = {
+    'rotor': 'rotor motor mot odrive antrieb moteur motore',
+    'output': 'output out load shaft link joint abtrieb ausgang sortie uscita salida',
+    'input': 'input eingang entrée ingresso entrada',
+    'angle': 'position positions pos angle encoder enc theta θ φ ϕ deflection twist winkel '
+    'drehwinkel verdrehwinkel angolo ángulo angulo',
+    'torque': 'torque torques effort efforts trq tau τ drehmoment moment couple coppia',
+    'current': 'current',
+    'time': 'time t stamp timestamp timestamps today datetime elapsed zeit uhrzeit temps tempo '
+    'tiempo tout xtime x',
+    'filling': 'header receive log measured actual act filtered raw field data value values '
+    'feedback state states axis present sensor abs side in ist host pi ros system unix epoch fb '
+    'fbk ave estimate scalars',
+}
+"""Words in names by kind, the likeliest first. The input is the rotor if a quantity is said, too.
+The filling may accompany all others; any other word shows a command, a speed or the like."""
+_KINDS = {word: kind for kind, words in _VOCABULARY.items() for word in words.split()}
+_RANKS = {word: rank for rank, word in enumerate(_KINDS)}
+_EITHER = {'shaft', 'joint'}
+"""Words for the output that do not mean it beside one for the rotor, as in motor_shaft."""
+_OTHERS = '% ‰ percent pct a ma v mv volts adc n kg g min minutes h hours'
+FOREIGN = {*_OTHERS.split()}
+"""Units of what is measured in place of torques and angles, and of times that are too coarse."""
+_SPEEDS = {'rpm', 'rps', 'dps', 'cps'}
+_NO_UNIT = {'-', 'none', 'n/a', '1', ':'}
+
+_DEG, _KGF, _LBF = UNITS['deg'], 9.80665, 4.4482216152605  # rad, N, N
+_SIZES: Mapping[str, Mapping[str, Any]] = {
+    'angle': {
+        'rad radian radians': 1.0,
+        'mrad': 1e-3,
+        'deg ° degree degrees': _DEG,
+        'rev turn turns revs revolution revolutions rotations': TURN,
+        'mdeg millideg': 1e-3 * _DEG,
+        'cdeg': 1e-2 * _DEG,
+        'ddeg': 0.1 * _DEG,
+        'mrev': 1e-3 * TURN,
+        'urad µrad': 1e-6,
+        "arcmin ′ '": _DEG / 60.0,
+        'arcsec ″': _DEG / 3600.0,
+        'counts count cnt inc increments ticks pulse pulses lsb steps': None,  # per turn as given
+    },
+    'torque': {
+        'N·m nm': 1.0,
+        'mN·m mnm nmm': 1e-3,
+        'µN·m unm µnm': 1e-6,
+        'N·cm ncm cnm': 1e-2,
+        'kN·m knm': 1e3,
+        'kg·cm kgcm kgfcm': 1e-2 * _KGF,
+        'kg·m kgm kgfm': _KGF,
+        'lb·ft lbft ftlb lbfft ftlbf': 0.3048 * _LBF,
+        'lb·in lbin inlb lbfin inlbf': 0.0254 * _LBF,
+        'oz·in ozin inoz ozfin': 0.0254 / 16.0 * _LBF,
+    },
+    'time': {
+        's sec secs second seconds': 1.0,
+        'ms msec millis milliseconds': 1e-3,
+        'us µs usec micros microseconds': 1e-6,
+        'ns nsec nsecs nanosec nanosecs nanoseconds': 1e-9,
+        'days day': 86_400.0,
+    },
+}
+"""Sizes of units in rad, N·m or s; the first spelling of each is the usual one."""
+ANGLE_UNITS, TORQUE_UNITS, TIME_UNITS = (
+    {words.split()[0]: size for words, size in sizes.items()} for sizes in _SIZES.values()
+)
+_UNITS = {
+    word: words.split()[0]
+    for sizes in _SIZES.values()
+    for words in sizes
+    for word in words.split()
+}
+
+_MEGA = r'MN(?=[-_.*·⋅ ]?m)', 'meganewton'  # so that MN·m is not read as mN·m
+_PLAINER = {
+    _MEGA[0]: _MEGA[1],
+    r'^[%#"\s]+|[#"\s]+$': '',
+    r'\{name==': '{',  # of a joint, in paths of Foxglove
+    r'\\\w+:\d+$': '',  # device and raster, of INCA
+    r'(?i)^(time|zeit) +\d+ - [^[]*': r'\1',  # of catman
+    r'(?i)[ _]?(deg|rad|rev)[ _]?x10$': r'_d\1',
+    r'(?i)[ _]?(deg|rad|rev)[ _]?x100$': r'_c\1',
+    r'(?i)[ _]?(deg|rad|rev)[ _]?x1000$': r'_m\1',
+    r'(?i)(?<![a-z])([mk]?n)[-_.*·⋅ ](m?m)(?![a-z])': r'\1\2',
+}
+"""Spellings in names, and what is read in their place."""
+_BRACKETS = re.compile(r'[\[(]\s*([^\])]*?)\s*[\])]')
+_CAMEL = re.compile(r'[A-Z]+(?![a-zµ])|[A-Z]?[^\W\d_A-Z]+|\d+|[°%]')
+_SCALED = re.compile(r'(?<![^\W_])(?:\d+\.\d+ ?|\d+)([^\W\d_]+|°)$')
+"""A unit with a number, as in rotor_0.1deg, which is not part of the name."""
+_SIDES, _QUANTITIES = (
+    f'{_VOCABULARY[one]} {_VOCABULARY[other]}'.replace(' ', '|')
+    for one, other in (('rotor', 'output'), ('angle', 'torque'))
+)
+_COMPOUND = re.compile(f'({_SIDES})s?({_QUANTITIES})')
+"""Two words without anything between them, as in motorpos and Abtriebswinkel."""
+
+
+class Meaning(NamedTuple):
+    """What the name of a column says."""
+
+    words: tuple[str, ...]  # in lower case, without the unit
+    unit: str  # empty if none
+    role: str  # time, angle, rotor, output or torque; empty if none
+    rank: tuple[int, ...]  # lowest for the likeliest column of a role
+    on_rotor: bool  # whether a word means the rotor
+    on_output: bool  # whether a word means the output
+
+    @property
+    def unknown(self) -> str:
+        """The last word if all others are known: it seems to be an unknown unit."""
+        *first, last = self.words or ('',)
+        seems = first and _KINDS.keys() >= {*first} and last not in _KINDS
+        return last if seems and not last.isdigit() else ''
+
+
+@cache
+def meaning(name: str) -> Meaning:
+    """Return the meaning of a name."""
+    words, unit = _words(name)
+    kinds = {word: _KINDS.get(word) for word in words}
+    rotor = not {'rotor', 'input'}.isdisjoint(kinds.values())
+    outputs = {word for word in kinds if kinds[word] == 'output'}
+    output = bool(outputs - _EITHER if rotor else outputs)
+    role, rank = _role(words, unit, rotor=rotor, output=output)
+    return Meaning(words, unit, role, rank, rotor, output)
+
+
+def _role(
+    words: Sequence[str], unit: str, *, rotor: bool, output: bool
+) -> tuple[str, tuple[int, ...]]:
+    """Return the role of a column and its rank."""
+    none = '', ()
+    keys = [word for word in words if _KINDS.get(word) != 'filling' and not word.isdigit()]
+    kinds = {_KINDS.get(word) for word in keys}
+    if not words and unit in TIME_UNITS:
+        return 'time', (9,)
+    if kinds == {'time'}:
+        # The stamp of a message is when it was sampled; a log has when it was received.
+        first = 0 if keys == ['stamp'] and 'header' in words and not unit else len(words)
+        return (
+            none if keys == ['x'] and 'value' not in words else ('time', (first, _RANKS[keys[0]]))
+        )
+    if unit in TORQUE_UNITS and 'angle' not in kinds:
+        kinds.add('torque')  # as of load_Nm
+    torque = 'torque' in kinds
+    unclear = (torque and 'angle' in kinds) or (rotor and output and not torque)
+    others = kinds & {None, 'time'} or ('current' in kinds and not torque)
+    if not keys or kinds == {'input'} or others or unclear or '/' in unit or unit in _SPEEDS:
+        return none
+    counted = not kinds & {'angle', 'torque'} and unit == 'rev'  # beside the angle within a turn
+    rank = (counted, len(words), *(_RANKS[word] for word in keys))
+    return 'torque' if torque else 'rotor' if rotor else 'output' if output else 'angle', rank
+
+
+def usual_unit(text: str) -> str:
+    """Return the usual word for a unit, a text in lower case if it is unknown, or nothing."""
+    plain = re.sub(r'\s|units?:', '', re.sub(*_MEGA, text).lower().replace('μ', 'µ'))
+    plain = re.sub(r'[-.*·⋅](?=(in|ft|lbf?|c?m)$)', '', plain.strip('[]').strip('()'))
+    plain = re.sub(r'n(ewton)?[-_.*·⋅]?([cm]?)m(et(er|re)s?)?(?!\w)', r'n\2m', plain)
+    outer, _, inner = plain.partition('(')  # as in "° (Degree)" and "(deg)"
+    plain = (outer or inner).strip('()[].')
+    return '' if plain in _NO_UNIT else _UNITS.get(plain, plain)
+
+
+def known_units(cells: Sequence[str]) -> list[str]:
+    """Return the units in the cells of a row if two or most are known, otherwise nothing."""
+    units = [usual_unit(cell) for cell in cells]
+    known = len([unit for unit in units if unit in _UNITS])
+    return units if known > 1 or 2 * known > len([*filter(None, units)]) else []
+
+
+def _words(name: str) -> tuple[tuple[str, ...], str]:
+    """Divide a name into words, in lower case, and its unit, in brackets or a known word."""
+    for pattern, plain in _PLAINER.items():
+        name = re.sub(pattern, plain, name)
+    if (scaled := _SCALED.search(name.lower())) and scaled[1] in _UNITS:
+        return _words(name[: scaled.start()])[0], scaled[0].replace(' ', '')
+    bracketed = _BRACKETS.findall(name.lstrip('['))[::-1]
+    others = [one for one in bracketed if not one.isdigit() and one.lower() not in _KINDS]
+    unit = next((u for u in map(usual_unit, bracketed) if u in _UNITS), '')
+    unit = unit or next(filter(None, map(usual_unit, others)), '')
+
+    def put(found: re.Match[str]) -> str:
+        inner = found[1]
+        return ' ' if not inner.isdigit() and usual_unit(inner) in {unit, ''} else f' {inner} '
+
+    words: list[str] = []
+    for token in re.split(r'[\s_/.:,-]+', _BRACKETS.sub(put, name)):
+        small = token.lower().replace('μ', 'µ')
+        words += [small] if small in _UNITS else [w.lower() for w in _CAMEL.findall(token)]
+    pairs = ((word, _COMPOUND.fullmatch(word)) for word in words)
+    words = [part for word, pair in pairs for part in (pair.groups() if pair else [word])]
+    if not unit and words:
+        if words[-1] in _UNITS:
+            unit = _UNITS[words.pop()]
+        elif _UNITS.get(words[0]) in TIME_UNITS:
+            unit = _UNITS[words.pop(0)]
+    if 'joint' in words and {'state', 'states'} & {*words}:
+        words.remove('joint')  # part of the name of a topic
+    # Drivers name motors m1, m2.
+    return tuple('motor' if word == 'm' else word for word in words), unit
