@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 MOMENT = re.compile(
-    r'(\d{4}-\d\d-\d\d[T ])?\d?\d:\d\d(:\d\d([.,]\d+)?|[.,]\d+)\s?'
+    r'(\d{1,4}[-./](\d\d?|[a-z]{3})[-./]\d{2,4}[T ] ?)?\d?\d:\d\d(:\d\d([.,]\d+)?|[.,]\d+)\s?'
     r'(Z|UTC|[AP]M|[+-]\d\d:?\d\d)?',
     re.ASCII | re.IGNORECASE,
 )

@@ -19,6 +19,8 @@ _LEAST_STEP, _MOST_STEP = {'s': 1e-6, 'ms': 5e-5, 'us': 5e-5, 'ns': 5e-5}, 1.0
 """Likely intervals between samples, s: least for times in a unit, and greatest."""
 _EXCEL = 25_569
 """Days between the epoch of workbooks and 1970."""
+_FILETIME = 116_444_736_000_000_000
+"""Times of Windows, in 100 ns, in 1970."""
 _UNREADABLE = 0.01  # greatest share of times that cannot be read
 _LATE_ROWS = 25  # most successive rows out of order; more show a clock that was set back
 _FEWEST_AGAIN, _LONGEST_STEP = 2, 1.5
@@ -94,6 +96,8 @@ def stamps(
     if clock is None or times is None:
         return np.arange(len(rows)) * SECOND, rows
     times = times[rows]
+    if clock.unit == 'filetime':
+        times = times - _FILETIME
     if times.dtype.kind == 'M':
         readable = ~np.isnat(times)
         stamp = times.astype(np.int64)

@@ -43,6 +43,7 @@ _NO_NAMES = re.compile(r'(?i)[-+|:=\s]*|sep=.*\s*')
 """Lines above the numbers that are no names, as below the names in tables of psql."""
 _CLOCKS = {'name': 'ms', 'x_value': 's'}
 """Words, other than those for time, before names of channels with their own times; and units."""
+_MOST_MS = 16  # digits of times in ms; those of Windows have 18
 _TOPICS, _VALUE = (
     ('topic', 'message path', 'series', 'signal', 'channel', 'label', 'field', 'name'),
     'value',
@@ -232,7 +233,7 @@ def _layout(lines: Sequence[str]) -> _Layout:
     above = [line for line in lines[:start] if not _NO_NAMES.fullmatch(line)]
     row, *_ = samples = [rows[place] for place in filled[first:]]
     if above:
-        found = _names(above, separator, max(map(len, samples)), 1 + max(numeric))
+        found = _names(above, separator, max(map(len, samples)), 1 + max(numeric), row[0])
         if not found[0][0] and MOMENT.fullmatch(row[0]):
             found[0][0] = 'time'  # the index of pandas
     else:
@@ -247,20 +248,19 @@ def _score(lines: Sequence[str], separator: str, point: str) -> float:
 
 
 def _names(
-    above: Sequence[str], separator: str, width: int, numbers: int
+    above: Sequence[str], separator: str, width: int, numbers: int, first: str
 ) -> tuple[list[str], dict[str, str], dict[str, str]]:
     """Find names of columns, their units and clocks in the lines above rows of a width.
+
+    `numbers` is how many cells with numbers a row has at least; `first` is the first of them.
 
     Raises:
         ValueError: if the names do not fit the numbers of a row.
     """
-    rows = [cells_of(line.lstrip('#%/ '), separator) for line in above]
-    plain = [k for k, row in enumerate(rows) if not all(map(_TYPES.fullmatch, filter(None, row)))]
-    above, rows = [above[k] for k in plain], [rows[k] for k in plain]
+    rows = [_cells_above(line, separator, width) for line in above]
+    rows = [row for row in rows if not all(map(_TYPES.fullmatch, filter(None, row)))]
     while len(rows) > 1 and len(rows[-1]) > 1 and len([*filter(None, rows[-1])]) == 1:
-        del rows[-1], above[-1]  # such as the rate of sampling, of catman
-    units: list[str] = []
-    at = -1
+        del rows[-1]  # such as the rate of sampling, of catman
     labelled = (row for row in rows[:-1] if re.search('(?i)unit|einheit', ''.join(row[:1])))
     label = next((row for row in labelled if known_units(row[1:])), [])
     alike = [row[:width] for row in rows if row[2:] and len({*row[:width:2]}) == 1]
@@ -268,23 +268,22 @@ def _names(
     for key, names in pairs.items():
         if key not in _CLOCKS and meaning(key).role != 'time':
             continue
-        unit = _CLOCKS.get(key, meaning(key).unit)
+        unit = 'filetime' if len(first) > _MOST_MS else _CLOCKS.get(key, meaning(key).unit)
         clocks = {name: f'time of {name}' + f' [{unit}]' * bool(unit) for name in names}
         units = known_units(pairs.get('unit') or pairs.get('') or label[1::2])
         columns = [one for name in names for one in (clocks[name], name)]
         return columns, _named(names, units), clocks
+    fitting = [k for k, row in enumerate(rows) if len(row) >= numbers and not known_units(row)]
+    last = max(fitting, default=len(rows) - 1)
+    # Descriptions may be below the names, which have most of the words that say quantities.
+    whole = [k for k in fitting if len({*filter(None, rows[k])}) == width]
+    at = max([*whole, last], key=lambda k: (sum(bool(meaning(cell).role) for cell in rows[k]), k))
+    names, groups = rows[at], rows[at - 1] if at else []
     if label:  # such as Y_Unit_Label of LabVIEW
-        units = known_units(['', *label[1:]][len(label) > len(rows[-1]) :])
-    elif len(rows) > 1 and len(rows[-2]) > 1:
-        units = known_units(rows[-1])
-        at = -2 if units else -1
-        units = units or known_units(rows[-2])  # they are above the names
-    line, names = above[at], rows[at]
-    if len(names) != width:  # names in a comment may be separated otherwise
-        others = [cells_of(line.lstrip('#%/ '), one) for one in _SEPARATORS]
-        others += [re.split(r'\s{2,}', line.strip('#%/ '))]
-        names = next((cells for cells in others if len(cells) == width), names)
-    filled, groups = [*filter(None, names)], rows[at - 1] if len(rows) >= 1 - at else []
+        units = known_units(['', *label[1:]][len(label) > len(names) :])
+    else:
+        units = next(filter(None, map(known_units, (*rows[at + 1 : at + 2], groups))), [])
+    filled = [*filter(None, names)]
     if len({*filled}) < len(filled) and len(groups) == len(names):  # such as Motor,,Load,
         for k in range(1, len(groups)):
             groups[k] = groups[k] or groups[k - 1]
@@ -293,6 +292,16 @@ def _names(
         raise ValueError(f'rows of {width} cells are below {len(names)} names: {", ".join(names)}')
     names = [*names[:width], *[''] * (width - len(names))]
     return names, _named(names, units), {}
+
+
+def _cells_above(line: str, separator: str, width: int) -> list[str]:
+    """Divide a line above the numbers; names in a comment may be separated otherwise."""
+    cells = cells_of(line.lstrip('#%/ '), separator)
+    if len(cells) >= width:
+        return cells
+    others = [cells_of(line.lstrip('#%/ '), one) for one in _SEPARATORS]
+    others.append(re.split(r'\s{2,}', line.strip('#%/ \n')))
+    return next((other for other in others if len(other) == width), cells)
 
 
 def _named(names: Sequence[str], units: Sequence[str]) -> dict[str, str]:

@@ -69,6 +69,7 @@ _SIZES: Mapping[str, Mapping[str, Any]] = {
         'us µs usec micros microseconds': 1e-6,
         'ns nsec nsecs nanosec nanosecs nanoseconds': 1e-9,
         'days day': 86_400.0,
+        'filetime': 1e-7,  # of Windows, as of TwinCAT
     },
 }
 """Sizes of units in rad, N·m or s; the first spelling of each is the usual one."""

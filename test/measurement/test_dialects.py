@@ -317,6 +317,19 @@ ENCODERS = {
         [t, r, o], NAMES,
         (lambda v: (NOON + timedelta(seconds=v)).strftime('%Y-%m-%d %I:%M:%S.%f %p'),
          *DECIMALS[1:])),
+    'TwinCAT with full timestamps': lambda t, r, o: written(
+        [column for one in (r, o)
+         for column in (np.round(1e7 * t).astype(int) + 134_090_000_000_000_000, one * DEG)],
+        'Name,Scope\nFile,a.csv\n\nName,Motor.Pos,Name,Output.Pos\nSampleTime[ms],40,'
+        'SampleTime[ms],40\nUnit,deg,Unit,deg\n', 2 * ['{}', '{:.4f}']),
+    'descriptions below units': lambda t, r, o: written(
+        [t, r * DEG, o * DEG],
+        'Time,Input angle,Output angle\ns,deg,deg\nsample time,encoder 1,encoder 2'),
+    'Siemens': lambda t, r, o: written(
+        [t, t * 1e3, r * DEG, o * DEG],
+        'Time stamp\tRelative time\tMotor position\tLoad position\n\tms\t°\t°',
+        (lambda v: (NOON + timedelta(seconds=v)).strftime('%d.%m.%Y %H:%M:%S.%f'),
+         *3 * ['{:.5f}']), '\t'),
     'shafts': lambda t, r, o: written([t, r, o], 'time,motor_shaft_pos,output_shaft_pos'),
     'rotations': lambda t, r, o: written(
         [t, r * REV, o * REV], 'Timestamp,/Motor/PositionRotations,/Output/PositionRotations',
@@ -340,6 +353,9 @@ RAMPS = {
     'N.m': lambda t, a, q: written([t, a * DEG, q], 't,angle [deg.],torque [N.m]'),
     'the motor in other units': lambda t, a, q: written(
         [t, a * -30 * DEG, q / -30 * 1e3], 'time,MotorPosition (deg),MotorTorque (mNm)'),
+    'units of which few are known': lambda t, a, q: written(
+        [t, a * DEG, q / 0.00706155, t, t, t, t, t],
+        'Time,Angle,Torque,Temp,U,I,P,n\ns,deg,ozf·in,°C,V,A,W,rpm', 8 * ['{:.6f}']),
     'Verdrehwinkel': lambda _, a, q: written(
         [q, a / ARCMIN], "Drehmoment [Nm];Verdrehwinkel [']", 2 * ['{:.6f}'], ';'),
     'τ and φ': lambda t, a, q: written([t, a, q], 't,φ,τ', 3 * ['{:.6f}']),
