@@ -140,7 +140,19 @@ def _workbook(path: Path) -> TableFile:
     import pandas as pd  # noqa: PLC0415, of an extra
 
     sheet = pd.read_excel(path, header=None)
-    return open_text(path, sheet.to_csv(header=False, index=False).encode())
+    try:
+        return open_text(path, sheet.to_csv(header=False, index=False).encode())
+    except ValueError as error:
+        sheets = pd.read_excel(path, sheet_name=None, header=None)
+        found = [
+            str(name)
+            for name, one in sheets.items()
+            if one.apply(pd.to_numeric, errors='coerce').notna().any(axis=None)
+        ]
+        if not found:
+            raise
+        sheets = ', '.join(found)
+        raise ValueError(f'{error}; sheets with numbers: {sheets}: save one as CSV') from error
 
 
 _READERS: Mapping[str, Callable[[Path], TableFile]] = {

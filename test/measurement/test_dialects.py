@@ -712,6 +712,22 @@ def test_other_formats(tmp_path, gear, reference, name):
         read(path, gear, given)
 
 
+def test_the_sheets_of_a_workbook_that_have_numbers_are_named(tmp_path, gear):
+    pytest.importorskip('openpyxl')
+    pd = pytest.importorskip('pandas')
+    path = tmp_path / 'r.xlsx'
+    with pd.ExcelWriter(path) as book:
+        pd.DataFrame({'about': ['bench 3', 'no numbers']}).to_excel(
+            book, sheet_name='Info', index=False
+        )
+        for name in ('Run 1', 'Run 2'):
+            pd.DataFrame({'rotor': [0.0, 1.0], 'output': [0.0, 0.1]}).to_excel(
+                book, sheet_name=name
+            )
+    with pytest.raises(RecordingError, match='sheets with numbers: Run 1, Run 2: save one as CSV'):
+        read(path, gear)
+
+
 def test_what_is_neither_table_nor_bag_is_refused_with_what_can_be_read(tmp_path, gear):
     (tmp_path / 'r.ods').write_bytes(b'PK\x03\x04')
     with pytest.raises(BagError, match=r'bags are .mcap.* tables .csv.*\.parquet.* as \.gz'):
