@@ -22,6 +22,7 @@ _EXCEL = 25_569
 _FILETIME = 116_444_736_000_000_000
 """Times of Windows, in 100 ns, in 1970."""
 _UNREADABLE = 0.01  # greatest share of times that cannot be read
+_FALLING = 0.1  # least share of temperatures that fall
 _LATE_ROWS = 25  # most successive rows out of order; more show a clock that was set back
 _FEWEST_AGAIN, _LONGEST_STEP = 2, 1.5
 """Least number of rows that repeat times after a clock was set back; their greatest step, in usual
@@ -61,7 +62,7 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
     elif 's' in likely and not np.all(times == np.round(times)):
         likely = ['s']
     if (len(likely) != 1 and role == 'rotor') or (
-        is_temps(clock) and times[0] > _LATE_ROWS * step
+        _is_temps(clock) and times[0] > _LATE_ROWS * step
     ):
         such = f'{clock.name} [ms]'
         raise ColumnsError(
@@ -73,8 +74,15 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
     return clock._replace(unit=unit, scale=TIME_UNITS[unit])
 
 
-def is_temps(clock: Column) -> bool:
-    """Return whether a name means times in French, or temperatures in English."""
+def are_temperatures(clock: Column, times: Array) -> bool:
+    """Return whether numbers called T, or temps as French times are, do not rise as times do."""
+    if _is_temps(clock):
+        return not np.all(times[1:] > times[:-1])
+    falling = np.count_nonzero(times[1:] < times[:-1])
+    return clock.name == 'T' and bool(falling > _FALLING * len(times))
+
+
+def _is_temps(clock: Column) -> bool:
     return clock.name.lower() == 'temps' and not clock.unit
 
 

@@ -128,10 +128,11 @@ def likeliest(header: Sequence[str]) -> dict[str, str]:
     """Return the likeliest column for each role, unless others are as likely."""
     found = {}
     for role in ROLES:
-        ranks = [(meaning(n).rank, k, n) for k, n in enumerate(header) if meaning(n).role == role]
-        alike = {name for rank, _, name in ranks if rank == min(ranks)[0]}
+        names = [name for name in header if meaning(name).role == role]
+        least = min((meaning(name).rank for name in names), default=())
+        alike = [name for name in dict.fromkeys(names) if meaning(name).rank == least]
         if len(alike) == 1 or (role == 'time' and alike):  # not if position[0] and position[1]
-            found[role] = min(ranks)[-1]
+            found[role] = min(alike, key='T'.__eq__)  # rather t
     return found
 
 

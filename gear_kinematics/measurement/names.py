@@ -29,7 +29,7 @@ _KINDS = {word: kind for kind, words in _VOCABULARY.items() for word in words.sp
 _RANKS = {word: rank for rank, word in enumerate(_KINDS)}
 _EITHER = {'shaft', 'joint'}
 """Words for the output that do not mean it beside one for the rotor, as in motor_shaft."""
-_OTHERS = '% ‰ percent pct a ma v mv volts adc n kg g min minutes h hours'
+_OTHERS = '% ‰ percent pct a ma v mv volts adc w n kg g m mm °c min minutes h hours'
 FOREIGN = {*_OTHERS.split()}
 """Units of what is measured in place of torques and angles, and of times that are too coarse."""
 _SPEEDS = {'rpm', 'rps', 'dps', 'cps'}
@@ -155,13 +155,15 @@ def _role(
         )
     if unit in TORQUE_UNITS and 'angle' not in kinds:
         kinds.add('torque')  # as of load_Nm
-    torque = 'torque' in kinds
+    torque, quantity = 'torque' in kinds, not kinds.isdisjoint({'angle', 'torque'})
     unclear = (torque and 'angle' in kinds) or (rotor and output and not torque)
     others = kinds & {None, 'time'} or ('current' in kinds and not torque)
-    if not keys or kinds == {'input'} or others or unclear or '/' in unit or unit in _SPEEDS:
+    unsaid = kinds == {'input'} or (unit in FOREIGN and not quantity)
+    if not keys or others or unclear or unsaid or '/' in unit or unit in _SPEEDS:
         return none
-    counted = not kinds & {'angle', 'torque'} and unit == 'rev'  # beside the angle within a turn
-    rank = (counted, len(words), *(_RANKS[word] for word in keys))
+    # A count of turns comes after the angle within a turn, and the state of a motor after both.
+    unsure = unit in FOREIGN, not quantity and unit in {'', 'rev'}
+    rank = (*unsure, len(words), *(_RANKS[word] for word in keys))
     return 'torque' if torque else 'rotor' if rotor else 'output' if output else 'angle', rank
 
 

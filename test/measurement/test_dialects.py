@@ -337,6 +337,12 @@ ENCODERS = {
     'times and temperatures in French and English': lambda t, r, o: written(
         [t, r, o, 40.0 + np.sin(t)], 'Temps;Angle moteur;Angle sortie;Temps'.replace(
             ';Temps', ';motor_temps'), 4 * ['{:.5f}'], ';'),
+    'states of both sides': lambda t, r, o: written(
+        [t, t > 20.0, r, t > 30.0, np.sin(t), o],
+        'time,motor_state,motor_pos,output,load,load_pos', 6 * ['{:.5f}']),
+    'units of other quantities': lambda t, r, o: written(
+        [40.0 + np.sin(t), t, r, r, o, o, t],
+        'T,t,motor [°C],motor_pos,load [N],load_pos,output [V]', 7 * ['{:.5f}']),
     'counts of 16 bits': lambda t, r, o: written(
         [t, np.round(r * REV * 4096) % 65536, o], 'time,rotor_counts,output_rad',
         ('{:.2f}', '{:.0f}', '{:.5f}')),
@@ -353,6 +359,8 @@ RAMPS = {
     'N.m': lambda t, a, q: written([t, a * DEG, q], 't,angle [deg.],torque [N.m]'),
     'the motor in other units': lambda t, a, q: written(
         [t, a * -30 * DEG, q / -30 * 1e3], 'time,MotorPosition (deg),MotorTorque (mNm)'),
+    'torques in two units': lambda t, a, q: written(
+        [t, a, 20.0 * q, q, q], 'time,angle,Torque [%],Torque [Nm],motor [A]', 5 * ['{:.6f}']),
     'units of which few are known': lambda t, a, q: written(
         [t, a * DEG, q / 0.00706155, t, t, t, t, t],
         'Time,Angle,Torque,Temp,U,I,P,n\ns,deg,ozf·in,°C,V,A,W,rpm', 8 * ['{:.6f}']),
