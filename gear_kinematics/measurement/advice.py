@@ -5,7 +5,7 @@ import re
 import shlex
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
-from itertools import filterfalse, permutations, product
+from itertools import filterfalse, islice, permutations, product
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from gear_kinematics.measurement.names import ANGLE_UNITS, meaning
 from gear_kinematics.measurement.recording import Array
 
 _TRIED, _FEWEST, _ROWS = 12, 10, 10_000
-"""Number of columns that are tried for an example; least and most rows that are compared."""
+"""Number of columns and examples that are tried; least and most rows that are compared."""
 _ALIKE = 0.3  # least correlation of the steps of both encoders
 _LISTED = 600  # characters of the list of columns
 _NO_ANGLE = re.compile(
@@ -47,7 +47,7 @@ def advice(
     text = str(error)
     examples: Iterable[Mapping[str, str]] = [error.example]
     if not error.example:
-        examples = _examples(table)
+        examples = islice(_examples(table), _TRIED)
         columns = (f'{name} ({table.first.get(name, "")})' for name in table.names if name)
         if len(listed := ', '.join(columns)) > _LISTED:
             listed = f'{listed[: _LISTED // 2]} ... {listed[-_LISTED // 2 :]}'

@@ -43,7 +43,7 @@ _NO_NAMES = re.compile(r'(?i)[-+|:=\s]*|sep=.*\s*')
 """Lines above the numbers that are no names, as below the names in tables of psql."""
 _CLOCKS = {'name': 'ms', 'x_value': 's'}
 """Words, other than those for time, before names of channels with their own times; and units."""
-_MOST_MS = 16  # digits of times in ms; those of Windows have 18
+_FILETIME = re.compile(r'\d{18}')  # times of Windows, since 1601
 _TOPICS, _VALUE = (
     ('topic', 'message path', 'series', 'signal', 'channel', 'label', 'field', 'name'),
     'value',
@@ -268,7 +268,8 @@ def _names(
     for key, names in pairs.items():
         if key not in _CLOCKS and meaning(key).role != 'time':
             continue
-        unit = 'filetime' if len(first) > _MOST_MS else _CLOCKS.get(key, meaning(key).unit)
+        unit = _CLOCKS.get(key, meaning(key).unit)
+        unit = 'filetime' if key == 'name' and _FILETIME.fullmatch(first) else unit
         clocks = {name: f'time of {name}' + f' [{unit}]' * bool(unit) for name in names}
         units = known_units(pairs.get('unit') or pairs.get('') or label[1::2])
         columns = [one for name in names for one in (clocks[name], name)]

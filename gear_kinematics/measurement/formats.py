@@ -144,15 +144,10 @@ def _workbook(path: Path) -> TableFile:
         return open_text(path, sheet.to_csv(header=False, index=False).encode())
     except ValueError as error:
         sheets = pd.read_excel(path, sheet_name=None, header=None)
-        found = [
-            str(name)
-            for name, one in sheets.items()
-            if one.apply(pd.to_numeric, errors='coerce').notna().any(axis=None)
-        ]
-        if not found:
-            raise
-        sheets = ', '.join(found)
-        raise ValueError(f'{error}; sheets with numbers: {sheets}: save one as CSV') from error
+        known = {name: one.apply(pd.to_numeric, errors='coerce') for name, one in sheets.items()}
+        found = ', '.join(str(name) for name in known if known[name].notna().any(axis=None))
+        hint = f'; sheets with numbers: {found}: save one as CSV' * bool(found)
+        raise ValueError(f'{error}{hint}') from error
 
 
 _READERS: Mapping[str, Callable[[Path], TableFile]] = {

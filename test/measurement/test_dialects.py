@@ -278,7 +278,7 @@ ENCODERS = {
          *DECIMALS[1:])),
     'Simulink, with times of each signal': lambda t, r, o: written(
         [t, r * DEG, t, o * DEG], 'time,motor angle,time,output angle\n'
-        ',Units: deg,,Units: deg\n,Interp: linear,,Interp: linear', 4 * ['{:.5f}']),
+        ',Units: deg,,Units: deg\n,Interp: linear,,Interp: linear', 2 * ['{:.16f}', '{:.5f}']),
     'INCA': lambda t, r, o: written(
         [t, r * DEG, o * DEG], 'sampleCount\t1320\ntime\tMotorPos\\ETKC:1\tOutputPos\\ETKC:1\n'
         's\tdeg\tdeg\nf8\tf8\tf8', mark='\t'),
