@@ -15,8 +15,9 @@ MOMENT = re.compile(
     r'(Z|UTC|[AP]M|[+-]\d\d:?\d\d)?',
     re.ASCII | re.IGNORECASE,
 )
-
-
+_TUPLE = re.compile(r'\(.*,( .*)?\)')  # as Python writes them
+_NEGATIVE = re.compile(r'^\((\d[\d.,]*)\)$')
+"""Negative numbers as in accounts, which Excel writes."""
 MISSING = {'', 'nan', '-nan', 'inf', '-inf', 'null', 'none', '<na>', 'n/a', 'na', '-', '[]'}
 
 
@@ -38,6 +39,7 @@ def numbers(column: Any, point: str = '.') -> Any:
     if column.dtype.kind in 'iufb':
         return column.to_numpy()
     text = column.astype(str).str.strip().str.replace('\u2212', '-')
+    text = text.str.replace(_NEGATIVE, r'-\1', regex=True)
     text = text.str.replace(r'(?<=\d) sec$', '', regex=True)  # as MATLAB writes durations
     text = text.str.replace(r"(?<=\d)[ '\u2019\u00a0\u202f](?=\d{3}\b)", '', regex=True)
     if text.str.fullmatch('(0x)?[0-9a-fA-F]{1,15}').all() and (
@@ -104,6 +106,7 @@ def weight(cell: str, point: str) -> float:
     if elements := _array(cell):
         return min(weight(one, '.') for one in elements)
     mark, other = re.escape(point), re.escape('.' if point == ',' else ',')
+    cell = _NEGATIVE.sub(r'-\1', cell)
     if re.fullmatch(rf'[-+\u2212]?(\d+{mark}?\d*|{mark}\d+)([eE][-+]?\d+)?', cell):
         return 1.0 if ',' not in cell else 0.9
     grouped = rf"[-+\u2212]?[1-9]\d{{0,2}}(([ '\u2019\u00a0\u202f]|{other})\d{{3}})+({mark}\d*)?"
@@ -133,7 +136,8 @@ class Element(NamedTuple):
 
 def _array(cell: Any) -> list[str]:
     text = str(cell).strip()
-    inner = text[1:-1].strip(' ,') if text[:1] + text[-1:] in {'[]', '()'} else ''
+    listed = text[:1] + text[-1:] == '[]' or _TUPLE.fullmatch(text)
+    inner = text[1:-1].strip(' ,') if listed else ''
     parts = inner.split(',' if re.search('[,"\']', inner) else None)
     return [one.strip(' "\'') for one in parts] if inner else []
 

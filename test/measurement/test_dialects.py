@@ -337,6 +337,10 @@ ENCODERS = {
     'times and temperatures in French and English': lambda t, r, o: written(
         [t, r, o, 40.0 + np.sin(t)], 'Temps;Angle moteur;Angle sortie;Temps'.replace(
             ';Temps', ';motor_temps'), 4 * ['{:.5f}'], ';'),
+    'negative numbers in brackets': lambda t, r, o: written(
+        [t, r, o], NAMES, ('{:.2f}', *2 * [lambda v: f'({-v:.5f})' if v < 0 else f'{v:.5f}'])),
+    'negative numbers in brackets, in German': lambda t, r, o: in_german(
+        ENCODERS['negative numbers in brackets'](t, r, o).replace(',', ';')),
     'states of both sides': lambda t, r, o: written(
         [t, t > 20.0, r, t > 30.0, np.sin(t), o],
         'time,motor_state,motor_pos,output,load,load_pos', 6 * ['{:.5f}']),
