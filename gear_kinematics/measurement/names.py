@@ -18,10 +18,10 @@ _VOCABULARY = {
     'torque': 'torque torques effort efforts trq tau τ drehmoment moment couple coppia',
     'current': 'current',
     'time': 'time t stamp timestamp timestamps today datetime elapsed zeit uhrzeit temps tempo '
-    'tiempo tout xtime x',
+    'tiempo tout xtime ts zeitstempel horodatage x',
     'filling': 'header receive log measured actual act filtered raw field data value values '
     'feedback state states axis present sensor abs side in ist host pi ros system unix epoch fb '
-    'fbk ave estimate scalars',
+    'fbk ave estimate scalars date datum utc wall',
 }
 """Words in names by kind, the likeliest first. The input is the rotor if a quantity is said, too.
 The filling may accompany all others; any other word shows a command, a speed or the like."""

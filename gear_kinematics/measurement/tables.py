@@ -220,7 +220,9 @@ class _Samples:
         for role in values:
             if 'counts' in self.found[role].unit:
                 values[role] = signed(values[role], self.found[role].scale)
-        gaps = np.cumsum(np.diff(chosen, prepend=chosen[0]) > _GAP) if alone else 0 * stamp
+        gaps = 0 * stamp
+        if alone:
+            gaps = np.cumsum(np.abs(np.diff(chosen, prepend=chosen[0])) > _GAP)
         return _Series(stamp, values, gaps)
 
     def unwrapped(self, role: str, period: float = 0.0) -> Array:

@@ -134,6 +134,13 @@ ENCODERS = {
     'cp1252': lambda t, r, o: written(
         [t, r * DEG, o * DEG], 'Prüfling 3\ntime,rotor [°],output [°]').encode('cp1252'),
     'CR LF': lambda t, r, o: written([t, r, o], NAMES).replace('\n', '\r\n'),
+    'the newest row first': lambda t, r, o: written([t[::-1], r[::-1], o[::-1]], NAMES),
+    'the newest date first': lambda t, r, o: written(
+        [t[::-1], r[::-1], o[::-1]], 'Zeitstempel,rotor,output', (moment(), *DECIMALS[1:])),
+    'a colon before milliseconds': lambda t, r, o: written(
+        [t, r, o], NAMES, (lambda v: ':'.join(moment(' ')(v).rsplit('.', 1)), *DECIMALS[1:])),
+    'zeros after a crash': lambda t, r, o: (
+        written([t, r, o], 'Date/Time,rotor,output') + 900 * '\0'),
     'decimal comma and spaces': lambda t, r, o: in_german(
         written([t, r, o], 'time rotor output', mark=' ')),
     'decimal comma in quotes': lambda t, r, o: written(
@@ -469,6 +476,8 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
          'no usable rows: none has numbers in all of rotor, output'),
         (lambda t, r, o: written([t, r, o], NAMES, ('26.11.2026 {:.0f}', *DECIMALS[1:])),
          'the times in time: no numbers nor ISO 8601'),
+        (lambda t, r, o: written([t, r, o], NAMES, ('2026-13-26 09:{:05.2f}', *DECIMALS[1:])),
+         'the times in time: no numbers nor ISO 8601'),
         (lambda t, r, o: written([25 * t, r / 3, o / 3], NAMES),
          'steps of 1 do not .* --time-column'),
         (lambda t, r, o: written([t, r, o], ''), 'the first row has numbers'),
@@ -481,6 +490,8 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         (' (1764230000.000000) can0 141#A100000000000000\n', 'a log of CAN frames: decode'),
         ('date Thu Nov 26 09:12:33 2026\nbase hex\n', 'a log of CAN frames: decode'),
         ('t,angle [deg],force [N]\n0,1,2\n1,2,3\n', 'with their units, by --angle-column'),
+        (lambda t, r, o: written([t, r, o], 'time,force_N,angle_rad'),
+         'with their units, by --angle-column'),
         ('time,angle_grad,torque\n0,1,2\n',
          "known; known: rad, .*counts; give it, as in --angle-column 'angle_grad .rad.'"),
         ('time,angle,torque\ns,gon,Nm\n0,1,2\n', 'the unit gon is not known'),
