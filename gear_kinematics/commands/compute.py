@@ -102,7 +102,7 @@ def _print_summary(out: Path, result: ComputeResult) -> None:
         doubts = (
             rotor.why_lost,
             rotor.plausibility.beyond_limits,
-            rotor.set_back,
+            rotor.disorder.clock_step,
             rotor.velocity_field.in_recording,
             result.questions[name],
             'the effort is 0 throughout the motion, and left out'

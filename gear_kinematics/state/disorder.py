@@ -5,9 +5,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.wire.batches import Array, once_for_joints
 from gear_kinematics.wire.cdr import SECOND
 
+_CLOCK_STEP = 20_000_000  # ns: clocks are slewed by less, and messages are no later
 _MANY, _SOON = 64, 0.5  # times that are usual together; a share of the usual one
 
 
@@ -16,6 +18,7 @@ class Disorder:
 
     def __init__(self) -> None:
         self.stamps: list[int] = []
+        self.clock_step: Fact | None = None  # the last step back of the clock
 
     def set_back(self, last: int, stamp: int) -> int:
         """Return by how much the clock was set back between two samples, ns; forget the stamps.
@@ -24,7 +27,11 @@ class Disorder:
         """
         stamps, self.stamps = self.stamps, []
         rising = len(stamps) > 1 and all(a < b for a, b in pairwise([*stamps, stamp]))
-        return last - stamps[0] if rising else 0
+        time = last - stamps[0] if rising else 0
+        if time > _CLOCK_STEP:
+            size, at = time / SECOND, last / SECOND
+            self.clock_step = Condition.CLOCK_SET_BACK(size=size, time=at)
+        return time
 
 
 class Bursts:

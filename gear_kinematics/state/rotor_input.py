@@ -34,8 +34,6 @@ _ENCODERS = {name for name in PARAMETERS if name.startswith(('rotor_', 'output_e
 _ENCODERS -= {'rotor_effort_factor'}
 """Parameters on which the turns depend that an absolute encoder at the output has found."""
 
-_CLOCK_STEP = 20_000_000  # ns: clocks are slewed by less, and messages are no later
-
 
 def _limits(parameters: NodeParameters) -> tuple[float, float, float]:
     """Greatest speed and acceleration of the rotor, and the period of its encoder."""
@@ -64,8 +62,7 @@ class RotorInput:
         self.origin: Fact | None = None  # source of the turn count: homing or the output's encoder
         self._restarts = 0  # by homing, references and changed parameters of encoders
         self.rezeroed = 0  # number of these that gave the same motion another zero
-        self.set_back: Fact | None = None  # the last step back of the clock by less than a reset
-        self._disorder, self._bursts = Disorder(), Bursts()
+        self.disorder, self._bursts = Disorder(), Bursts()
         speed, acceleration, period = limits = _limits(parameters)
         self.plausibility = Plausibility(*limits)
         self.turns = RotorTurns(
@@ -297,13 +294,10 @@ class RotorInput:
             self._leave_others()
         elif stamp <= last[0]:  # its stamp, by the fastest way
             self._check_order(stamp, last.stamp)
-        if self._disorder.stamps and last:
-            time = self._disorder.set_back(last.stamp, stamp)
+        if self.disorder.stamps and last:
+            time = self.disorder.set_back(last.stamp, stamp)
             self.turns.set_back(time)
             self.plausibility.set_back(time)
-            if time > _CLOCK_STEP:
-                size, at = time / SECOND, last.stamp / SECOND
-                self.set_back = Condition.CLOCK_SET_BACK(size=size, time=at)
         if (verdict := self.plausibility.judge(position, stamp)) is not BELIEVED:
             if verdict is Belief.IMPLAUSIBLE:
                 raise RejectedInputError(Rejection.IMPLAUSIBLE)
@@ -345,7 +339,7 @@ class RotorInput:
         if stamp == last:
             self.duplicates += 1
         elif last - stamp <= CLOCK_RESET:
-            self._disorder.stamps.append(stamp)
+            self.disorder.stamps.append(stamp)
             raise RejectedInputError(Rejection.OUT_OF_ORDER)
         else:
             self.resets += 1

@@ -43,7 +43,7 @@ class Kind(NamedTuple):
     config: NodeParameters = NodeParameters.load()
     made: Calibration | None = None
     bound: float = 0.0
-    """Of the errors of outputs that the node has published, in the unit of each."""
+    """Errors of outputs that the node has published, in the unit of each."""
     judged: float = 0.99
     """Least share of the values that are judged: a gap lets the next ones be unknown."""
 
