@@ -13,6 +13,7 @@ from gear_kinematics.commands.output import Console, complain, warn_of_shared_me
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.commissioning.analysis import Channel
 from gear_kinematics.measurement.rotor_fields import kind_of_encoder, questions
+from gear_kinematics.measurement.wording import shown
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.arm_file import add_actuators, check_new
 from gear_kinematics.parameters.new_config import (
@@ -25,7 +26,7 @@ from gear_kinematics.parameters.new_config import (
 from gear_kinematics.report.document import printable
 from gear_kinematics.wire.nearest import among, listed
 
-_ASSUMED = 'is assumed to be multi_turn, which was not seen'
+_ASSUMED = 'could not be determined, and is assumed to be multi_turn'
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -95,7 +96,10 @@ def run(options: argparse.Namespace) -> ExitCode:
     limits = NodeParameters.load().rotor_limits
     for joint, ratio in ratios.items():
         kind = [each for each in encoders[joint] if each.value != 'multi_turn']
-        told = [f'{e.name} {e.value or _ASSUMED}: {e.evidence}' for e in kind]
+        told = [
+            f'{e.name} {f"is {shown(e.value)}" if e.value else _ASSUMED}: {e.evidence}'
+            for e in kind
+        ]
         for question in (*told, *questions(data, received, joint, ratio, limits)):
             complain(f'{topic}: {f"{printable(joint)}: " * options.arm}{question}')
     return ExitCode.DONE

@@ -183,11 +183,14 @@ class Observation(Enum):
     WRAPS_OF_A_TURN = '{wraps:%d wrap|%d wraps} of a turn'
     TURNED = _TURNED + ' without a wrap'
     TURNED_WITH_WRAPS = _TURNED + ' with {wraps:%d wrap|%d wraps}'
-    WRAPS_UNCLEAR = 'the rotor wraps too fast to be counted; turn it slowly, or send more often'
-    DEGREES = '{wraps:%d wrap|%d wraps} of 360: let the driver send rad, not degrees'
+    WRAPS_UNCLEAR = (
+        "the rotor's position wraps too fast to be counted: turn it more slowly, or let the "
+        'driver send more often'
+    )
+    DEGREES = '{wraps:%d wrap|%d wraps} of 360, as if in degrees: let the driver send rad'
     TURNED_TOO_LITTLE = _TURNED + '; turn it by more than one'
     RANGES_DIFFER = 'it differs: {ranges} rad; record again'
-    EQUAL_STEPS = '{wraps:%d wrap|%d wraps} by equal steps of {size:si.6} rad{turns: (%d turns)}'
+    EQUAL_STEPS = '{wraps:%d wrap|%d wraps} of {size:si.6} rad{turns: (%d turns)}'
     SAME_SENSE = 'the encoders count in the same sense'
     OPPOSITE_SENSES = 'the encoders count in opposite senses'
     SENSE_GIVES_SIGN = '{sense}, which gives the ratio its sign'

@@ -41,7 +41,7 @@ class Bursts:
         self._last, self._usual = 0, 0.0  # ns: the last time, and the usual one between two
 
     def go_on(self, received: int) -> bool:
-        """Take a time of reception, ns; whether it is so soon after the last to show no speed."""
+        """Take a time of reception, ns; return whether it is too soon to show a speed."""
         elapsed, self._last = min(received - self._last, SECOND), received
         self._usual += (elapsed - self._usual) / _MANY
         return elapsed < _SOON * self._usual

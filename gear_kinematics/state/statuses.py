@@ -32,8 +32,8 @@ _EFFORT = (
     'set rotor_effort_factor (N·m per unit) if the messages have another unit, such as mA'
 )
 _TOO_SELDOM = (
-    '{rate:.0f} Hz are too few to count turns at max_rotor_speed, {limit:.4g} rad/s: set it to '
-    '{speed:.3g} or less, or let the driver send {least:.0f} Hz{other}'
+    '{rate:.0f} Hz is too slow to count turns at a max_rotor_speed of {limit:.4g} rad/s: lower it '
+    'to {speed:.3g} rad/s or less, or let the driver send at {least:.0f} Hz or more{other}'
 )
 _PEAK_TO_PEAK = 'peak to peak {angle:.3g} rad'
 
@@ -50,7 +50,7 @@ class Condition(Enum):
     )
     WRAPS = (
         ERROR,
-        'the positions wrap after {angle:.4g} rad: set {setting}',
+        'the positions wrap every {angle:.4g} rad: set {setting}',
         _HOME,
     )
     TOO_SELDOM = (
@@ -87,9 +87,13 @@ class Condition(Enum):
         'the velocities contradict the positions, which stand',
         'Check whether the encoder is stuck, its cable, and whose velocities the driver sends.',
     )
-    # These are said of recordings alone.
-    CLOCK_SET_BACK = OK, 'the clock was set back by at least {size:.3g} s after {time:.3f} s', ''
-    VELOCITIES_WERE = OK, '{doubt}, until {time:.3f} s', ''
+    # The following are said of recordings only.
+    CLOCK_SET_BACK = (
+        OK,
+        'the clock was set back by at least {size:.3g} s just after {time:.3f} s',
+        '',
+    )
+    VELOCITIES_WERE = OK, 'until {time:.3f} s, {doubt}', ''
     EFFORT_TOO_LARGE = OK, _EFFORT, ''
     BEYOND_LIMITS = (
         WARN,
@@ -176,7 +180,8 @@ class Condition(Enum):
     ALSO_PUBLISHES = WARN, '{node} also publishes {topics}', _TWO_NODES
     SAME_NAME = (
         WARN,
-        'another node is named {node}, or one was killed in the last 20 s',  # as Fast DDS has it
+        # Fast DDS lists a node that was killed for as long.
+        'another node is named {node}, or one of that name was killed in the last 20 s',
         _TWO_NODES,
     )
 

@@ -1,9 +1,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Recognises positions that repeat, by equal steps back against a motion that goes on.
+"""Recognises positions that repeat, by equal steps back while the rotor turns on.
 
-A wrap is a jump only where readings are frequent. Otherwise the rotor could have turned back as
-far between two of them, and nothing but the repetition tells a wrap from a motion; then only a
-period of one turn is recognised, as a quick return of a machine looks like any other one.
+A wrap shows as a jump only where readings are frequent. Otherwise the rotor could have turned back
+as far between two of them, and only the repetition tells a wrap from a motion. Then no period but
+one turn is recognised, because the quick return of a machine looks like a wrap after any other.
 """
 
 from dataclasses import dataclass, field
@@ -14,25 +14,26 @@ from gear_kinematics.state.statuses import Condition, Fact
 LEAST_STEP = 0.7 * TURN  # rad, of a step back
 _FEWEST = 3  # equal steps back in a row between the same ends
 _EQUAL = 0.02  # of their size: what they may differ by, as stamps are uneven
-_ENDS = 0.3  # of their size: the most motion meanwhile, and what their ends may differ by
+_ENDS = 0.3  # of their size: most motion during a step, and what their ends may differ by
 _STEADY = 0.5  # of the greater speed: what the speeds before and after may differ by
 _RESERVE = 1.25  # times what is needed: limits that are proposed
+_RANGE = 'rotor_encoder_range, which gearkin init can find'
 
 
 @dataclass
 class Wraps:
-    """Collects the steps back of positions that are not known to repeat."""
+    """Collects steps back of positions that are not known to repeat."""
 
     period: float = 0.0  # rad, after which the positions repeat; 0 if they do not seem to
     _steps: list[tuple[float, float, float]] = field(default_factory=list)
 
     @property
     def fact(self) -> Fact | None:
-        """The period and the parameter for it, if the positions repeat."""
+        """The period, and the parameter to set for it, if the positions repeat."""
         if not self.period:
             return None
         turn = abs(self.period - TURN) < _EQUAL * TURN
-        setting = 'rotor_encoder: single_turn' if turn else 'rotor_encoder_range (gearkin init)'
+        setting = 'rotor_encoder to single_turn' if turn else _RANGE
         return Condition.WRAPS(angle=TURN if turn else self.period, setting=setting)
 
     def note(
@@ -40,7 +41,7 @@ class Wraps:
     ) -> bool:
         """Take a step to the position `end`; return whether it is a known wrap.
 
-        Step and end are in rad, its time in s, the speeds before and after it in rad/s.
+        The step and its end are in rad, its time in s, and the speeds around it in rad/s.
         """
         before, after = speeds
         motion = 0.5 * (before + after) * time
@@ -70,14 +71,14 @@ class Wraps:
 def too_seldom(
     period: float, max_speed: float, max_acceleration: float, gap: float, *, known: bool = False
 ) -> Fact | None:
-    """Return what to change if a rotor can turn by half a period between messages.
+    """Return what to change if the rotor can turn by half a period between two messages.
 
     Args:
-        period: after which its positions repeat, rad.
+        period: of its positions, rad; 0 if they do not repeat.
         max_speed: rad/s.
         max_acceleration: rad/s².
         gap: time between messages, s.
-        known: whether the messages have its velocities, which narrow where it can be.
+        known: whether the messages have velocities, which narrow down where the rotor can be.
     """
     enough = 0.5 * max_acceleration * gap * gap < period
     if 2.0 * max_speed * gap <= period or (known and enough):
@@ -87,5 +88,5 @@ def too_seldom(
         limit=max_speed,
         speed=0.5 * period / (_RESERVE * gap),
         least=_RESERVE * 2.0 * max_speed / period,
-        other=', or velocities' if enough else '',
+        other=', or send velocities' if enough else '',
     )

@@ -45,7 +45,8 @@ class FindingCause(Enum):
     )
     ANOTHER_UNIT = 'the recorded {field} is {factor:.6g} times the expected one'
     CHANGED = (
-        'all later outputs differ, as if a parameter had been changed while the node ran' + _FIRST
+        'from a certain moment on, all outputs differ, as if a parameter had been changed while '
+        'the node ran' + _FIRST
     )
     OTHER_JOINT = (
         'the outputs are not those of {joint}: they are those of {other}; repeat with '

@@ -62,7 +62,7 @@ def test_wrong_fields_are_named(factor, efforts, asked, wrap, tmp_path, capsys, 
     assert len(read) == 1  # once for the encoders and for these fields
     told = capsys.readouterr().out
     if wrap == math.tau and CONTRADICTS in ''.join(asked):
-        asked = [*asked, '100 Hz are too few to count turns at max_rotor_speed, 650 rad/s']
+        asked = [*asked, '100 Hz is too slow to count turns at a max_rotor_speed of 650 rad/s']
     assert [
         line[5 : 5 + len(want)] for line, want in zip(told.splitlines()[1:], asked, strict=True)
     ] == asked
@@ -80,10 +80,17 @@ def test_stamps_that_repeat_are_named(tmp_path):
 @pytest.mark.parametrize(
     ('rate', 'velocity', 'asked'),
     [
-        (50, [], ['.*, or let the driver send 259 Hz, or velocities']),
+        (50, [], ['.*, or let the driver send at 259 Hz or more, or send velocities']),
         (50, [15.0], []),
-        (50, [0.0], [CONTRADICTS + '0', '50 Hz are too few .* to 126 or less, .*, or velocities']),
-        (20, [15.0], ['20 Hz are too few .* or let the driver send 259 Hz']),
+        (
+            50,
+            [0.0],
+            [
+                CONTRADICTS + '0',
+                '50 Hz is too slow .* to 126 rad/s or less, .*, or send velocities',
+            ],
+        ),
+        (20, [15.0], ['20 Hz is too slow .* or let the driver send at 259 Hz or more']),
         (500, [], []),
     ],
 )

@@ -127,7 +127,7 @@ def test_positions_that_wrap_are_named_once_instead_of_every_jump():
         graph.driver_log.update(1, 0.0)
     jumps, wraps = graph.logged[:-1], graph.logged[-1]
     assert ['jumped by -6.283 rad' in text for _, text in jumps] == [True, True]
-    said = 'the positions wrap after 6.283 rad: set rotor_encoder: single_turn. Move the output '
+    said = 'the positions wrap every 6.283 rad: set rotor_encoder to single_turn. Move the output '
     assert (wraps[0], wraps[1][: len(said)]) == ('W', said)
 
 

@@ -80,13 +80,13 @@ def at_speed(speed: float, **fields) -> list[dict[str, Any]]:
 
 
 JUMPED = Condition.JUMPED(angle=pytest.approx(100.0, abs=0.01), time=pytest.approx(100.6))
-WRAPS = Condition.WRAPS(angle=math.tau, setting='rotor_encoder: single_turn')
+WRAPS = Condition.WRAPS(angle=math.tau, setting='rotor_encoder to single_turn')
 TOO_SELDOM = Condition.TOO_SELDOM(
     rate=pytest.approx(100.0),
     limit=650.0,
     speed=pytest.approx(80.0 * math.pi),
     least=pytest.approx(1.25 * 650.0 / math.pi),
-    other=', or velocities',
+    other=', or send velocities',
 )
 OUTSIDE = Condition.OUTSIDE(
     angle_deg=pytest.approx(-71.77, abs=0.01), low_deg=0.0, high_deg=math.degrees(1.0)

@@ -13,11 +13,11 @@ GOLDEN = Path(__file__).with_name('statuses.txt')
 VALUES = {
     'age': 3.25,
     'angle': 0.0041234,
-    'setting': 'rotor_encoder: single_turn',
+    'setting': 'rotor_encoder to single_turn',
     'rate': 100.0,
     'limit': 650.0,
     'least': 258.6,
-    'other': ', or velocities',
+    'other': ', or send velocities',
     'gap': 1.01,
     'time': 1_700_000_000.5,
     'counts': {'joint missing': 12, 'not a JointState': 1},

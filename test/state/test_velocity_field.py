@@ -75,7 +75,7 @@ def test_velocities_that_become_right_are_named_in_a_recording():
     field = rotor.velocity_field
     assert (field.contradicts, field.meaning) == (False, None)
     said = str(field.in_recording)
-    assert re.fullmatch(r'the velocities contradict .* seem to be 0, until 3\.\d+ s', said)
+    assert re.fullmatch(r'until 3\.\d+ s, the velocities contradict .* seem to be 0', said)
 
 
 def stop_and_go(t):

@@ -757,7 +757,9 @@ def test_init_questions_velocities_that_contradict_the_positions(monkeypatch, ca
     assert capsys.readouterr().err == f'gearkin: /motor: {seem}\n'
 
 
-FEW = ': 100 Hz are too few to count turns at max_rotor_speed, 650 rad/s: set it to 251 or less'
+FEW = (
+    ': 100 Hz is too slow to count turns at a max_rotor_speed of 650 rad/s: lower it to 251 rad/s'
+)
 
 
 @pytest.mark.usefixtures('listening')
@@ -765,13 +767,13 @@ FEW = ': 100 Hz are too few to count turns at max_rotor_speed, 650 rad/s: set it
     ('speed', 'period', 'written', 'said'),
     [
         (40.0, math.tau, ('single_turn', 0.0), [': 13 wraps of a turn', FEW]),
-        (99.0, 25.0, ('multi_turn', 25.0), [': 8 wraps by equal steps of 25 rad']),
-        (0.5, math.tau, ('multi_turn', 0.0), ['which was not seen: the rotor turned 0.1']),
+        (99.0, 25.0, ('multi_turn', 25.0), [': 8 wraps of 25 rad']),
+        (0.5, math.tau, ('multi_turn', 0.0), ['to be multi_turn: the rotor turned 0.1']),
         (
             900.0,
             359.99,
             ('multi_turn', 0.0),
-            ['not seen: 5 wraps of 360: let the driver send rad'],
+            ['multi_turn: 5 wraps of 360, as if in degrees: let the driver send rad'],
         ),
         (40.0, 1e6, ('multi_turn', 0.0), []),
     ],
