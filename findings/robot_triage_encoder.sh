@@ -4,8 +4,9 @@
 #
 # Its detectors are said to flag "a topic still publishing but the value stopped changing", as of "an encoder wedged at one count", and
 # a value that leaves its range or is NaN. What happens: whole messages are compared, and a JointState has another stamp each time, so
-# that a stuck encoder is not seen; it is where the stamps are 0. A rule for the field `position` is accepted, but a list is never
-# compared with the limits, and no path reaches its elements: 0.6 rad beyond a limit of 0.5 rad, or NaN, are "No issues detected".
+# that a stuck encoder is not seen; it is where the stamps are 0. A rule for the field `position` is accepted, but a list of an mcap is
+# never compared with the limits, and no path reaches its elements: 0.6 rad, where the limit is 0.5 rad, or NaN, is "No issues detected".
+# The README speaks of values; only a comment in the source speaks of identical messages.
 # For us: `gearkin validate` rejects NaN. Record what is to be watched as a Float64 as well; a clean report says nothing about joints.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
