@@ -5,7 +5,7 @@
 # The memory table of the STS3215 has a torque switch of one byte at 40, then the acceleration of one byte at 41, where 0 is the greatest.
 # Expected of enable(): 1 at address 40. What happens: two bytes are written, so that an acceleration of 50 is 0 after it, and
 # the next move begins with a jerk; disable() does so, too. enabled() reads two bytes as well: of a servo that is on and has an
-# acceleration of 50 it is False. The load has its sign in bit 10, that is 1024. What happens: 1000 is subtracted, and there is no sign.
+# acceleration of 50 it is False. The load has its sign in bit 10, that is 1024. What happens: 1000 is subtracted from it, and there is no sign.
 # A position of -100, as behind a homing offset, is read at 50.4 rad instead of -0.15 rad.
 # For us: write the acceleration after enable(), with the SDK below it, or use servolab 1.0.0.
 #
@@ -53,6 +53,9 @@ client.enable(1)
 print('enabled:', memory[ON], 'acceleration', memory[ACCELERATION])
 assert (memory[ON], memory[ACCELERATION]) == (1, 0)
 memory[ACCELERATION] = 50
+client.disable(1)
+assert (memory[ON], memory[ACCELERATION]) == (0, 0)
+memory[ON], memory[ACCELERATION] = 1, 50
 print('enabled with an acceleration:', client.enabled(1))
 assert not client.enabled(1)
 memory[LOAD : LOAD + 2] = (1024 + 200).to_bytes(2, 'little')
