@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# robstride 0.3.6 (Rust): a command of 1 rad to a motor is read back as -79.5 rad, and the answer of a motor that runs as overcurrent.
+# robstride 0.3.6 (Rust): its command of 1 rad is read back as -79.5 rad, and its answer of a motor that runs as an overcurrent.
 #
 # It makes commands and answers into frames of CAN, and frames into commands and answers, as a recorder of the bus or a simulated motor
 # needs it. Expected: what was made into a frame comes back, within the 16 bits of the frame. What happens: of 1 rad, 2 rad/s, 30 N·m/rad
