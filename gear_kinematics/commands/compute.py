@@ -27,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--topics',
         nargs='*',
         metavar='NAME',
-        help='other topics to copy (default: all but further outputs of the node)',
+        help='other topics to copy (default: all except further outputs of the node)',
     )
     for name, *choices in ('storage', 'mcap', 'sqlite3'), ('compression', 'none', 'zstd'):
         text = f'{name} of the files (default: {choices[0]})'

@@ -29,7 +29,7 @@ _TURN_HIGH = math.floor(TURN * 2.0**24) / 2.0**24
 _TURN_LOW = TURN - _TURN_HIGH
 _EXACT_TURN = Fraction(TURN) + Fraction(TURN_TAIL)  # 2π to 32 digits
 _WHOLE = 1e-6  # relative difference of a period from the whole turns that are meant
-_USUAL, _MOST_GAPS = 20, 40  # gaps, less others, that are usual; most that others make up for
+_USUAL, _MOST_GAPS = 20, 40  # surplus of gaps that were too long: least for usual; greatest
 _NOISE = 0.05  # rad, greatest noise of any encoder
 BELOW_HALF = math.nextafter(math.pi, 0.0)  #: rad; any smaller angle is 0 turns, however rounded
 
@@ -195,12 +195,12 @@ class RotorTurns:
         self.unknown_gaps = 0
         """Number of gaps in which the rotor could have turned half a period or more unseen."""
         self._gaps, self._gap = 0, 0.0
-        """How many more of them were too long for the speed than not, lately; their mean, s."""
+        """By how many the gaps too long for the speed outnumber the others; their mean, s."""
         self.reset()
 
     @property
     def usual_gap(self) -> tuple[float, float, float, float]:
-        """Period, limits, and the usual time between samples if it is too long for them, or 0."""
+        """Period, limits, and the usual time between samples if too long for them, else 0."""
         gap = self._gap if self._gaps >= _USUAL else 0.0
         return self.period, self.max_speed, self.max_acceleration, gap
 
@@ -213,7 +213,7 @@ class RotorTurns:
         """Forget the position and the turns; the next update counts as the first."""
         self._position: tuple[int, float] | None = None
         self.forget_turns()
-        self.longest_gap = 0.0  # s, of those in which a period may have been missed, while unknown
+        self.longest_gap = 0.0  # s; may have hidden a period since the turns were last known
         self.periods = 0
         """Number of periods that are added to the readings."""
         self._offset = 0, 0, 0.0  # periods, and their sum as turns and angle, rad

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Advice where the columns or units of a table are unknown: a command line that works."""
+"""Advice for a table with unknown columns or units: a command line that works."""
 
 import re
 import shlex
@@ -61,7 +61,7 @@ def advice(
                 if value not in table.names
             ]
             if assumed:
-                text += f', with what is right in place of {", ".join(dict.fromkeys(assumed))}'
+                text += f', with the right values in place of {", ".join(dict.fromkeys(assumed))}'
             command = sources.command or shlex.join(['gearkin', 'lost-motion', str(path)])
             return f'{text}, for example: {command} {shlex.join(words)}'
     if error.example or '--' in str(error):
@@ -78,7 +78,7 @@ def _option(field: str) -> str:
 def _completed(
     example: Mapping[str, str], sources: Sources, read: Callable[[Sources], object]
 ) -> dict[str, str]:
-    """Add what else is missing to an example of `Sources`; empty if the table is not read so."""
+    """Add what else is missing to an example of `Sources`; empty if the table stays unreadable."""
     complete: dict[str, str] = {}
     while example.items() - complete.items():
         complete |= example
@@ -113,7 +113,7 @@ def _examples(table: TableFile) -> Iterator[Mapping[str, str]]:
 def _alike(columns: Mapping[str, Array]) -> Iterator[tuple[bool, str, str]]:
     """Yield the pairs of columns that move alike, the likeliest first, and in each the faster.
 
-    They are sure if they move much alike and the names do not contradict.
+    A pair is sure if both move much alike and their names do not contradict that.
     """
     pairs = {}
     for rotor, output in permutations(columns, 2):

@@ -17,7 +17,7 @@ MOMENT = re.compile(
 )
 _TUPLE = re.compile(r'\(.*,( .*)?\)')  # as Python writes them
 _NEGATIVE = re.compile(r'^\((\d[\d.,]*)\)$')
-"""Negative numbers as in accounts, which Excel writes."""
+"""Negative numbers in brackets, as in accounts, which Excel writes."""
 MISSING = {'', 'nan', '-nan', 'inf', '-inf', 'null', 'none', '<na>', 'n/a', 'na', '-', '[]'}
 
 
@@ -77,7 +77,7 @@ def numbers(column: Any, point: str = '.') -> Any:
         dates = dates.str.replace(r'([./])(\d\d)(?= )', r'\g<1>20\2', regex=True)
         day_first = dates.str.match(r'\d+\.').any()
         with warnings.catch_warnings():
-            warnings.simplefilter('ignore', UserWarning)  # of what is in no common format
+            warnings.simplefilter('ignore', UserWarning)  # about texts in no common format
             moments = pd.to_datetime(dates, dayfirst=day_first, utc=True, errors='coerce')
         moments = moments + later
     moments = moments.dt.tz_localize(None)
@@ -85,7 +85,7 @@ def numbers(column: Any, point: str = '.') -> Any:
 
 
 def may_be_divided(column: Any) -> bool:
-    """Return whether numbers may be whole ones whose thousands are divided, as 1.024 for 1024."""
+    """Return whether numbers may be whole ones with a mark between thousands: 1.024 for 1024."""
     if column.dtype.kind != 'f':
         return False
     values = np.abs(column.dropna().to_numpy())

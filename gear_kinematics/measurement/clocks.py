@@ -75,7 +75,7 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
 
 
 def are_temperatures(clock: Column, times: Array) -> bool:
-    """Return whether numbers called T, or temps as French times are, do not rise as times do."""
+    """Return whether numbers called T, or temps (French for times), do not rise as times do."""
     if _is_temps(clock):
         return not np.all(times[1:] > times[:-1])
     falling = np.count_nonzero(times[1:] < times[:-1])

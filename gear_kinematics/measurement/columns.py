@@ -64,7 +64,7 @@ class Column(NamedTuple):
 
 
 class ColumnsError(ValueError):
-    """Columns or units that are unknown, which other `Sources` tell."""
+    """Columns or units are unknown, which further `Sources` would name."""
 
     def __init__(self, text: str, **example: str) -> None:
         """Give an example of the fields of `Sources` that are missing, if there is one."""

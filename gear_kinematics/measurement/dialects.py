@@ -170,7 +170,7 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
             if are_divided(read([place], every, str)[place], layout.point):
                 raise ValueError(
                     f'{layout.names[place]} has three decimals or none, as if points divided '
-                    'thousands: write the numbers without them'
+                    'thousands: write the numbers without these points'
                 )
         columns = (one.of(frame) if isinstance(one, Element) else frame[one] for one in sources)
         values = (numbers(column, layout.point) for column in columns)

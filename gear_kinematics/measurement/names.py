@@ -31,7 +31,7 @@ _EITHER = {'shaft', 'joint'}
 """Words for the output that do not mean it beside one for the rotor, as in motor_shaft."""
 _OTHERS = '% ‰ percent pct a ma v mv volts adc w n kg g m mm °c min minutes h hours'
 FOREIGN = {*_OTHERS.split()}
-"""Units of what is measured in place of torques and angles, and of times that are too coarse."""
+"""Units of quantities other than torque and angle, and units of time that are too coarse."""
 _SPEEDS = {'rpm', 'rps', 'dps', 'cps'}
 _NO_UNIT = {'-', 'none', 'n/a', '1', ':'}
 

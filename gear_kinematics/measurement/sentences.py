@@ -184,8 +184,7 @@ class Observation(Enum):
     TURNED = _TURNED + ' without a wrap'
     TURNED_WITH_WRAPS = _TURNED + ' with {wraps:%d wrap|%d wraps}'
     WRAPS_UNCLEAR = (
-        "the rotor's position wraps too fast to be counted: turn it more slowly, or let the "
-        'driver send more often'
+        'the position wraps too fast to be counted: turn the rotor slowly, or send more often'
     )
     DEGREES = '{wraps:%d wrap|%d wraps} of 360, as if in degrees: let the driver send rad'
     TURNED_TOO_LITTLE = _TURNED + '; turn it by more than one'

@@ -31,7 +31,7 @@ def new_config(
     """Return the text of a named parameter file for a joint, or its index, on a driver's topic.
 
     Without the `teeth` of ring and satellite, only the ratio of the gear is known. `encoder` has
-    what is known of the parameters of the rotor's encoder.
+    the known parameters of the rotor's encoder, by name.
     """
     values = _gear(joint, ratio, teeth, encoder)
     # Leave out the head, which describes the default file itself.

@@ -56,7 +56,7 @@ class DriverLog:
             self._log.warning(labelled(', '.join(joints), text))
 
     def _faults(self) -> dict[tuple[str, Condition, float], Fact]:
-        """Return how turns were lost, and what velocities are, by what tells one from another."""
+        """Return how turns were lost and velocities are wrong, by what identifies each fault."""
         return {
             (name, fact.condition, fact.values.get('time', 0.0)): fact
             for name, each in self._inputs.items()

@@ -90,8 +90,8 @@ class GearStatePublisher(PublishingNode):
             self._display.update(shown)
         self.add_post_set_parameters_callback(self._configure)
         self._homing = Homing(self, home_file, self._actuators, zeros)
-        # A missing input must be reported even while a simulated clock is paused. In turns, both
-        # delay fewer messages.
+        # A missing input must be reported even while a simulated clock is paused. Both checks
+        # alternate, because one after the other they would delay more messages.
         checks = cycle((self._look_at_graph, self._report))
 
         def check() -> None:

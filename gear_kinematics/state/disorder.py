@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Tells a clock that was set back from messages that are late, and finds bursts of messages."""
+"""Distinguishes a clock that was set back from late messages, and finds bursts of messages."""
 
 from itertools import pairwise
 
@@ -9,8 +9,8 @@ from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.wire.batches import Array, once_for_joints
 from gear_kinematics.wire.cdr import SECOND
 
-_CLOCK_STEP = 20_000_000  # ns: clocks are slewed by less, and messages are no later
-_MANY, _SOON = 64, 0.5  # times that are usual together; a share of the usual one
+_CLOCK_STEP = 20_000_000  # ns: clocks are slewed by less, and messages are late by less
+_MANY, _SOON = 64, 0.5  # intervals that the usual one is averaged over; share of it
 
 
 class Disorder:
@@ -38,7 +38,7 @@ class Bursts:
     """Finds bursts of messages without a stamp, by their times of reception."""
 
     def __init__(self) -> None:
-        self._last, self._usual = 0, 0.0  # ns: the last time, and the usual one between two
+        self._last, self._usual = 0, 0.0  # ns: the last time, and the usual interval
 
     def go_on(self, received: int) -> bool:
         """Take a time of reception, ns; return whether it is too soon to show a speed."""

@@ -53,8 +53,8 @@ def all_in_reach(
     took = np.concatenate([[former_span, last[1]], spans])
     ended = stood & (moved != 0.0)
     step, span = np.where(ended, 0.0, moved), np.where(ended, 0, took)
-    # Steps of the same stamp, which are added up, abrupt stops and what may be a wrap are left to
-    # `judge`.
+    # Left to `judge`: steps of the same stamp, which are added up, abrupt stops, and what may be
+    # a wrap.
     back = (moved[1:] * moved[:-1] < 0.0) & (np.abs(moved[1:]) > LEAST_STEP)
     if np.any(when == changed[:-1]) or np.any(back):
         return None

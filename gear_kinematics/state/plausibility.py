@@ -93,7 +93,7 @@ class Plausibility:
 
     @property
     def jumped(self) -> Fact | None:
-        """The last jump of the encoder, or that its jumps are wraps, if there were any."""
+        """The last jump of the encoder, or that its positions wrap; None if there was none."""
         jump = self.jump
         last = Condition.JUMPED(angle=jump.size, time=jump.stamp / 1e9) if jump else None
         return self.wraps.fact or last
@@ -207,7 +207,7 @@ class Plausibility:
         return BELIEVED
 
     def _wraps(self, step: float, stamp: int) -> bool:
-        """Whether the last step, which was believed, was a wrap, as the next one shows."""
+        """Return whether the last step, which was believed, was a wrap, as the next step shows."""
         position, changed, last_step, last_span = self._last
         *_, former_step, former_span = self._former
         span = stamp - changed

@@ -97,7 +97,7 @@ class VelocityField:
 
     @property
     def in_recording(self) -> Fact | None:
-        """What the velocities seem to be, or have seemed until they agreed with the positions."""
+        """What the velocities seem to be, or seemed to be until they agreed with the positions."""
         return self.meaning or self._past
 
     def believed(self, stamps: Array, values: Array, noise: float) -> Array:

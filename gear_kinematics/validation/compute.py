@@ -66,7 +66,7 @@ def compute(
     The actuators are given by name, '' for one gear. They have the topics that the node gives
     them: only `output_state` if just the ratio is known, the loads with a preload, and
     CORRECTED_TOPICS with a calibration. Of the other topics, those in `others` are copied, or all
-    but outputs of the node that are not computed, such as errors and poses of the URDF; an
+    but outputs of the node that are not computed, such as the transmission error; an
     `encoder_topic` that references the rotor always is. `files` are contents by name.
 
     Each output follows its rotor message, with the same time of reception. Until the output's
@@ -90,7 +90,7 @@ def compute(
         raise ValueError(f'{", ".join(all_names)}: the names must differ')
     outputs = {topic: TOPICS[base_name(name)].type for name, topic in names.items()}
     inputs = {rotor_topic, encoder_topic} if encoder_topic else {rotor_topic}
-    if others is None:  # other outputs of an earlier node would contradict the new ones
+    if others is None:  # further outputs of the earlier node would contradict the new ones
         earlier = (topic_of(name, topic) for name in ('', *gears) for topic in _OUTPUTS)
         others = source.topics.keys() - find_in_namespace(source, earlier, topics.output).values()
     chosen = {*inputs, *others}

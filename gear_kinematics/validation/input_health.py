@@ -16,7 +16,7 @@ from gear_kinematics.wire.cdr import SECOND
 Array = NDArray[np.float64]
 
 _MIN_GAP = 5.0  # median periods
-_LEAST_TIME = 0.5  # median periods, in which a step was made at least
+_LEAST_TIME = 0.5  # median periods; the least time that a step is taken to need
 _MAX_LISTED = 10  # listed gaps
 _MANY_REPEATED = 0.25  # share of all stamps, which drivers do not reach by repeating a few
 
@@ -50,7 +50,7 @@ class InputHealth:
             return
         self._duration += duration
         self._period = self._period or float(np.median(period))
-        # A stamp that is late leaves little time until the next one.
+        # After a stamp that is late, little time seems to pass until the next one.
         speed = np.abs(turned) / np.maximum(period, _LEAST_TIME * self._period)
         self._fastest = max(self._fastest, float(speed.max()))
         self._overspeed += int(np.count_nonzero(speed > self._max_speed))
@@ -61,7 +61,7 @@ class InputHealth:
 
     def report(self, rotor_input: RotorInput, topic: str) -> InputReport:
         """Report on everything so far."""
-        # The times of reception, as in bursts, show no speeds, and jumps are no motion.
+        # Times of reception show no speeds, because of bursts, and jumps are no motion.
         timed = 2 * rotor_input.zero_stamps <= rotor_input.received
         timed &= not rotor_input.plausibility.jumped
         lost = rotor_input.why_lost  # gaps are counted

@@ -201,8 +201,8 @@ class OutputTopic:
         self.missing = Missing()
         self._gear, self._tolerances, self._changes = expectation
         self._wrong = 0
-        self._latest_wrong = Occurrences()  # since the latest right one
-        self._right: tuple[float, ...] = ()  # rotor angles, rad, of the first and latest right one
+        self._latest_wrong = Occurrences()  # since the latest right output
+        self._right: tuple[float, ...] = ()  # rotor angles of the first and latest right one, rad
         self._wrong_without_velocity = 0  # besides, if velocities were expected
         self._without_velocity: Array | bool = False  # messages of the latest batch, (n,)
         self._unrecorded = 0  # messages whose input was not recorded

@@ -118,10 +118,10 @@ class InputReport:
     duration: float = 0.0  #: time from the first to the last stamp, s
     gaps: int = 0  #: gaps longer than 5 median periods
     jumps: int = 0  #: gaps in which the rotor could have turned half a turn or more unseen
-    jumped: str = ''  #: how turns were lost, as by the last jump of the encoder, in words; or ''
+    jumped: str = ''  #: how turns were lost, such as by the encoder's last jump, in words; or ''
     velocity_is: str = ''  #: what velocities that contradict the positions seem to be; or ''
     beyond_limits: str = ''  #: speed and acceleration beyond their limits, in words; or ''
-    set_back: str = ''  #: by how much the clock was set back last, less than a second; or ''
+    set_back: str = ''  #: the clock's last step back by less than a second, in words; or ''
     overspeed: int = 0  #: steps faster than `max_rotor_speed`
     max_speed: float = 0.0  #: greatest speed between two positions, rad/s
     longest_gaps: tuple[Gap, ...] = ()  #: the longest gaps, at most ten, longest first

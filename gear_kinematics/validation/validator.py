@@ -37,7 +37,7 @@ from gear_kinematics.wire.topics import JOINT_STATES, LOAD_TOPICS, TRANSMISSION_
 _FRAME = 'stator'
 _TOPICS = Topics()
 _DOUBTS = {FindingCause.REPEATED_STAMPS, FindingCause.JUMPED}
-"""Causes in the input that explain wrong or missing outputs, where there are some."""
+"""Causes in the input that explain wrong or missing outputs, if there are any."""
 _NONE: Mapping[str, str] = MappingProxyType({})
 
 

@@ -112,7 +112,7 @@ def test_wraps_are_counted_at_any_speed_or_named_as_too_fast(monkeypatch, rate, 
 
     wait_until(analysed, 'the analysis')
     assert (live.shown.known == 1.0) is known
-    said = 'The gear has the ratio -19' if known else "the rotor's position wraps too fast"
+    said = 'The gear has the ratio -19' if known else 'the position wraps too fast'
     assert live.shown.advice.startswith(said)
 
 

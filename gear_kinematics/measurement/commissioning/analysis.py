@@ -27,7 +27,7 @@ from gear_kinematics.report.document import number
 
 _FASTER = 2.0  # proposed limit over the greatest recorded speed, which the motor may well exceed
 _ONE_TURN = 1.05  # turns beyond which positions are multi-turn: one, and a margin for noise
-_DEGREES = 360.0  # after which positions repeat that are no rad
+_DEGREES = 360.0  # range of positions that are in degrees, not rad
 _MOST_TEETH, _SHOWN = 200, 10
 """Most teeth of the ring gears in proposed pairs, as pairs have multiples; number of pairs."""
 
@@ -168,9 +168,9 @@ def encoder_kind(
     """Yield the kind of the rotor's encoder, and its range.
 
     Args:
-        found: for each recording what `find_range` finds.
-        turned: the most travel of the rotor in one of them, rad.
-        travel: of the output, rad.
+        found: what `find_range` returns for each recording.
+        turned: the greatest travel of the rotor in one of them, rad.
+        travel: that of the output, rad.
     """
     ranges, wraps = {size for size, _ in found if size}, sum(count for _, count in found)
     turns = turned / TURN

@@ -27,7 +27,7 @@ def count_wraps(
 ) -> int:
     """Count the wraps of positions in the order of time, (n,); `error` is a share of the turn.
 
-    With times, the steps in gaps, in which any motion is possible, do not contradict wraps.
+    With times, steps in gaps do not count against wraps, because any motion is possible there.
     """
     size = np.abs(np.diff(values)) / turn
     low, high = _UNCLEAR
