@@ -111,7 +111,7 @@ class Observation(Enum):
         'later than the angle, as behind a filter or from another clock.'
     )
     LOOPS_DIFFER = (
-        'How far the output rests from its middle cannot be told: {hysteresis:arcmin}′. The loops '
+        'How far the output rests from its middle is unknown: {hysteresis:arcmin}′. The loops '
         'differ by more than their width, as where the angle drifts or slips.'
     )
     PLAY_UNKNOWN = _RESTS + '. How much of it is play is not known; {cause.value}.'
@@ -145,7 +145,7 @@ class Observation(Enum):
         + '; backward it lags by {lost:arcmin}′, by lost motion or by a delay between the '
         'encoders.'
     )
-    LOSS_NOT_TOLD = _DEVIATES + '; what it loses on reversals cannot be told.'
+    LOSS_NOT_TOLD = _DEVIATES + '; what it loses on reversals is unknown.'
     DELAY_TAKEN_OUT = (
         'The stamps of the two encoders differ by a delay. It has been taken out of the '
         'transmission error.'
