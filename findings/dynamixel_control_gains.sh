@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# dynamixel-control 0.2.4: on an XL-330 the integral and derivative gains are exchanged, and each goal of an XL-320 sets its speed to 0.
+# dynamixel-control 0.2.4: an XL-330 gets its gains I and D exchanged, and each goal of an XL-320 sets its speed to 0, the greatest.
 #
 # The control table of the XL330 has the gains D, I and P of its position controller at 80, 82 and 84. Expected of update_PID(P=400, I=0,
 # D=80): 80 at address 80, and 0 at 82. What happens: D is written to 82 and I to 80. The servo gets an integral gain instead of its
