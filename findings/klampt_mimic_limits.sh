@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# Klampt 0.10.1.post1: the motor of a URDF's mimic may turn its output to 4 rad, beyond its stop at 3 rad, and has only speeds above 10 rad/s.
+# Klampt 0.10.1.post1: the motor of a mimic may turn its output to 4 rad, beyond its stop at 3 rad, and its least speed is above its greatest.
 #
 # A motor of ±100 rad and ±10 rad/s drives an output from -1 to 3 rad by a mimic with a multiplier of -0.05 and an offset of 1 rad. Expected
 # of its driver: from -40 to 40 rad, the motor's angles at both stops of the output, and ±10 rad/s. What happens: getLimits() leaves the offset
