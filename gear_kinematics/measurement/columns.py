@@ -167,11 +167,8 @@ def _column(role: str, name: str, unit: str, given: Sources, common: str) -> Col
         unit = f'{counts} counts a turn' if counts else 'counts'
     # The current of a motor says a torque of either side.
     on_rotor = given.on_rotor or (says.on_rotor and 'current' not in says.words)
-    on_rotor, borrowed = (
-        on_rotor and not says.on_output,
-        role in ANGULAR and bool(unit and not own),
-    )
-    return Column(name, scale, unit, on_rotor, says.on_output, borrowed)
+    borrowed = role in ANGULAR and bool(unit and not own)
+    return Column(name, scale, unit, on_rotor and not says.on_output, says.on_output, borrowed)
 
 
 def described(role: str, column: Column) -> str:

@@ -52,8 +52,7 @@ def questions(
     stamp, values = _in_order(states, stamp)
     if len(stamp) < _FEWEST:
         return
-    period, _ = find_range(values[:, 0], (stamp - stamp[0]) / SECOND, _STEP)
-    values[:, 0] = np.unwrap(values[:, 0], period=period) if period else values[:, 0]
+    values[:, 0], (period, _) = _unwrapped(stamp, values[:, 0])
     steps = np.abs(np.diff(values[:, 0]))
     given = values[np.isfinite(values[:, 1]), 1]
     velocities = VelocityField(float(1 / ratio) if ratio else np.nan)
@@ -81,11 +80,16 @@ def kind_of_encoder(data: Sequence[bytes], received: Sequence[int], joint: str) 
     """Return the parameters of the rotor's encoder that messages show; see `questions`."""
     states = decode_joint_states(data, joint)
     stamp, values = _in_order(states, _stamps(states, received))
-    positions, found = values[:, 0], (0.0, 0)
+    turned, found = values[:, 0], (0.0, 0)
     if len(stamp) >= _FEWEST:
-        found = find_range(positions, (stamp - stamp[0]) / SECOND, _STEP)
-    turned = np.unwrap(positions, period=found[0]) if found[0] else positions
+        turned, found = _unwrapped(stamp, turned)
     return [*encoder_kind([found], float(np.ptp(turned)) if len(turned) else 0.0)]
+
+
+def _unwrapped(stamp: Array, positions: Array) -> tuple[Array, tuple[float, int]]:
+    """Return positions, rad, without their wraps, and what `find_range` returns for them."""
+    found = find_range(positions, (stamp - stamp[0]) / SECOND, _STEP)
+    return np.unwrap(positions, period=found[0]) if found[0] else positions, found
 
 
 def _stamps(states: JointStates, received: Sequence[int]) -> Array:

@@ -48,9 +48,8 @@ class EncoderErrors:
         parameters = self._parameters
         stamps, position, _ = _positions(encoder, parameters.output_encoder_joint)
         angle = split_turns(measured_angle(parameters, position)).angle
-        self._measured = np.append(self._measured, np.rec.fromarrays([stamps, angle], _KIND))[
-            -_KEPT:
-        ]
+        measured = np.rec.fromarrays([stamps, angle], _KIND)
+        self._measured = np.append(self._measured, measured)[-_KEPT:]
         stamps, error, malformed = _positions(errors, parameters.output_name)
         if malformed.any():
             self._wrong.add(np.array(errors.received)[malformed])

@@ -267,7 +267,7 @@ class OutputTopic:
         if len(right := np.flatnonzero(~wrong)):
             self._latest_wrong = Occurrences()
             first, latest = angle[right[[0, -1]]].tolist()
-            self._right = (*self._right[:1], first)[0], latest
+            self._right = self._right[0] if self._right else first, latest
         self._latest_wrong.add(samples['stamp'][right[-1] + 1 if len(right) else 0 :])
         self._wrong_without_velocity += int(np.count_nonzero(self._without_velocity & ~wrong))
         self.series.update(samples['stamp'], angle, *fields)

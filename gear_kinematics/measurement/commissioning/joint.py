@@ -69,10 +69,7 @@ class Joint:
         turns, angle = split_turns(rotor)
         motion = motion._replace(turns=turns, angle=angle)
         unwrapped = replace(encoders, rotor=motion, measured=measured)
-        if period not in {
-            0.0,
-            TURN,
-        }:  # whose steps the gate took for a range that it does not know
+        if period not in {0.0, TURN}:  # a range that the gate did not know
             recording = gated(replace(recording, encoders=unwrapped))
             unwrapped = recording.both
             rotor = unwrapped.rotor.turns * TURN + unwrapped.rotor.angle
