@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# dyn4j 6.0.0 (Java): a gear of 1/20 divides the speed but not the torque, and a rotor whose output turns the other way is at NaN.
+# dyn4j 6.0.0 (Java): a gear of 1/20 divides the speed but not the torque, and a rotor whose output turns the other
+# way is at NaN.
 #
-# AngleJoint is "to simulate gears"; a rotor of 0.1 kg·m² and an output of 0.1 kg·m² turn about fixed axes, with a ratio of 0.05 = output /
-# rotor. Expected: 1 N·m at the output turns the rotor by 0.25 rad in a second, and 0.05 N·m at the rotor hold it. What happens: 4.77 rad,
-# as the same torque acts on both; 1 N·m at the rotor holds it. Expected of a ratio of -1, which is documented, and of 0.1 N·m at the rotor:
-# it turns by 0.25 rad and the output by -0.25 rad. What happens: both are at NaN. A ratio of +1 is right.
-# For us: simulate a gear as one body with the reflected inertia and the reflected torque.
+# AngleJoint is "to simulate gears"; a rotor of 0.1 kg·m² and an output of 0.1 kg·m² turn about fixed axes, with a
+# ratio of 0.05 = output / rotor. Expected: 1 N·m at the output turns the rotor by 0.25 rad in a second, and 0.05 N·m
+# at the rotor hold it. What happens: 4.77 rad, as the same torque acts on both; 1 N·m at the rotor holds it. Expected
+# of a ratio of -1, which is documented, and of 0.1 N·m at the rotor: it turns by 0.25 rad and the output by -0.25
+# rad. What happens: both are at NaN. A ratio of +1 is right. For us: simulate a gear as one body with the reflected
+# inertia and the reflected torque.
 #
 # Exit code 0: still so. Needs a JDK and mvn; installs the versions into a temporary folder.
 set -eu

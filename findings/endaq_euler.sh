@@ -2,12 +2,12 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # endaq 1.5.3: the same quaternion has a roll of -2°, 51°, 53° or 70°, by chance at each start of the program.
 #
-# An arm is turned by 30° about x, then by 40° about its own y and by 50° about its own z. Expected of quaternion_to_euler(), which
-# is intrinsic by its documentation: 30°, 40° and 50°. What happens in the mode 'roll-pitch-yaw': which of the three words stands for x is
-# read from two sets of texts, whose order depends on the hash seed that Python draws at its start, so that the axes are exchanged
-# by chance: within one run all is alike, and in the next one it is not. In the mode 'x-y-z' the angles are always 48.4°, -1.4° and
-# 60.5°: those of turns about fixed axes, which is not what is documented.
-# For us: take scipy.spatial.transform.Rotation.as_euler('XYZ') for it.
+# An arm is turned by 30° about x, then by 40° about its own y and by 50° about its own z. Expected of
+# quaternion_to_euler(), which is intrinsic by its documentation: 30°, 40° and 50°. What happens in the mode
+# 'roll-pitch-yaw': which of the three words stands for x is read from two sets of texts, whose order depends on the
+# hash seed that Python draws at its start, so that the axes are exchanged by chance: within one run all is alike, and
+# in the next one it is not. In the mode 'x-y-z' the angles are always 48.4°, -1.4° and 60.5°: those of turns about
+# fixed axes, which is not what is documented. For us: take scipy.spatial.transform.Rotation.as_euler('XYZ') for it.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
 set -eu

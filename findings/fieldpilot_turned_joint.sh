@@ -1,13 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# fieldpilot-urdf 1.31.0: a torque at a joint whose origin in a URDF is turned by 60° gives half of its acceleration, by 180° the opposite.
+# fieldpilot-urdf 1.31.0: a torque at a joint whose origin in a URDF is turned by 60° gives half of its acceleration,
+# by 180° the opposite.
 #
-# A rotor of 0.1 kg·m² turns about the z axis of its joint. Expected: 1 N·m gives 10 rad/s², however the origin of the joint
-# is turned against the parent link, as the axis of a URDF is one of the joint. What happens in SymbolicDynamics: 10 rad/s²
-# without a turn, 5 where the origin is rolled by 60°, 0 at 90° and -10 at 180°, as the axis of the torque is taken in the
-# frame of the parent. inverse_dynamics() of the same model gives 1 N·m each time, so a motion that is simulated with the
-# torque that was computed for it does not follow it. No warning says so.
-# For us: check a model with a joint that is turned. forward_kinematics() turns the rotor about the right axis.
+# A rotor of 0.1 kg·m² turns about the z axis of its joint. Expected: 1 N·m gives 10 rad/s², however the origin of the
+# joint is turned against the parent link, as the axis of a URDF is one of the joint. What happens in
+# SymbolicDynamics: 10 rad/s² without a turn, 5 where the origin is rolled by 60°, 0 at 90° and -10 at 180°, as the
+# axis of the torque is taken in the frame of the parent. inverse_dynamics() of the same model gives 1 N·m each time,
+# so a motion that is simulated with the torque that was computed for it does not follow it. No warning says so. For
+# us: check a model with a joint that is turned. forward_kinematics() turns the rotor about the right axis.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
 set -eu

@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# Klampt 0.10.1.post1: the motor of a mimic may turn its output to 4 rad, beyond its stop at 3 rad, and its least speed is above its greatest.
+# Klampt 0.10.1.post1: the motor of a mimic may turn its output to 4 rad, beyond its stop at 3 rad, and its least
+# speed is above its greatest.
 #
-# A motor of ±100 rad and ±10 rad/s drives an output from -1 to 3 rad by a mimic with a multiplier of -0.05 and an offset of 1 rad. Expected
-# of its driver: from -40 to 40 rad, the motor's angles at both stops of the output, and ±10 rad/s. What happens: getLimits() leaves the offset
-# out and gives -60 to 20 rad, where setValue(-60) turns the output to 4 rad and setValue(20) to 0 rad; getVelocityLimits() gives
-# [100, 10], a lower limit above the upper one. The angles of setValue() themselves are right, and without a mimic so are all limits.
-# For us: compute the limits of a geared motor from those of its output by hand, or give the mimic no offset.
+# A motor of ±100 rad and ±10 rad/s drives an output from -1 to 3 rad by a mimic with a multiplier of -0.05 and an
+# offset of 1 rad. Expected of its driver: from -40 to 40 rad, the motor's angles at both stops of the output, and ±10
+# rad/s. What happens: getLimits() leaves the offset out and gives -60 to 20 rad, where setValue(-60) turns the output
+# to 4 rad and setValue(20) to 0 rad; getVelocityLimits() gives [100, 10], a lower limit above the upper one. The
+# angles of setValue() themselves are right, and without a mimic so are all limits. For us: compute the limits of a
+# geared motor from those of its output by hand, or give the mimic no offset.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
 set -eu

@@ -12,7 +12,8 @@ set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 python3 -m venv "$folder/venv"
-"$folder/venv/bin/pip" install --quiet --disable-pip-version-check pytransform3d==3.17.0 numpy-quaternion==2024.0.13 pyquaternion==0.9.9 transformations==2026.1.18 scipy==1.17.1 numpy==2.4.6
+"$folder/venv/bin/pip" install --quiet --disable-pip-version-check pytransform3d==3.17.0 \
+    numpy-quaternion==2024.0.13 pyquaternion==0.9.9 transformations==2026.1.18 scipy==1.17.1 numpy==2.4.6
 timeout 60 "$folder/venv/bin/python" - <<'PYTHON'
 import numpy as np
 import quaternion

@@ -1,11 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# rclpy 7.1.6 and 9.1.2: a node refuses its own parameter file when it is loaded again, if a gain in it is written as 2e-3.
+# rclpy 7.1.6 and 9.1.2: a node refuses its own parameter file when it is loaded again, if a gain in it is written as
+# 2e-3.
 #
-# A node is started with --params-file, and the same file is loaded into it by AsyncParameterClient.load_parameter_file(), as after an
-# edit. Expected: nothing changes. What happens: rcl reads the file at the start by its own rules, the client by PyYAML, which knows
-# exponents only with a point and a sign. 2e-3 and 1.0e3 are numbers at the start and texts afterwards, and 1_000, a text for rcl, is an
-# integer afterwards: "Wrong parameter type, expected 'Type.DOUBLE' got 'Type.STRING'" in 7.1.6. A parameter with dynamic typing takes the text.
+# A node is started with --params-file, and the same file is loaded into it by
+# AsyncParameterClient.load_parameter_file(), as after an edit. Expected: nothing changes. What happens: rcl reads the
+# file at the start by its own rules, the client by PyYAML, which knows exponents only with a point and a sign. 2e-3
+# and 1.0e3 are numbers at the start and texts afterwards, and 1_000, a text for rcl, is an integer afterwards: "Wrong
+# parameter type, expected 'Type.DOUBLE' got 'Type.STRING'" in 7.1.6. A parameter with dynamic typing takes the text.
 # For us: write 0.002, or 2.0e-3, which both read alike; the commands of gearkin read as rcl does.
 #
 # Exit code 0: still so. Installs the wheels into a temporary folder.

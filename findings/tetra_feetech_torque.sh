@@ -2,12 +2,13 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # tetra-feetech 0.1.0: to enable an STS3215 takes away its limit of acceleration, and a load of -20 % is read as 22.4 %.
 #
-# The memory table of the STS3215 has a torque switch of one byte at 40, then the acceleration of one byte at 41, where 0 is the greatest.
-# Expected of enable(): 1 at address 40. What happens: two bytes are written, so that an acceleration of 50 is 0 after it, and
-# the next move begins with a jerk; disable() does so, too. enabled() reads two bytes as well: of a servo that is on and has an
-# acceleration of 50 it is False. The load has its sign in bit 10, that is 1024. What happens: 1000 is subtracted from it, and there is no sign.
-# A position of -100, as behind a homing offset, is read at 50.4 rad instead of -0.15 rad.
-# For us: write the acceleration after enable(), with the SDK below it, or use servolab 1.0.0.
+# The memory table of the STS3215 has a torque switch of one byte at 40, then the acceleration of one byte at 41,
+# where 0 is the greatest. Expected of enable(): 1 at address 40. What happens: two bytes are written, so that an
+# acceleration of 50 is 0 after it, and the next move begins with a jerk; disable() does so, too. enabled() reads two
+# bytes as well: of a servo that is on and has an acceleration of 50 it is False. The load has its sign in bit 10,
+# that is 1024. What happens: 1000 is subtracted from it, and there is no sign. A position of -100, as behind a homing
+# offset, is read at 50.4 rad instead of -0.15 rad. For us: write the acceleration after enable(), with the SDK below
+# it, or use servolab 1.0.0.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
 set -eu
