@@ -88,16 +88,29 @@ DEG, REV = 180.0 / math.pi, 0.5 / math.pi
 NAMES = 'time,rotor,output'
 NOON = datetime(2026, 11, 26, 11, 59, 40, tzinfo=UTC)
 WITH_DEG = 'time_s;rotor_deg;output_deg'
-DECIMALS = '{:.2f}', '{:.5f}', '{:.5f}'
-SEC_NANOSEC = ('{:.0f}', '{:.0f}', '{:.5f}', '{:.5f}')
 
 
-def written(columns, head, form=DECIMALS, mark=','):
-    """Rows of columns below a head, each number in a form, separated by a mark."""
-    forms = [one.format if isinstance(one, str) else one for one in form]
+def written(columns, head, form='{:.2f}', mark=','):
+    """Rows of columns below a head, separated by a mark; each has a form, or the first has it."""
+    forms = form if isinstance(form, (list, tuple)) else [form, *['{:.5f}'] * (len(columns) - 1)]
+    forms = [one.format if isinstance(one, str) else one for one in forms]
     rows = zip(*columns, strict=True)
     lines = (mark.join(one(v) for one, v in zip(forms, row, strict=True)) for row in rows)
     return head + '\n' * bool(head) + '\n'.join(lines) + '\n'
+
+
+def in_counts(*angles):
+    return np.round(np.array(angles) * REV * 4096)
+
+
+def plain(head=NAMES, mark=',', time='{:.2f}', *, unit=1.0, angle=1.0, german=False, code='utf-8'):
+    """A row for each moment: its time and the angles of the rotor and the output, in units."""
+
+    def in_bytes(t, r, o):
+        content = written([t * unit, r * angle, o * angle], head, time, mark)
+        return (in_german(content) if german else content).encode(code)
+
+    return in_bytes
 
 
 def moment(mark='T', zone='', decimals='.'):
@@ -105,6 +118,11 @@ def moment(mark='T', zone='', decimals='.'):
     return lambda seconds: (
         (start + timedelta(seconds=seconds)).isoformat(mark, 'microseconds') + zone
     ).replace('.', decimals)
+
+
+def clock(form, hours=0):
+    """The time of the day, in a form of strftime; it begins before noon or hours later."""
+    return lambda seconds: (NOON + timedelta(hours=hours, seconds=seconds)).strftime(form)
 
 
 def grouped(mark, decimals='.'):
@@ -124,25 +142,22 @@ def moved(t, *rows_and_times):
 
 
 ENCODERS = {
-    'semicolons': lambda t, r, o: written([t, r, o], 'time;rotor;output', mark=';'),
-    'spaces': lambda t, r, o: written([t, r, o], 'time  rotor output', mark='   '),
-    'names in a comment': lambda t, r, o: written([t, r, o], '# time, rotor, output', mark=' '),
-    'UTF-8 with BOM': lambda t, r, o: written([t, r, o], NAMES).encode('utf-8-sig'),
-    'UTF-16': lambda t, r, o: written([t, r, o], NAMES, mark=',').encode('utf-16'),
-    'UTF-16 without BOM': lambda t, r, o: written([t, r, o], NAMES).encode('utf-16-le'),
-    'UTF-16 of big endian': lambda t, r, o: written([t, r, o], NAMES).encode('utf-16-be'),
-    'cp1252': lambda t, r, o: written(
-        [t, r * DEG, o * DEG], 'Prüfling 3\ntime,rotor [°],output [°]').encode('cp1252'),
+    'semicolons': plain('time;rotor;output', ';'),
+    'spaces': plain('time  rotor output', '   '),
+    'names in a comment': plain('# time, rotor, output', ' '),
+    'UTF-8 with BOM': plain(code='utf-8-sig'),
+    'UTF-16': plain(code='utf-16'),
+    'UTF-16 without BOM': plain(code='utf-16-le'),
+    'UTF-16 of big endian': plain(code='utf-16-be'),
+    'cp1252': plain('Prüfling 3\ntime,rotor [°],output [°]', angle=DEG, code='cp1252'),
     'CR LF': lambda t, r, o: written([t, r, o], NAMES).replace('\n', '\r\n'),
     'the newest row first': lambda t, r, o: written([t[::-1], r[::-1], o[::-1]], NAMES),
     'the newest date first': lambda t, r, o: written(
-        [t[::-1], r[::-1], o[::-1]], 'Zeitstempel,rotor,output', (moment(), *DECIMALS[1:])),
-    'a colon before milliseconds': lambda t, r, o: written(
-        [t, r, o], NAMES, (lambda v: ':'.join(moment(' ')(v).rsplit('.', 1)), *DECIMALS[1:])),
+        [t[::-1], r[::-1], o[::-1]], 'Zeitstempel,rotor,output', moment()),
+    'a colon before milliseconds': plain(time=lambda v: ':'.join(moment(' ')(v).rsplit('.', 1))),
     'zeros after a crash': lambda t, r, o: (
         written([t, r, o], 'Date/Time,rotor,output') + 900 * '\0'),
-    'decimal comma and spaces': lambda t, r, o: in_german(
-        written([t, r, o], 'time rotor output', mark=' ')),
+    'decimal comma and spaces': plain('time rotor output', ' ', german=True),
     'decimal comma in quotes': lambda t, r, o: written(
         [t, r, o], NAMES, 3 * [lambda v: f'"{v:.5f}"'.replace('.', ',')]),
     'thousands by comma, in quotes': lambda t, r, o: written(
@@ -158,62 +173,48 @@ ENCODERS = {
         'time,motor_turns,motor_angle_deg,output_deg', ('{:.2f}', '{:.0f}', '{:.5f}', '{:.5f}')),
     'thousands by apostrophe': lambda t, r, o: written(
         [t, r * DEG, o * DEG], WITH_DEG, 3 * [grouped("'")], ';'),
-    'sep=': lambda t, r, o: in_german(
-        written([t, r, o], 'sep=;\ntime;rotor;output', mark=';')),
-    'meta lines': lambda t, r, o: written(
-        [t, r, o], f'Bench 3\nRate,100,Hz\n\ndevice,SN,fw\nA,17,2.1\n{NAMES}'),
+    'sep=': plain('sep=;\ntime;rotor;output', ';', german=True),
+    'meta lines': plain(f'Bench 3\nRate,100,Hz\n\ndevice,SN,fw\nA,17,2.1\n{NAMES}'),
     'comments and names again in the body': lambda t, r, o: (
         written([t[:600], r[:600], o[:600]], f'// bench\n{NAMES}') + f'# paused\n\n{NAMES}\n'
         + written([t[600:], r[600:], o[600:]], '')),
-    'units in a row': lambda t, r, o: written(
-        [t * 1e3, r * DEG, o * DEG], 'Unit 7,x\nTime,MotorPosition,LoadPosition\n[ms],°,(deg)'),
+    'units in a row': plain(
+        'Unit 7,x\nTime,MotorPosition,LoadPosition\n[ms],°,(deg)', angle=DEG, unit=1e3),
     'empty and repeated names': lambda t, r, o: written(
-        [t, r, t, o, t, t], ',rotor,time,output,note,note', 6 * ['{:.5f}']),
+        [t, r, t, o, t, t], ',rotor,time,output,note,note', '{:.5f}'),
     'trailing separators in rows alone': lambda t, r, o: written(
         [t, r, o], NAMES, ('{:.2f}', '{:.5f}', '{:.5f},')),
-    'CamelCase': lambda t, r, o: written(
-        [t * 1e3, r * DEG, o * DEG], 'TimeMs,MotorAngleDeg,OutputAngleDeg'),
-    'time in µs': lambda t, r, o: written([t * 1e6, r, o], NAMES),
+    'CamelCase': plain('TimeMs,MotorAngleDeg,OutputAngleDeg', angle=DEG, unit=1e3),
+    'time in µs': plain(unit=1e6),
     'ms of the day': lambda t, r, o: written(
         [t * 1e3 + 3e7, r * DEG, o * DEG], 'ms_today;motor_pos_deg;output_pos_deg', mark=';'),
     'ms with jitter': lambda t, r, o: written([t * 1e3 + 0.1 * np.sin(9.0 * t), r, o], NAMES),
     'ms since 1970': lambda t, r, o: written([t * 1e3 + 1764230000e3, r, o], NAMES),
     'rostopic echo -p': lambda t, r, o: written(
         [np.round(t * 1e9).astype(int) + 1764230000 * 10**9, r, o],
-        '%time,field.rotor_position,field.output_position', ('{}', *DECIMALS[1:])),
-    'ISO 8601 with a zone': lambda t, r, o: written(
-        [t, r, o], 'pi_time,rotor,output', (moment(zone='+01:00'), *DECIMALS[1:])),
-    'dates with a decimal comma': lambda t, r, o: in_german(written(
-        [t, r, o], 'time;rotor;output', (moment(' '), *DECIMALS[1:]), ';')),
-    'dates of the month first, in the afternoon': lambda t, r, o: written(
-        [t, r, o], 'time,rotor,output',
-        (lambda v: (NOON + timedelta(hours=2, seconds=v)).strftime('%m/%d/%Y %-I:%M:%S.%f %p'),
-         *DECIMALS[1:])),
-    '12 hours, over noon': lambda t, r, o: written(
-        [t, r, o], NAMES, (lambda v: (NOON + timedelta(seconds=v)).strftime('%I:%M:%S.%f %p'),
-        *DECIMALS[1:])),
-    'minutes and seconds': lambda t, r, o: written(
-        [t, r, o], NAMES, (lambda v: moment(' ')(v)[14:], *DECIMALS[1:])),
-    'dates of two digits': lambda t, r, o: in_german(written(
-        [t, r, o], 'time;rotor;output',
-        (lambda v: (NOON + timedelta(seconds=v)).strftime('%d.%m.%y %H:%M:%S,%f').translate(
-            str.maketrans('.,', ',.')), *DECIMALS[1:]), ';')),
-    'days of a workbook': lambda t, r, o: written(
-        [46352.4 + t / 86400.0, r, o], NAMES, ('{:.11f}', *DECIMALS[1:])),
+        '%time,field.rotor_position,field.output_position', '{}'),
+    'ISO 8601 with a zone': plain('pi_time,rotor,output', time=moment(zone='+01:00')),
+    'dates with a decimal comma': plain('time;rotor;output', ';', time=moment(' '), german=True),
+    'dates of the month first, in the afternoon': plain(
+        time=clock('%m/%d/%Y %-I:%M:%S.%f %p', hours=2)),
+    '12 hours, over noon': plain(time=clock('%I:%M:%S.%f %p')),
+    'minutes and seconds': plain(time=lambda v: moment(' ')(v)[14:]),
+    'dates of two digits': plain(
+        'time;rotor;output', ';', time=clock('%d,%m,%y %H:%M:%S.%f'), german=True),
+    'days of a workbook': lambda t, r, o: written([46352.4 + t / 86400.0, r, o], NAMES, '{:.11f}'),
     'index of pandas': lambda t, r, o: written(
-        [t, r * 1e6, o * REV * 1e3], ',rotor_urad,output_mrev', (moment(' '), *DECIMALS[1:])),
+        [t, r * 1e6, o * REV * 1e3], ',rotor_urad,output_mrev', moment(' ')),
     'tuples of bagpy': lambda t, r, o: 'Time,header.seq,name,position,velocity\n' + ''.join(
         f'{at:.6f},7,"(\'m1\', \'out\')","({rotor:.5f}, {out:.5f})",()\n'
         for at, rotor, out in zip(t + 1.79e9, r, o, strict=True)),
     'arrays of numpy, and feedback': lambda t, r, o: written(
         [t, r * DEG, o * DEG], 't,MotorPosFb(deg),LoadPos/ave (deg)',
         ('{:.2f}', '[{:.5f}]', '{:.5f}')),
-    'time of the day': lambda t, r, o: written(
-        [t, r, o], NAMES, (lambda v: moment(' ')(v)[11:], *DECIMALS[1:])),
+    'time of the day': plain(time=lambda v: moment(' ')(v)[11:]),
     'seconds and nanoseconds': lambda t, r, o: written(
-        [*split_time(t), r, o], 'header.stamp.sec,header.stamp.nanosec,rotor,output', SEC_NANOSEC),
-    'ros2 topic echo with velocity and effort': lambda t, r, o: written(
-        [*split_time(t), r, o], '',
+        [*split_time(t), r, o], 'header.stamp.sec,header.stamp.nanosec,rotor,output',
+        ('{:.0f}', '{:.0f}', '{:.5f}', '{:.5f}')),
+    'ros2 topic echo with velocity and effort': lambda t, r, o: written([*split_time(t), r, o], '',
         ('{:.0f}', '{:.0f},base,motor,joint', '{:.5f}', '{:.5f},0.1,0.2,0.0,0.0')),
     'a row for each value': lambda t, r, o: 'elapsed time,receive time,topic,value\n' + ''.join(
         f'{at:.2f},{at + 1764230000:.2f},/{topic}.position[0],{value:.5f}\n'
@@ -222,8 +223,7 @@ ENCODERS = {
     'never in one row': lambda t, r, o: '__time,/output/position,/x,/rotor/position\n' + ''.join(
         f'{at:.4f},,,{rotor:.5f}\n{at + 5e-4:.4f},{out:.5f},,\n{at + 6e-4:.4f},,1,\n'
         for at, rotor, out in zip(t, r, o, strict=True)),
-    'TwinCAT with commas': lambda t, r, o: written(
-        [t * 1e3, r * DEG, t * 1e3, o * DEG],
+    'TwinCAT with commas': lambda t, r, o: written([t * 1e3, r * DEG, t * 1e3, o * DEG],
         'Name,Scope\nFile,a.csv\n\nName,Motor.Pos,Name,Output.Pos\nSymbolComment,,SymbolComment,'
         '\nSampleTime[ms],40,SampleTime[ms],40\nUnit,° (Degree),Unit,° (Degree)\n',
         4 * ['{:.4f}']) + 'EOF\n',
@@ -233,22 +233,20 @@ ENCODERS = {
         [t, r * REV % 1.0, o * REV], 'time,rotor_rev,output_rev', 3 * ['{:.7f}']),
     'names above names': lambda t, r, o: written(
         [t, r * DEG, r, o * DEG], ',Motor,,Load\nt (s),Angle (deg),Speed (rad/s),Angle (deg)',
-        4 * ['{:.5f}']),
-    'LabVIEW': lambda t, r, o: written(
-        [t, r * DEG, o * DEG], '"A 5" shaft\nChannels\t2\nY_Unit_Label\tdeg\tdeg\t\n***End***\n'
-        'X_Value\tMotor angle\tOutput angle\tComment', mark='\t'),
+        '{:.5f}'),
+    'LabVIEW': plain('"A 5" shaft\nChannels\t2\nY_Unit_Label\tdeg\tdeg\t\n***End***\n'
+        'X_Value\tMotor angle\tOutput angle\tComment', '\t', angle=DEG),
     'LabVIEW, with times of each channel': lambda t, r, o: written(
         [t, r * DEG, t, o * DEG], 'Channels\t2\t\t\t\nY_Unit_Label\tdeg\t\tdeg\n***End***\n'
-        'X_Value\tMotor angle\tX_Value\tOutput angle\tComment', 4 * ['{:.5f}'], '\t'),
+        'X_Value\tMotor angle\tX_Value\tOutput angle\tComment', '{:.5f}', '\t'),
     'LabVIEW, without times': lambda t, r, o: written(
         [0 * t, r, o], 'X_Value\tMotor angle [rad]\tOutput angle [rad]\tComment',
         (lambda _: '', '{:.5f}', '{:.5f}'), '\t'),
-    'names behind a word, as their units are': lambda t, r, o: written(
-        [t * 1e3, r * DEG, o * DEG], 'Units;ms;deg;deg\ntime;rotor;output', mark=';'),
-    'units above names': lambda t, r, o: written(
-        [t * 1e3, r * DEG, o * DEG], 'ms,deg,deg\ntime,rotor,output'),
-    'meta lines of three cells above names with units': lambda t, r, o: written(
-        [t, r * DEG, o * DEG], 'bench,3,x\nTime (s),Rotor (deg),Output (deg)'),
+    'names behind a word, as their units are': plain(
+        'Units;ms;deg;deg\ntime;rotor;output', ';', angle=DEG, unit=1e3),
+    'units above names': plain('ms,deg,deg\ntime,rotor,output', angle=DEG, unit=1e3),
+    'meta lines of three cells above names with units': plain(
+        'bench,3,x\nTime (s),Rotor (deg),Output (deg)', angle=DEG),
     'texts among the values': lambda t, r, o: 'time,topic,value\n' + ''.join(
         f'{at:.2f},rotor,{rotor:.5f}\n{at:.2f},output,{out:.5f}\n{at:.2f},state,idle\n'
         for at, rotor, out in zip(t, r, o, strict=True)),
@@ -277,85 +275,61 @@ ENCODERS = {
         + ''.join(f',,{table},{moment()(at)}Z,{value:.5f},{name}\n'
         for table, (name, values) in enumerate((('rotor', r), ('output', o)))
         for at, value in zip(t, values, strict=True)),
-    'durations of MATLAB': lambda t, r, o: written(
-        [t, r, o], NAMES, ('{:.2f} sec', *DECIMALS[1:])),
-    'dates with names of months': lambda t, r, o: written(
-        [t, r, o], NAMES,
-        (lambda v: (NOON + timedelta(seconds=v)).strftime('%d-Nov-%Y %H:%M:%S.%f'),
-         *DECIMALS[1:])),
+    'durations of MATLAB': plain(time='{:.2f} sec'),
+    'dates with names of months': plain(time=clock('%d-Nov-%Y %H:%M:%S.%f')),
     'Simulink, with times of each signal': lambda t, r, o: written(
         [t, r * DEG, t, o * DEG], 'time,motor angle,time,output angle\n'
         ',Units: deg,,Units: deg\n,Interp: linear,,Interp: linear', 2 * ['{:.16f}', '{:.5f}']),
-    'INCA': lambda t, r, o: written(
-        [t, r * DEG, o * DEG], 'sampleCount\t1320\ntime\tMotorPos\\ETKC:1\tOutputPos\\ETKC:1\n'
-        's\tdeg\tdeg\nf8\tf8\tf8', mark='\t'),
-    'over midnight': lambda t, r, o: written(
-        [t, r, o], NAMES,
-        (lambda v: moment(' ')(v + 15 * 3600 - 20)[11:], *DECIMALS[1:])),
-    'whole seconds': lambda t, r, o: written(
-        [t, r, o], 'time_s,rotor,output', ('{:.0f}', *DECIMALS[1:])),
-    'German': lambda t, r, o: in_german(written(
-        [t, r * DEG, o * DEG], 'Zeit [s],Winkel Antrieb [°],Winkel Abtrieb [°]', mark=','
-        ).replace(',', ';')),
-    'catman': lambda t, r, o: in_german(written(
-        [t, r * DEG, o * DEG], 'T0 = 1\t\t\nZeit  1 - Standardmessrate [s]\tWinkel Motor [°]\t'
-        'Winkel Abtrieb [°]\nAbtastrate: 25 Hz\t\t', mark='\t')),
+    'INCA': plain('sampleCount\t1320\ntime\tMotorPos\\ETKC:1\tOutputPos\\ETKC:1\n'
+        's\tdeg\tdeg\nf8\tf8\tf8', '\t', angle=DEG),
+    'over midnight': plain(time=lambda v: moment(' ')(v + 15 * 3600 - 20)[11:]),
+    'whole seconds': plain('time_s,rotor,output', time='{:.0f}'),
+    'German': plain('Zeit [s];Winkel Antrieb [°];Winkel Abtrieb [°]', ';', angle=DEG, german=True),
+    'catman': plain('T0 = 1\t\t\nZeit  1 - Standardmessrate [s]\tWinkel Motor [°]\t'
+        'Winkel Abtrieb [°]\nAbtastrate: 25 Hz\t\t', '\t', angle=DEG, german=True),
     'psql': lambda t, r, o: written(
         [t, r, o], ' time  | rotor | output \n-------+-------+--------', mark=' | ')
         + '(1320 rows)\n',
-    'French': lambda t, r, o: in_german(written(
-        [t, r * DEG, o * DEG], 'Temps [s],Angle moteur [°],Angle sortie [°]').replace(',', ';')),
-    'Italian': lambda t, r, o: written(
-        [t, r * DEG, o * DEG], 'Tempo [s];Angolo motore [°];Angolo uscita [°]', mark=';'),
-    'words in one': lambda t, r, o: written(
-        [t, r * DEG, o * DEG], 'Uhrzeit [s];Motorwinkel [°];Abtriebswinkel [°]', mark=';'),
+    'French': plain('Temps [s];Angle moteur [°];Angle sortie [°]', ';', angle=DEG, german=True),
+    'Italian': plain('Tempo [s];Angolo motore [°];Angolo uscita [°]', ';', angle=DEG),
+    'words in one': plain('Uhrzeit [s];Motorwinkel [°];Abtriebswinkel [°]', ';', angle=DEG),
     'multiples in names': lambda t, r, o: written(
         [t, r * DEG * 100, o * DEG * 10], 'time,rotor_deg_x100,output_ddeg', 3 * ['{:.4f}']),
     'hexadecimal counts': lambda t, r, o: written(
-        [t, np.round((r - r.min()) * REV * 4096).astype(int), o], 'time,rotor_counts,output_rad',
+        [t, *in_counts(r - r.min()).astype(int), o], 'time,rotor_counts,output_rad',
         ('{:.2f}', '{:06X}', '{:.5f}')),
     'hexadecimal counts, said': lambda t, r, o: written(
-        [t, np.round((r - r.min()) * REV * 4096).astype(int), o], 'time,rotor_counts,output_rad',
+        [t, *in_counts(r - r.min()).astype(int), o], 'time,rotor_counts,output_rad',
         ('{:.2f}', '0x{:x}', '{:.5f}')),
     'counts of as many digits, in arrays': lambda t, r, o: written(
-        [t, 500_000 + np.round(r * REV * 4096), o], 'time,rotor_counts,output_rad',
+        [t, *in_counts(r) + 500_000, o], 'time,rotor_counts,output_rad',
         ('{:.2f}', '[{:.0f}]', '{:.5f}')),
-    'ISO dates in the afternoon': lambda t, r, o: written(
-        [t, r, o], NAMES,
-        (lambda v: (NOON + timedelta(seconds=v)).strftime('%Y-%m-%d %I:%M:%S.%f %p'),
-         *DECIMALS[1:])),
-    'TwinCAT with full timestamps': lambda t, r, o: written(
-        [column for one in (r, o)
+    'ISO dates in the afternoon': plain(time=clock('%Y-%m-%d %I:%M:%S.%f %p')),
+    'TwinCAT with full timestamps': lambda t, r, o: written([column for one in (r, o)
          for column in (np.round(1e7 * t).astype(int) + 134_090_000_000_000_000, one * DEG)],
         'Name,Scope\nFile,a.csv\n\nName,Motor.Pos,Name,Output.Pos\nSampleTime[ms],40,'
         'SampleTime[ms],40\nUnit,deg,Unit,deg\n', 2 * ['{}', '{:.4f}']),
-    'descriptions below units': lambda t, r, o: written(
-        [t, r * DEG, o * DEG],
-        'Time,Input angle,Output angle\ns,deg,deg\nsample time,encoder 1,encoder 2'),
-    'Siemens': lambda t, r, o: written(
-        [t, t * 1e3, r * DEG, o * DEG],
+    'descriptions below units': plain(
+        'Time,Input angle,Output angle\ns,deg,deg\nsample time,encoder 1,encoder 2', angle=DEG),
+    'Siemens': lambda t, r, o: written([t, t * 1e3, r * DEG, o * DEG],
         'Time stamp\tRelative time\tMotor position\tLoad position\n\tms\t°\t°',
-        (lambda v: (NOON + timedelta(seconds=v)).strftime('%d.%m.%Y %H:%M:%S.%f'),
-         *3 * ['{:.5f}']), '\t'),
-    'shafts': lambda t, r, o: written([t, r, o], 'time,motor_shaft_pos,output_shaft_pos'),
+        clock('%d.%m.%Y %H:%M:%S.%f'), '\t'),
+    'shafts': plain('time,motor_shaft_pos,output_shaft_pos'),
     'rotations': lambda t, r, o: written(
         [t, r * REV, o * REV], 'Timestamp,/Motor/PositionRotations,/Output/PositionRotations',
         3 * ['{:.7f}']),
     'times and temperatures in French and English': lambda t, r, o: written(
-        [t, r, o, 40.0 + np.sin(t)], 'Temps;Angle moteur;Angle sortie;Temps'.replace(
-            ';Temps', ';motor_temps'), 4 * ['{:.5f}'], ';'),
+        [t, r, o, 40.0 + np.sin(t)], 'Temps;Angle moteur;Angle sortie;motor_temps', '{:.5f}', ';'),
     'negative numbers in brackets': lambda t, r, o: written(
         [t, r, o], NAMES, ('{:.2f}', *2 * [lambda v: f'({-v:.5f})' if v < 0 else f'{v:.5f}'])),
     'negative numbers in brackets, in German': lambda t, r, o: in_german(
         ENCODERS['negative numbers in brackets'](t, r, o).replace(',', ';')),
-    'states of both sides': lambda t, r, o: written(
-        [t, t > 20.0, r, t > 30.0, np.sin(t), o],
-        'time,motor_state,motor_pos,output,load,load_pos', 6 * ['{:.5f}']),
-    'units of other quantities': lambda t, r, o: written(
-        [40.0 + np.sin(t), t, r, r, o, o, t],
-        'T,t,motor [°C],motor_pos,load [N],load_pos,output [V]', 7 * ['{:.5f}']),
+    'states of both sides': lambda t, r, o: written([t, t > 20.0, r, t > 30.0, np.sin(t), o],
+        'time,motor_state,motor_pos,output,load,load_pos', '{:.5f}'),
+    'units of other quantities': lambda t, r, o: written([40.0 + np.sin(t), t, r, r, o, o, t],
+        'T,t,motor [°C],motor_pos,load [N],load_pos,output [V]', '{:.5f}'),
     'counts of 16 bits': lambda t, r, o: written(
-        [t, np.round(r * REV * 4096) % 65536, o], 'time,rotor_counts,output_rad',
+        [t, *in_counts(r) % 65536, o], 'time,rotor_counts,output_rad',
         ('{:.2f}', '{:.0f}', '{:.5f}')),
     'a row from the future': lambda t, r, o: written([moved(t, (200, 40.0)), r, o], NAMES),
     'rows from past and future': lambda t, r, o: written(
@@ -428,7 +402,7 @@ def test_means_of_counts_are_no_thousands(tmp_path, gear, reference, readings, f
 def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, gear, reference):
     # Dynamixel SDK 4.1.0 gives positions modulo 2^32.
     t, r, o = reference('encoders')
-    counts = np.round((r - np.median(r)) * REV * 4096)
+    (counts,) = in_counts(r - np.median(r))
     right, both = (
         read(
             saved(tmp_path, written([t, one, o], 'time,rotor_counts,output_rad')),
@@ -474,9 +448,9 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
             [t, r, o], NAMES,
             ('{:.2f}', lambda v: f'{v:.3f} or so' if abs(v) > 5 else '7', '{:.5f}')),
          'no usable rows: none has numbers in all of rotor, output'),
-        (lambda t, r, o: written([t, r, o], NAMES, ('26.11.2026 {:.0f}', *DECIMALS[1:])),
+        (lambda t, r, o: written([t, r, o], NAMES, '26.11.2026 {:.0f}'),
          'the times in time: no numbers nor ISO 8601'),
-        (lambda t, r, o: written([t, r, o], NAMES, ('2026-13-26 09:{:05.2f}', *DECIMALS[1:])),
+        (lambda t, r, o: written([t, r, o], NAMES, '2026-13-26 09:{:05.2f}'),
          'the times in time: no numbers nor ISO 8601'),
         (lambda t, r, o: written([25 * t, r / 3, o / 3], NAMES),
          'steps of 1 do not .* --time-column'),
@@ -519,30 +493,26 @@ def test_what_speaks_against_a_unit_is_said(tmp_path, gear, reference, table, wr
 
 
 UNTOLD = {
-    'counts': lambda t, r, o: written(
-        [t, np.round(r * REV * 4096), np.round(o * REV * 4096)], 'time,motor_inc,load_inc'),
-    'counts without unit': lambda t, r, o: written(
-        [t, np.round(r * REV * 4096), np.round(o * REV * 4096)],
+    'counts': lambda t, r, o: written([t, *in_counts(r, o)], 'time,motor_inc,load_inc'),
+    'counts without unit': lambda t, r, o: written([t, *in_counts(r, o)],
         'time,motor_present_position,load_present_position', ('{:.2f}', '{:.0f}', '{:.0f}')),
-    'counts of numbered servos': lambda t, r, o: written(
-        [t * 1e3, np.round(r * REV * 4096), np.round(o * REV * 4096)],
+    'counts of numbered servos': lambda t, r, o: written([t * 1e3, *in_counts(r, o)],
         'Time(ms),[ID:001] Present Position,[ID:002] Present Position', 3 * ['{:.0f}']),
     'counts as raw readings': lambda t, r, o: written(
-        [t, np.round(r * REV * 4096), np.round(o * REV * 4096)], 'time,motor_raw,output_raw'),
-    'degrees': lambda t, r, o: written([t, r * DEG, o * DEG], NAMES),
-    'degrees at which the output differs': lambda t, r, o: written(
-        [10 * t, r * DEG, o * DEG], NAMES),
-    'angles of unknown sides': lambda t, r, o: written([t, r * DEG, o * DEG], 't,pos_a,pos_b'),
+        [t, *in_counts(r, o)], 'time,motor_raw,output_raw'),
+    'degrees': plain(angle=DEG),
+    'degrees at which the output differs': plain(angle=DEG, unit=10.0),
+    'angles of unknown sides': plain('t,pos_a,pos_b', angle=DEG),
     'revolutions': lambda t, r, o: written([t, r * REV % 1.0, o * REV % 1.0], NAMES),
     'a unit of one encoder alone': lambda t, r, o: written(
-        [t, np.round(r * REV * 4096), o * DEG], 'time,rotor,output [deg]'),
-    'unknown word': lambda t, r, o: written([t, r, o], 'time,motor_pos_x,output_pos_x'),
+        [t, *in_counts(r), o * DEG], 'time,rotor,output [deg]'),
+    'unknown word': plain('time,motor_pos_x,output_pos_x'),
     'times': lambda t, r, o: written([25 * t, r / 3, o / 3], NAMES),
-    'both motors': lambda t, r, o: written([t, r, o], 'time,motor1_pos,motor2_pos'),
-    'a torque beside': lambda t, r, o: written([t, r, o, t], 'time,POSITION,ABS_POSITION,TORQUE',
-                                               4 * ['{:.5f}']),
+    'both motors': plain('time,motor1_pos,motor2_pos'),
+    'a torque beside': lambda t, r, o: written(
+        [t, r, o, t], 'time,POSITION,ABS_POSITION,TORQUE', '{:.5f}'),
     'no locked output': lambda t, r, o: written(
-        [t, r, o, np.sin(t)], 'time,M1_position_rad,J1_position_rad,torque_Nm', 4 * ['{:.5f}']),
+        [t, r, o, np.sin(t)], 'time,M1_position_rad,J1_position_rad,torque_Nm', '{:.5f}'),
 }  # fmt: skip
 UNTOLD_RAMPS = {
     'two torques': lambda t, a, q: written(
@@ -552,8 +522,8 @@ UNTOLD_RAMPS = {
     'units of rotation': lambda t, a, q: written(
         [t, a * DEG, q], '"Time","Rotation","Axial Torque"\n"(s)","(Degrees)","(N-m)"',
         3 * ['"{:.6f}"']),
-    'a unit that is a word': lambda t, a, q: written([t, a, q], 'time,angle_grad,torque',
-                                                     3 * ['{:.6f}']),
+    'a unit that is a word': lambda t, a, q: written(
+        [t, a, q], 'time,angle_grad,torque', 3 * ['{:.6f}']),
 }  # fmt: skip
 
 
@@ -588,9 +558,7 @@ def test_every_refusal_ends_with_a_command_line_that_works(tmp_path, gear, refer
 
 
 def test_advice_repeats_the_options_that_were_given(tmp_path, gear, reference):
-    t, r, o = reference('encoders')
-    counts = [np.round(one * REV * 4096) for one in (r, o)]
-    path = saved(tmp_path, written([t, *counts], 'time,motor_inc,load_inc'))
+    path = saved(tmp_path, UNTOLD['counts'](*reference('encoders')))
     line = f'gearkin calibrate {path} --ratio -30 --rotor-counts 4096'
     with pytest.raises(RecordingError, match=f'for example: {line} --output-counts 4096$'):
         read(path, gear, Sources(rotor_counts=4096, command=line))
@@ -609,7 +577,7 @@ def test_advice_repeats_the_options_that_were_given(tmp_path, gear, reference):
 def test_the_command_line_of_the_advice_works(tmp_path, gear, reference, name, unit, as_recorded):
     time, rotor, output = reference('encoders')
     names = ','.join(['t', name.format(1), 'temp', name.format(2)])
-    content = written([time, rotor, 30.0 * time, output], names, 4 * ['{:.5f}'])
+    content = written([time, rotor, 30.0 * time, output], names, '{:.5f}')
     path = saved(tmp_path, content)
     with pytest.raises(RecordingError, match=r'among the columns t \(0.00000\), .*1') as caught:
         read(path, gear, Sources(as_recorded=as_recorded))
@@ -760,7 +728,7 @@ def test_what_is_neither_table_nor_bag_is_refused_with_what_can_be_read(tmp_path
 def test_the_advice_gives_the_output_the_column_that_is_named_after_it(tmp_path, gear, reference):
     time, rotor, output = reference('encoders')
     content = written([time, rotor, 1.5 * rotor, output], 'time,motor1_pos,motor2_pos,output_pos',
-                      4 * ['{:.5f}'])  # fmt: skip
+                      '{:.5f}')  # fmt: skip
     with pytest.raises(
         RecordingError, match=r'--rotor-column motor\d_pos --output-column output_'
     ):
@@ -770,7 +738,7 @@ def test_the_advice_gives_the_output_the_column_that_is_named_after_it(tmp_path,
 def test_temperatures_are_no_times(tmp_path, gear, reference):
     t, r, o = reference('encoders')
     for others in ('motor_pos,output_pos,time,temps', 'motor_pos,output_pos,x,temps'):
-        content = written([r, o, t, 40.0 + np.round(t / 9.0)], others, 4 * ['{:.5f}'])
+        content = written([r, o, t, 40.0 + np.round(t / 9.0)], others, '{:.5f}')
         recording = read(saved(tmp_path, content), gear)
         assert recording.encoders.timed == ('time' in others)
     with pytest.raises(RecordingError, match=r'steps of 0\.04 do not tell their unit'):
