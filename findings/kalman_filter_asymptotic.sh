@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# kalman-filter 2.3.0 (npm): the steady gain of an encoder's filter is 0.382 by asymptoticGain(), the filter itself has 0.618.
+# kalman-filter 2.3.0 (npm): asymptoticGain() gives 0.382 for an encoder whose filter settles at a gain of 0.618.
 #
 # An observer with a fixed gain needs the gain to which a Kalman filter settles. asymptoticGain() is to give it, as an
 # encyclopedia explains it: from the covariance of the prediction. What happens: it is calculated from the covariance
