@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# mec-vibrations-calcs 0.1.2: an arm that is let go at -1 rad begins at 1 rad, and above its resonance it moves with its torque.
+# mec-vibrations-calcs 0.1.2: an arm let go at -1 rad begins at 1 rad, and above its resonance it moves with its torque.
 #
 # get_natural_response() is the free vibration from an initial deflection. What happens if this is negative and the
 # damping is below the critical one: the phase is an arc tangent of one quotient, so that the answer has the wrong
