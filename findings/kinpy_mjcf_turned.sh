@@ -1,0 +1,77 @@
+#!/bin/sh
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+# kinpy 0.6.1: an arm that an MJCF turns by euler="0 0 90" is not turned, and the default axis and the ref of a joint are lost.
+#
+# build_serial_chain_from_mjcf() reads an arm of two links of 1 m. Expected: its tip is where MuJoCo 4.0.0 has it.
+# What happens: of the five ways in which an MJCF gives the orientation of a body, only quat has an effect. With
+# euler, axisangle, xyaxes and zaxis the tip is at (2, 0, 0), where (0, 2, 0) or (0, 0, -2) is right. An axis that a
+# default class gives to all joints is replaced by z, so that an arm that is to move upwards moves sideways, and an
+# angle of a joint with a ref is not counted from this ref. The gear of a URDF is lost too: the follower of a mimic is
+# an independent joint, which stays at 0 if it is not given. No exception or warning says so.
+# For us: let MuJoCo compile and save the model first, which leaves only quat and no defaults; a ref has to be
+# subtracted.
+#
+# Exit code 0: still so. Installs the versions into a temporary folder.
+set -eu
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+python3 -m venv "$folder/venv"
+"$folder/venv/bin/pip" install --quiet --disable-pip-version-check kinpy==0.6.1 mujoco==4.0.0 numpy==2.4.6
+cat > "$folder/arm.py" <<'PYTHON'
+import warnings
+
+import kinpy
+import mujoco
+import numpy as np
+
+MJCF = """
+<mujoco>
+  {default}
+  <worldbody>
+    <body name="upper" {orientation}><joint name="shoulder" type="hinge" {axis} {ref}/><geom type="sphere" size="0.1"/>
+      <body name="lower" pos="1 0 0"><joint name="elbow" type="hinge" {axis}/><geom type="sphere" size="0.1"/>
+        <body name="tip" pos="1 0 0"><geom type="sphere" size="0.1"/></body>
+      </body>
+    </body>
+  </worldbody>
+</mujoco>"""
+URDF = """
+<robot name="gear">
+  <link name="base"/><link name="rotor"/><link name="output"/>
+  <joint name="motor" type="continuous"><parent link="base"/><child link="rotor"/><axis xyz="0 0 1"/></joint>
+  <joint name="gear" type="continuous"><parent link="rotor"/><child link="output"/><axis xyz="0 0 1"/>
+    <mimic joint="motor" multiplier="-0.95"/></joint>
+</robot>"""
+warnings.simplefilter('error')
+
+
+def tips(angles, orientation='', axis='axis="0 0 1"', ref='', default=''):
+    text = MJCF.format(orientation=orientation, axis=axis, ref=ref, default=default)
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    data.qpos[:] = angles
+    mujoco.mj_forward(model, data)
+    chain = kinpy.build_serial_chain_from_mjcf(text, 'tip')
+    given, right = chain.forward_kinematics(np.array(angles)).pos, data.body('tip').xpos
+    print(orientation or default or ref or 'plain', given.round(3), 'MuJoCo', right.round(3))
+    return given, right
+
+
+zero = [0.0, 0.0]
+for given, right in tips([0.5, 0.3]), tips([0.5, 0.3], 'quat="0.5 0.5 0.5 0.5"'):
+    assert np.allclose(given, right, atol=1e-9)
+for orientation in 'euler="0 0 90"', 'axisangle="0 0 1 90"', 'xyaxes="0 1 0 -1 0 0"':
+    given, right = tips(zero, orientation)
+    assert np.allclose(given, [2, 0, 0]) and np.allclose(right, [0, 2, 0], atol=1e-9)
+given, right = tips(zero, 'zaxis="1 0 0"')
+assert np.allclose(given, [2, 0, 0]) and np.allclose(right, [0, 0, -2], atol=1e-9)
+given, right = tips([-0.5, 0.0], axis='', default='<default><joint axis="0 1 0"/></default>')
+assert np.allclose(given, [2 * np.cos(0.5), -2 * np.sin(0.5), 0]) and np.allclose(right[1:], [0, 2 * np.sin(0.5)])
+given, right = tips([0.5, 0.0], ref='ref="28.64788975654116"')  # 0.5 rad
+assert np.allclose(given, [2 * np.cos(0.5), 2 * np.sin(0.5), 0]) and np.allclose(right, [2, 0, 0], atol=1e-9)
+chain = kinpy.build_chain_from_urdf(URDF)
+output = chain.forward_kinematics({'motor': 1.0})['output'].rot_mat
+print('output of the URDF', np.arctan2(output[1, 0], output[0, 0]), 'rad at 1 rad of the motor, 0.05 rad are right')
+assert np.isclose(np.arctan2(output[1, 0], output[0, 0]), 1)
+PYTHON
+timeout 60 "$folder/venv/bin/python" "$folder/arm.py"
