@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.measurement.columns import Column, ColumnsError
-from gear_kinematics.measurement.names import TIME_UNITS
+from gear_kinematics.measurement.names import TIME_UNITS, meaning
 from gear_kinematics.measurement.recording import Array
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.wire.cdr import SECOND
@@ -74,8 +74,13 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
     return clock._replace(unit=unit, scale=TIME_UNITS[unit])
 
 
-def are_temperatures(clock: Column, times: Array) -> bool:
-    """Return whether numbers called T, or temps (French for times), do not rise as times do."""
+def are_no_times(clock: Column, times: Array) -> bool:
+    """Return whether numbers of a name that may say something else do not rise as times do.
+
+    They are called T, or temps (French for times), or have an unknown word, as cycle_time has.
+    """
+    if meaning(clock.name).unsure:
+        return bool(np.any(times[1:] < times[:-1]) or times[-1] <= times[0])
     if _is_temps(clock):
         return not np.all(times[1:] > times[:-1])
     falling = np.count_nonzero(times[1:] < times[:-1])

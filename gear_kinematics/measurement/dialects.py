@@ -278,7 +278,8 @@ def _names(
     last = max(fitting, default=len(rows) - 1)
     # Descriptions may be below the names, which have most of the words that say quantities.
     whole = [k for k in fitting if len({*filter(None, rows[k])}) == width]
-    at = max([*whole, last], key=lambda k: (sum(bool(meaning(cell).role) for cell in rows[k]), k))
+    says = [sum(bool(m.role) and not m.unsure for m in map(meaning, row)) for row in rows]
+    at = max([*whole, last], key=lambda k: (says[k], k))
     names, groups = rows[at], rows[at - 1] if at else []
     if label:  # such as Y_Unit_Label of LabVIEW
         units = known_units(['', *label[1:]][len(label) > len(names) :])

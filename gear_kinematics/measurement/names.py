@@ -10,28 +10,32 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.encoder_step import UNITS
 
 _VOCABULARY = {
-    'rotor': 'rotor motor mot odrive antrieb moteur motore',
-    'output': 'output out load shaft link joint abtrieb ausgang sortie uscita salida',
-    'input': 'input eingang entrée ingresso entrada',
-    'angle': 'position positions pos angle encoder enc theta θ φ ϕ deflection twist winkel '
-    'drehwinkel verdrehwinkel angolo ángulo angulo',
-    'torque': 'torque torques effort efforts trq tau τ drehmoment moment couple coppia',
+    'rotor': 'rotor motor mot odrive antrieb moteur motore 电机',
+    'output': 'output out load gearbox shaft link joint abtrieb ausgang sortie uscita salida 输出 '
+    '负载 关节',
+    'input': 'input eingang entrée ingresso entrada 输入',
+    'angle': 'position positions pos angle ang encoder enc theta θ φ ϕ deflection twist rotation '
+    'winkel drehwinkel verdrehwinkel angolo ángulo angulo 位置 角度',
+    'torque': 'torque torques effort efforts trq tq tau τ drehmoment moment couple coppia '
+    '扭矩 力矩',
     'current': 'current',
     'time': 'time t stamp timestamp timestamps today datetime elapsed zeit uhrzeit temps tempo '
-    'tiempo tout xtime ts zeitstempel horodatage x',
+    'tiempo tout xtime ts zeitstempel horodatage 时间 x',
     'filling': 'header receive log measured actual act filtered raw field data value values '
-    'feedback state states axis present sensor abs side in ist host pi ros system unix epoch fb '
-    'fbk ave estimate scalars date datum utc wall',
+    'feedback state states axis angular rotary present sensor abs side in ist host pi ros system '
+    'unix epoch fb fbk ave estimate scalars date datum utc wall',
 }
 """Words in names by kind, the likeliest first. The input is the rotor if a quantity is said, too.
 The filling may accompany all others; any other word shows a command, a speed or the like."""
 _KINDS = {word: kind for kind, words in _VOCABULARY.items() for word in words.split()}
 _RANKS = {word: rank for rank, word in enumerate(_KINDS)}
-_EITHER = {'shaft', 'joint'}
+_EITHER = {'shaft', 'joint', 'gearbox'}
 """Words for the output that do not mean it beside one for the rotor, as in motor_shaft."""
 _OTHERS = '% ‰ percent pct a ma v mv volts adc w n kg g m mm °c min minutes h hours'
 FOREIGN = {*_OTHERS.split()}
 """Units of quantities other than torque and angle, and units of time that are too coarse."""
+_CERTAIN = {'time', 'stamp', 'timestamp', 'timestamps', 'zeit', 'zeitstempel'}
+"""Words for times that mean them beside unknown words, too, if the numbers rise."""
 _SPEEDS = {'rpm', 'rps', 'dps', 'cps'}
 _NO_UNIT = {'-', 'none', 'n/a', '1', ':'}
 
@@ -49,6 +53,7 @@ _SIZES: Mapping[str, Mapping[str, Any]] = {
         'urad µrad': 1e-6,
         "arcmin ′ '": _DEG / 60.0,
         'arcsec ″': _DEG / 3600.0,
+        'gon': TURN / 400.0,
         'counts count cnt inc increments ticks pulse pulses lsb steps': None,  # per turn as given
     },
     'torque': {
@@ -93,7 +98,9 @@ _PLAINER = {
     r'(?i)[ _]?(deg|rad|rev)[ _]?x10$': r'_d\1',
     r'(?i)[ _]?(deg|rad|rev)[ _]?x100$': r'_c\1',
     r'(?i)[ _]?(deg|rad|rev)[ _]?x1000$': r'_m\1',
-    r'(?i)(?<![a-z])([mk]?n)[-_.*·⋅ ](m?m)(?![a-z])': r'\1\2',
+    r'(?i)(?<![a-z])([mk]?n|kgf?)[-_.*·⋅ ]([cm]?m)(?![a-z])': r'\1\2',
+    r'(?i)(?<![a-z])(ozf?|lbf?)[-_.*·⋅ ](in|ft)(?![a-z])': r'\1\2',
+    r'(?i)(?<![a-z])(in(?=[-.*·⋅])|ft)[-_.*·⋅ ](ozf?|lbf?)(?![a-z])': r'\1\2',
 }
 """Spellings in names, and what is read in their place."""
 _BRACKETS = re.compile(r'[\[(]\s*([^\])]*?)\s*[\])]')
@@ -117,13 +124,14 @@ class Meaning(NamedTuple):
     rank: tuple[int, ...]  # lowest for the likeliest column of a role
     on_rotor: bool  # whether a word means the rotor
     on_output: bool  # whether a word means the output
+    unsure: bool  # whether it may be of something else than a role that it has
 
     @property
     def unknown(self) -> str:
         """The last word if all others are known: it seems to be an unknown unit."""
         *first, last = self.words or ('',)
         seems = first and _KINDS.keys() >= {*first} and last not in _KINDS
-        return last if seems and not last.isdigit() else ''
+        return last if seems and not (last.isdigit() or self.unsure) else ''
 
 
 @cache
@@ -135,7 +143,8 @@ def meaning(name: str) -> Meaning:
     outputs = {word for word in kinds if kinds[word] == 'output'}
     output = bool(outputs - _EITHER if rotor else outputs)
     role, rank = _role(words, unit, rotor=rotor, output=output)
-    return Meaning(words, unit, role, rank, rotor, output)
+    unsure = role == 'time' and not kinds.keys() <= _KINDS.keys()
+    return Meaning(words, unit, role, rank, rotor, output, unsure)
 
 
 def _role(
@@ -147,17 +156,20 @@ def _role(
     kinds = {_KINDS.get(word) for word in keys}
     if not words and unit in TIME_UNITS:
         return 'time', (9,)
-    if kinds == {'time'}:
+    if times := [word for word in keys if _KINDS.get(word) == 'time']:
+        foreign = unit not in {'', *TIME_UNITS} or not FOREIGN.isdisjoint(words)
+        if kinds == {'time', None} and _CERTAIN & {*times} and not foreign:  # such as loop_time
+            return 'time', (len(_KINDS), len(words))
         # The stamp of a message is when it was sampled; a log has when it was received.
         first = 0 if keys == ['stamp'] and 'header' in words and not unit else len(words)
-        return (
-            none if keys == ['x'] and 'value' not in words else ('time', (first, _RANKS[keys[0]]))
-        )
+        if kinds == {'time'} and (keys != ['x'] or 'value' in words):
+            return 'time', (first, _RANKS[keys[0]])
+        return none
     if unit in TORQUE_UNITS and 'angle' not in kinds:
         kinds.add('torque')  # as of load_Nm
     torque, quantity = 'torque' in kinds, not kinds.isdisjoint({'angle', 'torque'})
     unclear = (torque and 'angle' in kinds) or (rotor and output and not torque)
-    others = kinds & {None, 'time'} or ('current' in kinds and not torque)
+    others = None in kinds or ('current' in kinds and not torque)
     unsaid = kinds == {'input'} or (unit in FOREIGN and not quantity)
     if not keys or others or unclear or unsaid or '/' in unit or unit in _SPEEDS:
         return none

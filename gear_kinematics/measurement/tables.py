@@ -12,7 +12,7 @@ import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.measurement.advice import advice
-from gear_kinematics.measurement.clocks import FASTEST, MOST, are_temperatures, stamps, with_unit
+from gear_kinematics.measurement.clocks import FASTEST, MOST, are_no_times, stamps, with_unit
 from gear_kinematics.measurement.columns import (
     Column,
     ColumnsError,
@@ -185,7 +185,7 @@ class _Samples:
             times = raw[clock.name]
             filled = times == times  # noqa: PLR0124, as NaN is not equal to itself
             empty = not (filled.any() or table.first.get(clock.name, clock.name))
-            clock = None if empty or are_temperatures(clock, times[filled]) else clock
+            clock = None if empty or are_no_times(clock, times[filled]) else clock
         if clock and rest:
             seconds, nanoseconds = (raw[name].astype(np.int64) for name in (clock.name, rest))
             raw[clock.name] = seconds * SECOND + nanoseconds

@@ -328,6 +328,10 @@ ENCODERS = {
         'time,motor_state,motor_pos,output,load,load_pos', '{:.5f}'),
     'units of other quantities': lambda t, r, o: written([40.0 + np.sin(t), t, r, r, o, o, t],
         'T,t,motor [°C],motor_pos,load [N],load_pos,output [V]', '{:.5f}'),
+    'a word beside time': lambda t, r, o: written(
+        [t, r, o], 'robot_time,motor_ang,gearbox_ang'),
+    'Chinese': lambda t, r, o: written(
+        [t, r * DEG, o * DEG], '时间\uff08s\uff09,电机角度\uff08°\uff09,输出角度\uff08°\uff09'),
     'counts of 16 bits': lambda t, r, o: written(
         [t, *in_counts(r) % 65536, o], 'time,rotor_counts,output_rad',
         ('{:.2f}', '{:.0f}', '{:.5f}')),
@@ -339,6 +343,12 @@ RAMPS = {
     'N·cm': lambda t, a, q: written([t, a * DEG, q * 100], 't,Angle [°],Torque [Ncm]'),
     'kg·cm': lambda t, a, q: written([t, a * DEG, q / 0.0980665], 't,angle_deg,torque_kgcm'),
     'lb-in': lambda t, a, q: written([t, a * DEG, q / 0.112985], 't,angle_deg,load [lb-in]'),
+    'oz-in behind a name': lambda t, a, q: written(
+        [t, a * DEG / 0.9, q / 0.00706155], 't,angle_gon,torque_oz-in', 3 * ['{:.6f}']),
+    'N·cm behind a name': lambda t, a, q: written(
+        [t, a * DEG, q * 100], 'Time (s),Angular Position (deg),Torque N cm', 3 * ['{:.6f}']),
+    'a torsion tester': lambda t, a, q: written(
+        [a * DEG, q, t], 'Rotation (deg),Rotary Torque (N·m),Time (s)', 3 * ['{:.6f}']),
     'Drehwinkel and Moment': lambda t, a, q: in_german(written(
         [t, a * DEG, q], 'Zeit;Drehwinkel [°];Moment [Nm]', mark=';')),
     'N.m': lambda t, a, q: written([t, a * DEG, q], 't,angle [deg.],torque [N.m]'),
@@ -427,7 +437,7 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
          'the unit 0.1deg is not known'),
         (lambda t, r, o: written([t, np.round(r * 1e4), o * DEG], 'time,rotor,output [deg]'),
          'such as counts: give its unit as in --rotor-column .rotor .counts.'),
-        (lambda t, r, o: written([t, r, o], 'time,rotor [gon],output'), 'unit gon is not known'),
+        (lambda t, r, o: written([t, r, o], 'time,rotor [mil],output'), 'unit mil is not known'),
         (lambda t, r, o: written(
             [t, r * 1e3, o], 'time;rotor_counts;output_rad',
             ('{:.2f}', lambda v: f'{v:,.0f}'.replace(',', '.'), '{:.5f}'), ';'),
@@ -468,7 +478,7 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
          'with their units, by --angle-column'),
         ('time,angle_grad,torque\n0,1,2\n',
          "known; known: rad, .*counts; give it, as in --angle-column 'angle_grad .rad.'"),
-        ('time,angle,torque\ns,gon,Nm\n0,1,2\n', 'the unit gon is not known'),
+        ('time,angle,torque\ns,mil,Nm\n0,1,2\n', 'the unit mil is not known'),
         ('rotor,output\n1.5,20\n359.5,30.5\n', 'rotor has turns of 360'),
         ('Data1,torque\n0,2\n', 'Data1 does not say that it is an angle: .* --angle-unit'),
         ('arm_moves_freely', 'the output turns by 100° under torque'),
@@ -743,6 +753,13 @@ def test_temperatures_are_no_times(tmp_path, gear, reference):
         assert recording.encoders.timed == ('time' in others)
     with pytest.raises(RecordingError, match=r'steps of 0\.04 do not tell their unit'):
         read(saved(tmp_path, written([40 + t, r, o], 'temps,rotor,output')), gear)
+
+
+def test_durations_are_no_times(tmp_path, gear, reference):
+    t, r, o = reference('encoders')
+    for duration in (t - t + 0.04, 0.04 + 1e-3 * np.sin(t), -t):
+        content = written([duration, r, o], 'loop_time,rotor,output', 3 * ['{:.5f}'])
+        assert not read(saved(tmp_path, content), gear).encoders.timed
 
 
 def test_columns_of_different_lengths_are_refused(tmp_path, gear, reference):
