@@ -237,7 +237,7 @@ def _layout(lines: Sequence[str]) -> _Layout:
         if not found[0][0] and MOMENT.fullmatch(row[0]):
             found[0][0] = 'time'  # the index of pandas
     else:
-        found = _joint_state(row)
+        found = _joint_state(row) or ([str(k + 1) for k in range(len(row))], {}, {})
     return _Layout(separator, point, start, row, *found)
 
 
@@ -310,12 +310,12 @@ def _named(names: Sequence[str], units: Sequence[str]) -> dict[str, str]:
     return {name: unit for name, unit in zip(names, units, strict=False) if unit}
 
 
-def _joint_state(row: Sequence[str]) -> tuple[list[str], dict[str, str], dict[str, str]]:
-    """Name the columns of `ros2 topic echo --csv`; ValueError if they are not of that kind."""
+def _joint_state(row: Sequence[str]) -> tuple[list[str], dict[str, str], dict[str, str]] | None:
+    """Name the columns of `ros2 topic echo --csv`, if they are of that kind."""
     joints = [*takewhile(lambda cell: cell and not weight(cell, '.'), row[3:])]
     fields = (len(row) - 3) / max(len(joints), 1) - 1.0
     if fields not in {1.0, 2.0, 3.0} or not all(map(str.isdecimal, row[:2])):
-        raise ValueError('the first row has numbers: put a row of names above them')
+        return None
     names = ['stamp_s', 'stamp_ns', 'frame', *(f'name of {joint}' for joint in joints), *joints]
     kinds = {2.0: ('{} velocity or effort',), 3.0: ('{} velocity', '{} effort')}.get(fields, ())
     names += [kind.format(joint) for kind in kinds for joint in joints]

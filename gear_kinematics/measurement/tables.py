@@ -270,7 +270,8 @@ class _Samples:
                 return 'has whole numbers', 'Nmm'
             return ('is raw', 'N·m') if 'raw' in says.words else None
         if not (says.role or column.unit):
-            return 'does not say that it is an angle', 'counts' if whole else 'deg'
+            likely = 'rad' if np.ptp(numbers) < TURN else 'deg'
+            return 'does not say that it is an angle', 'counts' if whole else likely
         if whole and np.ptp(values) > TURN:
             return 'has whole numbers, such as counts', 'counts'
         if column.borrowed:

@@ -464,7 +464,6 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
          'the times in time: no numbers nor ISO 8601'),
         (lambda t, r, o: written([25 * t, r / 3, o / 3], NAMES),
          'steps of 1 do not .* --time-column'),
-        (lambda t, r, o: written([t, r, o], ''), 'the first row has numbers'),
         (lambda t, r, o: written([t, r, o], NAMES).translate(str.maketrans('.', ',')),
          'rows of 6 cells are below 3 names'),
         (lambda t, _, o: written([t, 0.4 * np.sin(t), o], 'time,angle,torque'),
@@ -513,6 +512,9 @@ UNTOLD = {
     'degrees': plain(angle=DEG),
     'degrees at which the output differs': plain(angle=DEG, unit=10.0),
     'angles of unknown sides': plain('t,pos_a,pos_b', angle=DEG),
+    'no names': plain(''),
+    'an acceleration beside': lambda t, r, o: written(
+        [t, r, o, 30.0 * r], 't,theta_m,theta_l,theta_m_ddot', '{:.5f}'),
     'revolutions': lambda t, r, o: written([t, r * REV % 1.0, o * REV % 1.0], NAMES),
     'a unit of one encoder alone': lambda t, r, o: written(
         [t, *in_counts(r), o * DEG], 'time,rotor,output [deg]'),
