@@ -24,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('bags', nargs='+', metavar='RECORDING', help='file, directory or glob')
     bags.add_rotor(parser)
     arguments.add_config(parser, actuator=arguments.ALL)
-    add_columns(parser, 'rotor', 'angle', 'torque')
+    add_columns(parser, 'rotor', 'output', 'angle', 'torque')
     gear = arguments.group(parser, 'gear')
     for name, unit, text in (
         ('cam-rating', 'N', "dynamic load rating C of a cam's ball bearing, for its L10 life"),

@@ -4,6 +4,7 @@
 import json
 import math
 import re
+import shlex
 from pathlib import Path
 
 import made_bags
@@ -93,6 +94,19 @@ def test_loads_of_angles_that_cannot_be_rad_are_refused(tmp_path, config, capsys
     )
     assert main(['loads', str(path), '--config', str(config)]) == 2
     assert 'as in degrees: give its unit with --angle-unit' in capsys.readouterr().err
+
+
+def test_the_command_line_that_is_proposed_for_an_output_works(tmp_path, config, capsys):
+    path = table(tmp_path)
+    head, *rows = path.read_text('utf-8').splitlines()
+    counts = np.round(SPEED * TIME / -19.0 * 4096).astype(int)
+    rows = [f'{row};{count}' for row, count in zip(rows, counts, strict=True)]
+    path.write_text('\n'.join([f'{head};Output position', *rows]), 'utf-8')
+    words = ['loads', str(path), '--config', str(config)]
+    assert main(words) == 2
+    command = capsys.readouterr().err.split('for example: gearkin ')[1]
+    assert '--output-column' in command
+    assert main(shlex.split(command)) == 1
 
 
 def test_moments_are_links_to_the_mechanism_with_its_forces(tmp_path, config):
