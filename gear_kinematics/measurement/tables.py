@@ -161,7 +161,7 @@ class _Samples:
         angles = (role for role in self.found if role != 'torque')
         self._shown = {role: find_step(self.series[role].values[role]) for role in angles}
         self.used = len(self.series['output' if 'output' in self.found else 'angle'].stamp)
-        self.said = [f'time [{clock.unit}] from {clock.name}'] if clock else []
+        self.said = [f'time [{clock.unit}] from {clock.name}' if clock else 'no times']
         self.said += map(described, self.found, self.found.values())
         fewest = min(map(np.count_nonzero, usable.values()))
         rows = fewest if together is None else len(together)

@@ -181,7 +181,7 @@ def test_unusable_recording_does_not_keep_the_others(recording, tmp_path, capsys
     cause = 'no torque ramp that goes to one side, to the other and back to zero'
     assert error == f'gearkin: {flat}: {cause}'
     assert taken == (
-        'gear.csv: angle at the output [deg] from angle_deg, '
+        'gear.csv: no times, angle at the output [deg] from angle_deg, '
         'torque at the output [N·m, assumed] from torque, 4201 of 4201 rows'
     )
     (found,) = json.loads(captured.out)['recordings']
