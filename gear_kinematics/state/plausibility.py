@@ -324,7 +324,10 @@ class Plausibility:
         way, stale = 0.5 * (former + speed) * time, min(STALEST, 1.25e-9 * span)
         uncertain = self.noise + max(abs(former), abs(speed)) * stale
         uncertain += _REPEATED * abs(way) + 0.25 * change * time
-        return abs(speed - former) <= change and abs(position - before - way) <= uncertain
+        turned = position - before
+        if abs(turned) > self.limits.speed * (time + stale) + self.noise:
+            return False
+        return abs(speed - former) <= change and abs(turned - way) <= uncertain
 
     def _wrapped(self, step: float) -> float:
         return math.remainder(step, self.period) if self.period else step

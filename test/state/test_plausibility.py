@@ -183,6 +183,17 @@ def test_a_jump_that_stays_is_named_and_ends_the_reference(rate, size):
     assert rotor.referenced
 
 
+@pytest.mark.parametrize('gap', [1.5, 2.0, 5.0])
+def test_a_jump_within_a_long_gap_that_no_speed_explains_is_named(gap):
+    times = np.append(np.arange(500) / 500, 1.0 + gap + np.arange(50) / 500)
+    size = 2.0 * LIMITS[0] * gap
+    angles = 50.0 * times + size * (times > 1.0)
+    rotor, _ = fed(MULTI, messages(times, angles))
+    jumped = Condition.JUMPED(angle=pytest.approx(size), time=pytest.approx(101.0 + gap))
+    assert rotor.plausibility.jumped == jumped
+    assert not rotor.referenced
+
+
 @pytest.mark.parametrize(('rate', 'speed', 'period'), [
     (10, 1.0, TURN), (10, -15.0, TURN), (20, 20.0, TURN), (50, -5.0, TURN), (50, 80.0, TURN),
     (100, 100.0, TURN), (200, 300.0, TURN), (1000, -5.0, TURN), (1000, 300.0, TURN),
