@@ -165,6 +165,16 @@ def test_gaps_hide_no_wraps_and_wraps_that_are_too_fast_are_named():
     assert (kind.value, kind.evidence.what) == (None, Observation.WRAPS_UNCLEAR)
 
 
+@pytest.mark.parametrize('period', [25.0, 2.0 * TURN, 4.0 * TURN])
+def test_times_of_samples_that_are_uneven_hide_no_round_range(period):
+    times, count = np.arange(6000) / 100.0, TURN / 16384
+    rotor = 132.0 - np.abs(66.0 * times % 528.0 - 264.0)  # rad: to and fro at a steady speed
+    values = np.round(wrapped(rotor, period) / count) * count
+    late = np.random.default_rng(4).uniform(0.0, 0.001, len(times))
+    found, wraps = find_range(values, times + late, Step(count, seen=True))
+    assert (found, wraps > 100) == (pytest.approx(period, rel=1e-12), True)
+
+
 @given(
     ratio=st.fractions(3, 60, max_denominator=5),
     senses=st.tuples(st.sampled_from((1, -1)), st.sampled_from((1, -1))),

@@ -80,7 +80,7 @@ def find_range(values: Array, seconds: Array, step: Step) -> tuple[float, int]:
     if counted <= 1 or 2 * goes_on <= len(edges):
         return 0.0, 0
     spread = 1.5 * float(np.median(np.abs(np.subtract(sizes, size)))) / math.sqrt(len(sizes))
-    tolerance = max(0.5 * step.size, _ACCURACY * size, 0.0 if step.seen else _SPREADS * spread)
+    tolerance = max(0.5 * step.size, _ACCURACY * size, _SPREADS * spread)
     for scale in (TURN, *(10.0**-k for k in range(_DECIMALS + 1))):
         whole = scale * round(size / scale)
         if abs(size - whole) <= tolerance <= 0.5 * _BY_CHANCE * scale:
