@@ -14,6 +14,7 @@ from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
+from unittest.mock import Mock, patch
 
 import pytest
 from blocked_bags import wait_until
@@ -125,6 +126,13 @@ def gear_node(**changes):
     return gear
 
 
+def unconnected(name, actuator=''):
+    """Follow a gear without ROS."""
+    of_ros = dict.fromkeys(('homing_client', 'Listener', 'Polled', 'AsyncParameterClient'), Mock())
+    with patch.multiple('gear_kinematics.watch.gear', **of_ros):
+        return GearNode(None, name, actuator)
+
+
 def test_values_are_those_of_the_topics():
     assert list(values_of(gear_node())) == [
         Entry('output angle', '-370.000°', '-6.45772 rad'),
@@ -163,9 +171,7 @@ def test_only_a_bounded_part_of_diagnostics_is_kept():
         ]
         return [(serialize_message(DiagnosticArray(status=statuses)), 0)]
 
-    node = object.__new__(GearNode)
-    node.name, node.running, node.statuses, node._zero = '/left/gear', False, {}, ''
-    node._outputs, node.actuator = SimpleNamespace(poll=lambda: None), ''
+    node = unconnected('/left/gear')
     for subjects in (['rotor input', *map(str, range(1000))], ['rotor input']):
         node._diagnostics = SimpleNamespace(take=partial(taken, *subjects))
         node.poll()
@@ -331,16 +337,15 @@ def test_rate_is_that_of_the_joint_on_a_topic_of_several_gears(context):
 
 
 def test_parameters_of_an_odd_type_are_a_fault():
-    node = object.__new__(GearNode)
-    node.parameters = None
+    node = unconnected('/gear')
     node._take_parameters({'module': 'thick', 'output_joint': 'output'})
     assert node.fault == "module must be of type float, not 'thick'"
     assert not node.parameters
 
 
 def test_empty_lists_of_a_parameter_file_have_no_type_in_ros():
-    node = object.__new__(GearNode)
-    node.parameters, node.actuator, node.fault = None, '', 'not asked yet'
+    node = unconnected('/gear')
+    node.fault = 'not asked yet'
     values = [ParameterValue(), ParameterValue(), ParameterValue(type=4, string_value='50')]
     answer = SimpleNamespace(result=lambda: SimpleNamespace(values=values))
     node._client = SimpleNamespace(get_parameters=lambda _, take: take(answer))
@@ -356,9 +361,8 @@ def test_an_actuator_of_an_arm_has_its_own_parameters_and_service():
     given = {'actuators': ['shoulder', 'elbow'], 'elbow.gear_ratio': '-51', 'rotor_zero': 1.0}
     ros = SimpleNamespace(create_client=lambda _, name: made.append(name), destroy_client=print)
     for actuator, ratio in {'': '', 'elbow': '-51'}.items():
-        node = object.__new__(GearNode)
-        node.name, node.actuator, node._node, node.homing = '/arm', actuator, ros, None
-        node.parameters, node.statuses = None, {}
+        node = unconnected('/arm', actuator)
+        node._node = ros
         node._take_parameters(given)
         assert (node.label, node.fault) == (f'/arm {actuator or "shoulder"}', '')
         assert (node.parameters.gear_ratio, node.parameters.rotor_zero) == (ratio, 1.0)
@@ -386,9 +390,7 @@ def test_an_actuator_of_an_arm_has_its_own_parameters_and_service():
 )
 def test_zero_that_a_node_has_lost_is_known(zeros, earlier, lost):
     """Zeros as they are read, and None where the node starts again."""
-    node = object.__new__(GearNode)
-    node.parameters, node.homed_zero, node.earlier, node.revision = None, None, {}, 0
-    node.actuator = ''
+    node = unconnected('/gear')
     for before, zero in pairwise([None, *zeros]):
         revision = node.revision
         if zero is None:
@@ -838,6 +840,13 @@ async def connected(address):
         pass
 
 
+async def answer_to(command, connection):
+    await connection.write_message(command, binary=isinstance(command, bytes))
+    while 'answer' not in (message := json.loads(await connection.read_message())):
+        pass
+    return message['answer']
+
+
 async def refused(address, **headers) -> bool:
     """Whether neither the page nor the WebSocket is to be had."""
     code, text, _ = await fetch(address, **headers)
@@ -943,16 +952,10 @@ def test_buttons_ask_the_watcher_and_show_its_answer(watcher):
 
     async def run():
         async with serving(watcher) as address, connected(address) as connection:
-
-            async def answer_to(command):
-                await connection.write_message(command, binary=isinstance(command, bytes))
-                while 'answer' not in (message := json.loads(await connection.read_message())):
-                    pass
-                return message['answer']
-
-            assert await answer_to(json.dumps(home)) == {'text': 'home.', 'done': True}
+            answer = await answer_to(json.dumps(home), connection)
+            assert answer == {'text': 'home.', 'done': True}
             for command in ('', b'\xff', 4000 * '['):
-                answer = await answer_to(command)
+                answer = await answer_to(command, connection)
                 assert answer == {'text': 'There is no such command.', 'done': False}
             assert watcher.asked == [home]
             await connection.write_message(json.dumps({'do': 5000 * 'x'}))
@@ -978,10 +981,8 @@ def test_node_that_does_not_answer_is_said(watcher, monkeypatch):
 
     async def run():
         async with serving(watcher) as address, connected(address) as connection:
-            await connection.write_message('{"do": "home"}')
-            while 'answer' not in (message := json.loads(await connection.read_message())):
-                pass
-            assert message['answer'] == {'text': UNANSWERED, 'done': False}
+            answer = await answer_to('{"do": "home"}', connection)
+            assert answer == {'text': UNANSWERED, 'done': False}
 
     asyncio.run(run())
 
