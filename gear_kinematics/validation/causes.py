@@ -1,8 +1,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Everything that a validation can find, each with the sentence about it.
 
-A sentence is formatted with the values of a `Finding`; `{messages}` and `{items}` are its count
-with a noun, and `{moment}` is its time. What is in brackets is written only if the time is known.
+A sentence is formatted with the values of a `Finding`; `{messages}`, `{items}` and `{gaps}` are
+its count with a noun, and `{moment}` is its time. What is in brackets is written only if the time
+is known.
 """
 
 from enum import Enum
@@ -78,19 +79,17 @@ class FindingCause(Enum):
     )
     # The rotor's topic
     JUMPS = (
-        '{rotor.jumps} gaps of {rotor.topic} could hide a turn of the rotor: after each, its '
-        'turns are taken from the outputs'
+        '{gaps} of {rotor.topic} could hide a turn of the rotor: afterwards its turns are taken '
+        'from the outputs'
     )
     JUMPED = '{rotor.jumped}'
     VELOCITY_IS = '{rotor.velocity_is}'
     BEYOND_LIMITS = '{rotor.beyond_limits}'
     SET_BACK = '{rotor.set_back}'
-    OF_OTHERS = (
-        '{rotor.of_others} messages of {rotor.topic} belong to other joints, which is no fault'
-    )
+    OF_OTHERS = '{messages} of {rotor.topic} for other joints, which is no fault'
     ZERO_STAMPS = (
-        '{rotor.zero_stamps} messages of {rotor.topic} have no stamp: their outputs have the '
-        "node's time, and are matched in their order"
+        "{messages} of {rotor.topic} without a stamp: outputs have the node's time, and are "
+        'matched in their order'
     )
     REPEATED_STAMPS = (
         '{rotor.duplicates} of {rotor.valid} stamps of {rotor.topic} repeat the one before, as if '

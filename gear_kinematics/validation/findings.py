@@ -64,9 +64,10 @@ def sentence(found: Finding, report: BagReport | None = None) -> str:
         text += of_moment
         time = report.seconds(found.stamp) if report else None
         moment = f'stamp {found.stamp}' if time is None else f'{time:+.3f} s'
-    messages, items = (counted(found.count, noun) for noun in ('message', 'value'))
-    values = {name: _in_words(value) for name, value in found.values.items()}
-    return printable(text.format(messages=messages, items=items, moment=moment, **values))
+    nouns = {'messages': 'message', 'items': 'value', 'gaps': 'gap'}
+    values = {name: counted(found.count, noun) for name, noun in nouns.items()}
+    values |= {name: _in_words(value) for name, value in found.values.items()}
+    return printable(text.format(moment=moment, **values))
 
 
 def _in_words(value: Any) -> Any:

@@ -122,8 +122,9 @@ def _rejected(rotor: InputReport) -> Iterator[Finding]:
 def _counted(rotor: InputReport) -> Iterator[Finding]:
     """Yield the counts and texts of the report that are not 0 or empty."""
     for name in _NOTED:
-        if getattr(rotor, name):
-            yield Finding(FindingCause[name.upper()], values={'rotor': rotor})
+        if noted := getattr(rotor, name):
+            count = noted if isinstance(noted, int) else 0
+            yield Finding(FindingCause[name.upper()], count=count, values={'rotor': rotor})
 
 
 _NOTED = 'jumped', 'jumps', 'velocity_is', 'beyond_limits', 'set_back', 'of_others', 'zero_stamps'

@@ -1,11 +1,13 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The sentences of a validation, all in one document."""
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.findings import sentence
+from gear_kinematics.validation.input_health import CHECKS
 from gear_kinematics.validation.report import Finding, InputReport, unusable
 
 GOLDEN = Path(__file__).with_name('findings.txt')
@@ -76,3 +78,13 @@ def test_time_of_a_finding_is_that_since_the_start_where_both_are_known():
     found, report = Finding(FindingCause.MISSING, count=1, stamp=2 * 10**9), unusable(Path(), '')
     assert sentence(found, report) == '1 message missing, the first at stamp 2000000000'
     assert sentence(Finding(FindingCause.MISSING, count=1), report) == '1 message missing'
+
+
+def test_one_of_a_kind_is_in_the_singular():
+    rotor = replace(ROTOR, jumps=1, of_others=1, zero_stamps=1, duplicates=0)
+    told = [sentence(found) for check in CHECKS for found in check(rotor)]
+    assert [each.partition(' of /rotor_state')[0] for each in told if each[0] == '1'] == [
+        '1 gap',
+        '1 message',
+        '1 message',
+    ]
