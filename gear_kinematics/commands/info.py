@@ -3,6 +3,8 @@
 
 import argparse
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path
 
 from rich.text import Text
 
@@ -13,6 +15,7 @@ from gear_kinematics.bag.summary import Summary, summarise
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Console, complain, message_progress
 from gear_kinematics.measurement.rotor_fields import recorded_questions
+from gear_kinematics.parameters import default_config
 from gear_kinematics.report.document import counted, number, printable
 
 _DIGITS = 4
@@ -24,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     bags.add_rotor(parser, configured=False)
     arguments.add_config(
         parser,
-        default='none; its joints are examined',
+        default='actuator.yaml beside a recording; its joints are examined',
         actuator='examine only the joint of this actuator in FILE (default: all)',
     )
     arguments.add_quiet(parser)
@@ -41,8 +44,9 @@ def run(options: argparse.Namespace) -> ExitCode:
     for path in found.bags:
         try:
             with Bag(path) as bag, message_progress(path.name, quiet=options.quiet) as progress:
-                summary = summarise(bag, options.rotor_topic, joints, progress)
-                asked = [*_questions(bag, summary, joints)]
+                examined = joints or _joints_beside(path, options)
+                summary = summarise(bag, options.rotor_topic, examined, progress)
+                asked = [*_questions(bag, summary, examined)]
         except (ValueError, OSError) as error:
             faults.append(str(error))
             continue
@@ -53,6 +57,15 @@ def run(options: argparse.Namespace) -> ExitCode:
     for fault in faults:
         complain(fault)
     return ExitCode.UNUSABLE if faults else ExitCode.DONE
+
+
+def _joints_beside(path: Path, options: argparse.Namespace) -> list[str]:
+    """Return the rotors' joints by the parameter file in a bag's folder, if it can be used."""
+    if arguments.in_bag_folder(path, default_config().name):
+        with suppress(OSError, ValueError):  # such as a file for several nodes
+            configs = arguments.load_configs(options, path)
+            return [config.rotor_joint for config in configs.values()]
+    return []
 
 
 def _questions(bag: Bag, summary: Summary, joints: Sequence[str]) -> Iterator[str]:
@@ -83,7 +96,8 @@ def _parts(summary: Summary, *, verbose: bool) -> Iterator[str]:
         if topic.rate and topic.mean_rate:
             rate = f'{number(topic.rate, _DIGITS)} Hz'
             mean = f'{number(topic.mean_rate, _DIGITS)} Hz on average'
-            often = f'{rate}, {mean}, {often}' if verbose else rate
+            bursts = 10 * topic.gaps > topic.messages
+            often = f'{rate}, {mean}, {often}' if verbose else mean if bursts else rate
         joints = described(topic.joints, most=_JOINTS)
         kind = f' {topic.type},' if verbose else ''
         yield f'{topic.part} {topic.name}{joints}{kind} {often}'.lstrip()

@@ -1,12 +1,14 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """gearkin info as a user runs it."""
 
+import math
 import shutil
 from pathlib import Path
 
 import pytest
 from blocked_bags import BAGS, gearkin, refusal
-from shipped_bags import JOINT_STATE
+from live import rotor_bytes
+from shipped_bags import JOINT_STATE, ROTOR, write_bag
 from terminals import ENVIRONMENT, Terminal
 
 from gear_kinematics.commands.cli import main
@@ -94,3 +96,20 @@ def test_real_recordings_are_described(shared_path, capsys):
     bag = str(folder / 'feetech_servos')
     assert main(['info', bag, '--rotor-topic', '/servo/out/state']) == 0
     assert '; rotor /servo/out/state (joints q0, ' in capsys.readouterr().out
+
+
+def test_the_joints_of_a_parameter_file_beside_a_bag_are_examined(tmp_path, capsys):
+    """The velocities of both motors are 0; five messages come at once, 50 each second."""
+    times = [10**9 + 100_000_000 * (k // 5) + 1_000_000 * (k % 5) for k in range(100)]
+    sent = [(ROTOR, t, rotor_bytes(t, ['m1', 'm2'], [math.sin(k), k], [0.0, 0.0]))
+            for k, t in enumerate(times)]  # fmt: skip
+    bag = write_bag(tmp_path / 'arm', sent, {ROTOR: JOINT_STATE})
+    motors = '{actuators: [m1, m2], gear_ratio: "-50"}'
+    file = bag / 'actuator.yaml'
+    for text, joints in ('/**: {ros__parameters: ' + motors + '}', ['m1', 'm2']), ('{', []):
+        file.write_text(text)
+        assert main(['info', str(bag)]) == 0
+        line = capsys.readouterr().out
+        assert '; rotor /rotor_state (joints m1, m2) 52 Hz on average; ' in line  # 99 in 1.904 s
+        zero = 'the velocities contradict the positions: they seem to be 0'
+        assert [joint for joint in ('m1', 'm2') if f'{ROTOR}: {joint}: {zero}' in line] == joints
