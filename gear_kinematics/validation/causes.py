@@ -93,8 +93,8 @@ class FindingCause(Enum):
     )
     REPEATED_STAMPS = (
         '{rotor.duplicates} of {rotor.valid} stamps of {rotor.topic} repeat the one before, as if '
-        'their nanoseconds were lost: where messages are missing, outputs are compared with the '
-        'wrong inputs; record the stamps with their nanoseconds'
+        'messages were merged twice, or nanoseconds lost: where messages are missing, outputs are '
+        'compared with the wrong inputs; merge each recording once, and record the nanoseconds'
     )
     REJECTED = '{rotor.topic}: rejected: {causes}'
     MOSTLY_REJECTED = (
