@@ -194,8 +194,6 @@ class RotorTurns:
         self._lost = False
         self.unknown_gaps = 0
         """Number of gaps in which the rotor could have turned half a period or more unseen."""
-        self._gaps, self._gap = 0, 0.0
-        """By how many the gaps too long for the speed outnumber the others; their mean, s."""
         self.reset()
 
     @property
@@ -214,6 +212,8 @@ class RotorTurns:
         self._position: tuple[int, float] | None = None
         self.forget_turns()
         self.longest_gap = 0.0  # s; may have hidden a period since the turns were last known
+        self._gaps, self._gap = 0, 0.0
+        """By how many the gaps too long for the speed outnumber the others; their mean, s."""
         self.periods = 0
         """Number of periods that are added to the readings."""
         self._offset = 0, 0, 0.0  # periods, and their sum as turns and angle, rad

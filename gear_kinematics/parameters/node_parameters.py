@@ -298,6 +298,11 @@ class NodeParameters:
         """Whether the encoder at the output finds the turns of the rotor."""
         return self.output_encoder_reference == 'absolute'
 
+    @property
+    def longest_silence(self) -> float:
+        """Silence after which the driver may have restarted, s, as in diagnostics; 0: never."""
+        return self.input_timeout if self.absolute else 0.0
+
 
 PARAMETERS: Mapping[str, Parameter] = declared_in(NodeParameters) | LOADS_PARAMETERS
 """All parameters but those of the branches, by name."""

@@ -10,6 +10,8 @@ from gear_kinematics.wire.batches import Array, once_for_joints
 from gear_kinematics.wire.cdr import SECOND
 
 _CLOCK_STEP = 20_000_000  # ns: clocks are slewed by less, and messages are late by less
+_CLOSE = 25  # messages, in which a bag that is looped begins at most once
+ALTERNATING = 3  # resets of the clock so close to each other: as many are no chance
 _MANY, _SOON = 64, 0.5  # intervals that the usual one is averaged over; share of it
 
 
@@ -18,7 +20,21 @@ class Disorder:
 
     def __init__(self) -> None:
         self.stamps: list[int] = []
-        self.clock_step: Fact | None = None  # the last step back of the clock
+        self.close_resets = 0  # resets of the clock that directly follow another one
+        self._reset = -_CLOSE  # number of the message of the last one
+        self._step: Fact | None = None
+
+    @property
+    def clock_step(self) -> Fact | None:
+        """That the stamps are from two clocks, or else the last step back of the clock."""
+        if self.close_resets < ALTERNATING:
+            return self._step
+        return Condition.CLOCKS_ALTERNATE(count=self.close_resets)
+
+    def note_reset(self, number: int) -> None:
+        """Note that the message of a number reset the clock."""
+        self.close_resets += number - self._reset < _CLOSE
+        self._reset = number
 
     def set_back(self, last: int, stamp: int) -> int:
         """Return by how much the clock was set back between two samples, ns; forget the stamps.
@@ -30,7 +46,7 @@ class Disorder:
         time = last - stamps[0] if rising else 0
         if time > _CLOCK_STEP:
             size, at = time / SECOND, last / SECOND
-            self.clock_step = Condition.CLOCK_SET_BACK(size=size, time=at)
+            self._step = Condition.CLOCK_SET_BACK(size=size, time=at)
         return time
 
 

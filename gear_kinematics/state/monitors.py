@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from gear_kinematics.correction.error_window import ErrorStatistics
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.state.disorder import ALTERNATING
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition, Fact, GearReport
@@ -17,6 +18,8 @@ from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import Rejection
 
 _BEYOND_ANY_GEAR = 0.1  # rad
+_MOST_REPEATED, _ALL_REPEATED = 0.5, 0.95
+"""Shares of stamps from which repeated ones are a fault: if turns depend on them, or else."""
 
 _SOON = 0.1  # time, s, after a report until which the next one repeats its rates and comparisons
 
@@ -122,6 +125,7 @@ class InputMonitor(DriverMonitor):
             'of others': rotor_input.of_others,
             'zero stamps': rotor_input.zero_stamps,
             'repeated stamps': rotor_input.duplicates,
+            'close resets': rotor_input.disorder.close_resets,
             'received': rotor_input.received - rotor_input.of_others,
             'unsent': connections.unsent,
             'unreferenced': self.unreferenced,
@@ -141,11 +145,11 @@ class InputMonitor(DriverMonitor):
                 yield doubt
         if rotor_input.parameters.rotor_period and grown['zero stamps']:
             yield Condition.ZERO_STAMPS(count=grown['zero stamps'])
-        if (
-            rotor_input.parameters.rotor_period
-            and 2 * grown['repeated stamps'] > grown['received']
-        ):
+        most = _MOST_REPEATED if rotor_input.parameters.rotor_period else _ALL_REPEATED
+        if grown['repeated stamps'] > most * grown['received']:
             yield Condition.REPEATED_STAMPS(count=grown['repeated stamps'])
+        if grown['close resets'] >= ALTERNATING:
+            yield Condition.CLOCKS_ALTERNATE(count=grown['close resets'])
         if grown['unsent']:
             yield Condition.UNSENT(count=grown['unsent'])
         if grown['unreferenced'] and rotor_input.referenced:

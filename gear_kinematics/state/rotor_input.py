@@ -40,11 +40,6 @@ def _limits(parameters: NodeParameters) -> tuple[float, float, float]:
     return *parameters.rotor_limits, parameters.rotor_period
 
 
-def _longest_silence(parameters: NodeParameters) -> float:
-    """Silence after which the driver may have restarted, ns, as in diagnostics; 0: never."""
-    return parameters.input_timeout * SECOND if parameters.absolute else 0.0
-
-
 class RotorInput:
     """Processes rotor_state messages and counts what is wrong with them."""
 
@@ -69,7 +64,7 @@ class RotorInput:
             period=period,
             max_speed=speed,
             max_acceleration=acceleration,
-            longest_silence=_longest_silence(parameters),
+            longest_silence=parameters.longest_silence * SECOND,
         )
         self._configure(parameters)
         self._select_joint()
@@ -77,7 +72,7 @@ class RotorInput:
     def _configure(self, parameters: NodeParameters) -> None:
         self._parameters = parameters
         self.turns.max_speed, self.turns.max_acceleration, _ = _limits(parameters)
-        self.turns.longest_silence = _longest_silence(parameters)
+        self.turns.longest_silence = parameters.longest_silence * SECOND
         self._torque_factor = parameters.rotor_direction * parameters.rotor_effort_factor
         """N·m of the rotor, in its direction, per unit of the effort in the messages."""
 
@@ -186,7 +181,7 @@ class RotorInput:
 
     def accept_batch(self, messages: Sequence[bytes], received: Sequence[int]) -> RotorSamples:
         """Process many messages with the result of `accept`; reception, ns, is their clock."""
-        self.received += len(messages)
+        before = self.received
         states = decode_joint_states(messages, self._parameters.rotor_joint)
         position = np.abs(states.values[:, 0])  # NaN if it is missing, or the message malformed
         usable = states.arrays_fit & (position <= LARGEST_ANGLE) & (states.stamp <= LATEST)
@@ -218,9 +213,11 @@ class RotorInput:
         in_order, _ = order(stamps)
         in_order &= not (last and len(stamps) and stamps[0] < last.stamp)
         in_order &= not (parameters.rotor_period or parameters.absolute)
-        if in_order and self.plausibility.believes(stamps, values[:, 0]):
-            return self._all_at_once(rows, stamps, values, clock, rejected)
-        return self._one_by_one(rows, stamps, values, clock, rejected)
+        in_order = in_order and self.plausibility.believes(stamps, values[:, 0])
+        take = self._all_at_once if in_order else self._one_by_one
+        samples = take(rows, stamps, values, clock, rejected)
+        self.received = before + len(messages)
+        return samples
 
     def _leave_others(self) -> None:
         """Count messages without the joint, which is in others, as no fault."""
@@ -260,9 +257,11 @@ class RotorInput:
     ) -> RotorSamples:
         taken = list[Row]()
         disordered = list[int]()
+        before = self.received
         for row, stamp, numbers, now in zip(
             rows.tolist(), stamps.tolist(), values.tolist(), received.tolist(), strict=True
         ):
+            self.received = before + row + 1
             try:
                 sample = self._take_row(stamp or self._clock(partial(int, now)), numbers)
             except RejectedInputError as rejection:
@@ -343,6 +342,7 @@ class RotorInput:
             raise RejectedInputError(Rejection.OUT_OF_ORDER)
         else:
             self.resets += 1
+            self.disorder.note_reset(self.received)
             self.turns.reset()
             self.plausibility.reset()
             self.velocity_field.restart()

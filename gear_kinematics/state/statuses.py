@@ -87,6 +87,11 @@ class Condition(Enum):
         'the velocities contradict the positions, which stand',
         'Check whether the encoder is stuck, its cable, and whose velocities the driver sends.',
     )
+    CLOCKS_ALTERNATE = (
+        WARN,
+        'the stamps went back by more than 1 s {count} times, as from two clocks in turn',
+        'Stop all drivers but one: steps of the positions are not found meanwhile.',
+    )
     # The following are said of recordings only.
     CLOCK_SET_BACK = (
         OK,

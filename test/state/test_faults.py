@@ -132,6 +132,12 @@ ROWS = {
         FindingCause.REPEATED_STAMPS,
         replace(MULTI, rotor_encoder_range=1000.0),
     ),
+    'constant stamp': Row(
+        [{'stamp': START} for _ in range(COUNT)],
+        {'duplicates': COUNT - 1},
+        (Condition.REPEATED_STAMPS(count=COUNT - 1),),
+        FindingCause.REPEATED_STAMPS,
+    ),
     'unnormalised stamp': Row(
         part({'nanoseconds': (99, SECOND + 60 * PERIOD)}), {'unnormalised_stamps': 1}
     ),
@@ -139,6 +145,21 @@ ROWS = {
     'clock runs backwards': Row(
         [{'stamp': START + 2 * (COUNT - k) * SECOND} for k in range(COUNT)],
         {'resets': COUNT - 1},
+        (Condition.CLOCKS_ALTERNATE(count=COUNT - 2),),
+        FindingCause.SET_BACK,
+    ),
+    'two drivers with clocks of their own': Row(
+        [
+            {'stamp': START + k * PERIOD + k % 2 * 3 * SECOND, 'offset': 9.0 * (k % 2)}
+            for k in range(COUNT)
+        ],
+        {'resets': COUNT // 2 - 1},
+        (Condition.CLOCKS_ALTERNATE(count=COUNT // 2 - 2),),
+        FindingCause.SET_BACK,
+    ),
+    'bag in a loop': Row(
+        [{'stamp': START + k % 30 * 4 * PERIOD} for k in range(COUNT)],
+        {'resets': COUNT // 30 - 1},
     ),
     'turns unseen': Row(
         moved(stamp=SECOND),
