@@ -231,6 +231,12 @@ class RotorTurns:
         self._lost = True
         self.forget_turns()
 
+    def lose_unseen(self) -> None:
+        """Treat known turns as lost, because the rotor may turn while its encoder is stuck."""
+        if self.referenced:
+            self.unknown_gaps += 1
+            self.lose()
+
     def set_back(self, time: int) -> None:
         """Note that the clock of the stamps was set back by a time, ns, since the last sample."""
         self._stamp -= time

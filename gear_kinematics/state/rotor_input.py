@@ -326,6 +326,8 @@ class RotorInput:
             return None
         position = self._unwrapped(position)
         field.note(stamp, position, velocity, self.plausibility.noise)
+        if self.turns.period and field.positions_stand:
+            self.turns.lose_unseen()
         return None if field.contradicts else velocity
 
     def _unwrapped(self, position: float) -> float:

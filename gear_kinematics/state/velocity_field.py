@@ -21,6 +21,7 @@ _READINGS = 4
 _STRIDES = 1, 4, 16  # noted readings between compared ones: more while the rotor is slow
 _FAR = 3.0  # times or less than a third of the slope: no rounding, where the rotor is slow
 _STEADY = 0.1  # of the speed: what it may vary by in a comparison
+_STANDS = 0.5  # the same where the positions stand: less than a filter's after a stop
 _AGREES = 0.25  # of the slope: delays of filters and the rest of the acceleration
 _ALIKE = 0.1  # of a factor that has a name
 _TRAVEL = 3.0  # rad, at least, in a comparison
@@ -85,11 +86,16 @@ class VelocityField:
         self._late = self._off_squares = self._change_squares = 0.0
 
     @property
+    def positions_stand(self) -> bool:
+        """Whether the positions stand although the velocities are those of a motion."""
+        return self.contradicts and math.isinf(self.factor)
+
+    @property
     def meaning(self) -> Fact | None:
         """What the velocities seem to be, if they contradict the positions."""
         if not self.contradicts:
             return Condition.VELOCITIES_LATE(delay=self.delay) if self.delay else None
-        if math.isinf(self.factor):
+        if self.positions_stand:
             return Condition.POSITIONS_STAND()
         if self.finding is VelocityMeaning.UNKNOWN:
             return Condition.VELOCITIES_UNKNOWN(meaning=self.finding, factor=self.factor)
@@ -227,7 +233,7 @@ class VelocityField:
         for (s, p, _), (t, q, _) in pairwise(readings[::stride]):
             if abs((q - p) / (t - s) * 1e9 - slope) > _STEADY * abs(slope):
                 return True
-        most = _STEADY * max(abs(mean), abs(slope))
+        most = (_STEADY if slope else _STANDS) * max(abs(mean), abs(slope))
         if any(abs(velocity - mean) > most for velocity in velocities):
             return True
         factor = mean / slope if slope else math.inf

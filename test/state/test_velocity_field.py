@@ -4,6 +4,7 @@
 import math
 import re
 from contextlib import suppress
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -132,6 +133,34 @@ def test_velocities_that_are_late_in_unsteady_motion_are_named(delay, named, ste
     assert (meaning is not None) == named
     if named:
         assert meaning == Condition.VELOCITIES_LATE(delay=pytest.approx(delay, abs=3e-3))
+
+
+@pytest.mark.parametrize('settings', [SETTINGS, replace(SETTINGS, rotor_encoder='single_turn')])
+def test_turns_that_pass_while_a_single_turn_encoder_is_stuck_stay_unknown(settings):
+    rotor, rate = RotorInput(settings), 500
+    for k in range(6 * rate):
+        turned = 50.0 * (k if k < rate else max(k - 3 * rate, rate)) / rate  # stuck until 4 s
+        stamp, position = SECOND + k * SECOND // rate, math.remainder(turned, TURN)
+        position = position if settings.single_turn else turned
+        rotor.accept(rotor_bytes(stamp, position=[position], velocity=[50.0]), int)
+        if k in {0, 3 * rate}:
+            rotor.home(0.0)
+    assert rotor.velocity_field.in_recording.condition is Condition.VELOCITIES_WERE
+    assert rotor.referenced != settings.single_turn
+    assert rotor.turns.unknown_gaps == 2 * settings.single_turn
+
+
+@pytest.mark.parametrize(('velocity', 'stuck'), [
+    (lambda t: 50.0 + 25.0 * math.sin(3.0 * t), True),
+    (lambda t: 300.0 * math.exp(-10.0 * t), False),  # of a filter behind a rotor that stops
+    (lambda t: 20.0 * math.sin(20.0 * t), False),
+])  # fmt: skip
+def test_velocities_of_an_unsteady_motion_show_that_an_encoder_is_stuck(velocity, stuck):
+    rotor, rate = RotorInput(SETTINGS), 200
+    for k in range(3 * rate):
+        stamp = SECOND + k * SECOND // rate
+        rotor.accept(rotor_bytes(stamp, position=[1.0], velocity=[velocity(k / rate)]), int)
+    assert rotor.velocity_field.positions_stand == stuck
 
 
 def test_velocities_of_an_encoder_that_is_stuck_contradict_it():
