@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# pyFRF 1.5.0: one clean blow of 2 ms is a double impact in a record of 2 s, and two blows of 1 ms are none in one of 10 s.
+# pyFRF 1.5.0: one clean blow of 2 ms is a double impact in a record of 2 s, and two blows of 1 ms are none in 10 s.
 #
 # An arm is struck by a hammer, whose force is half a sine without any noise. Expected of is_data_ok(): that it is
 # true for one blow, and false if a second one of half the force comes 30 ms later. What happens: its result depends
