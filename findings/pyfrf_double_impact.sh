@@ -4,9 +4,9 @@
 #
 # An arm is struck by a hammer, whose force is half a sine without any noise. Expected of is_data_ok(): that it is
 # true for one blow, and false if a second one of half the force comes 30 ms later. What happens: its result depends
-# on how long the record and the blow are. The check leaves out the first ten lines of a spectrum, which leaves traces
-# of any blow at all later times, and looks for the second blow beyond a hundredth of a second transform, which is 10
-# ms in a record of 2 s and 50 ms in one of 10 s. A blow of 2 ms or longer, as of a soft tip, is refused in 2 s, one
+# on how long the record and the blow are. The check transforms one half of the spectrum of the force again, which
+# leaves traces of any blow at all later times, and looks for the second blow beyond a hundredth of this transform: 10
+# ms in a record of 2 s, and 50 ms in one of 10 s. A blow of 2 ms or longer, as of a soft tip, is refused in 2 s, one
 # of 1 ms in 1 s, and the double blow of 1 ms is ok in 10 s.
 # For us: look at the force itself, such as how often it rises above a tenth of its maximum.
 #
