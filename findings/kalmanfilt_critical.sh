@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# kalmanfilt 0.3.0 (Rust): the critically damped filter of a joint's angle, speed and acceleration is not, and is slower.
+# kalmanfilt 0.3.0 (Rust): the critically damped filter of a joint's angle, speed and acceleration rings and is slower.
 #
 # critical_damping_parameters_order_three(θ) gives the three gains of a GHKFilter whose three poles are all at θ. What
 # happens: its second gain, h, is two thirds of the right one, because a 3 in the formula has the value 2. At θ = 0.9
