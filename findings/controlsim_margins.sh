@@ -16,7 +16,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 python3 -m venv "$folder/venv"
 "$folder/venv/bin/pip" install --quiet --disable-pip-version-check controlsim==0.1.0 control==0.10.2 numpy==2.4.6 \
-    scipy==1.17.1 matplotlib
+    scipy==1.17.1 matplotlib==3.10.3
 cat > "$folder/margins.py" <<'PYTHON'
 import control
 import numpy as np
