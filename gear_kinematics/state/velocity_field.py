@@ -7,7 +7,8 @@ may be that of a step of a coarse encoder, or of a vibration.
 
 import math
 from enum import StrEnum
-from itertools import pairwise
+from itertools import accumulate, pairwise
+from operator import mul
 
 import numpy as np
 
@@ -19,15 +20,17 @@ SPAN = 100_000_000  # ns, between the readings that are compared; four times tha
 _PAUSE = 10 * SPAN  # after velocities that were found right
 _READINGS = 4
 _STRIDES = 1, 4, 16  # noted readings between compared ones: more while the rotor is slow
+_MOST = 1 + (_READINGS - 1) * _STRIDES[-1]  # noted readings
 _FAR = 3.0  # times or less than a third of the slope: no rounding, where the rotor is slow
 _STEADY = 0.1  # of the speed: what it may vary by in a comparison
-_STANDS = 0.5  # the same where the positions stand: less than a filter's after a stop
+_STANDS = 0.4  # the same where the positions stand: less than a filter's after a stop
 _AGREES = 0.25  # of the slope: delays of filters and the rest of the acceleration
 _ALIKE = 0.1  # of a factor that has a name
 _TRAVEL = 3.0  # rad, at least, in a comparison
 _NOISES = 10  # of a reading, at least, in a comparison
 _FEWEST = 10  # turns between readings in a comparison of an unsteady motion
 _ALIGNED = 0.95  # the square of a correlation from which a factor explains the velocities
+_RELATED = 0.5  # the correlation that a motion has with its velocities, at least
 _LATE, _EXPLAINED = 0.03, 0.9
 """s, and the square of a correlation, from which a delay is worth a word. Noise of the positions
 looks like half of `SPAN`, but explains a half."""
@@ -82,6 +85,7 @@ class VelocityField:
     def _begin_block(self) -> None:
         self._turns = 0  # between readings, and what is known of them
         self._path = self._squares = self._velocity_squares = self._products = 0.0
+        self._sparse = False  # whether a reading had one velocity only, that at its end
         # Products of what the velocities differ by and what the speed changed by, as travels.
         self._late = self._off_squares = self._change_squares = 0.0
 
@@ -97,7 +101,7 @@ class VelocityField:
             return Condition.VELOCITIES_LATE(delay=self.delay) if self.delay else None
         if self.positions_stand:
             return Condition.POSITIONS_STAND()
-        if self.finding is VelocityMeaning.UNKNOWN:
+        if self.finding is VelocityMeaning.UNKNOWN and not math.isnan(self.factor):
             return Condition.VELOCITIES_UNKNOWN(meaning=self.finding, factor=self.factor)
         return Condition.VELOCITIES_ARE(meaning=self.finding)
 
@@ -152,12 +156,13 @@ class VelocityField:
             readings.clear()
         travel = max(_TRAVEL, _NOISES * noise)
         if self._count:
+            self._sparse |= self._count == 1
             mean, self._total, self._count = self._total / self._count, 0.0, 0
             self._moved |= mean != 0.0
             readings.append((stamp, position, mean))
             if len(readings) > 1:
                 self._follow(travel)
-        del readings[: -1 - (_READINGS - 1) * _STRIDES[-1]]
+        del readings[:-_MOST]
         for stride in _STRIDES:
             if self._compare(travel, stride):
                 break
@@ -189,9 +194,27 @@ class VelocityField:
                 factor = self._products / self._squares
                 if self._meaning_of(factor) is not VelocityMeaning.UNKNOWN:
                     self._decide(factor)
+            elif not (self._sparse or self._may_be_late) and self._unrelated():
+                self._decide(math.nan)
             self._begin_block()
         elif self._turns > _READINGS * _STRIDES[-1]:
             self._begin_block()
+
+    def _unrelated(self) -> bool:
+        """Return whether the velocities of all readings, nearly 5 s, are those of no such motion.
+
+        Travels over short times do not match where a driver repeats readings, but longer ones do.
+        """
+        turned = [position for _, position, _ in self._readings]
+        travels = [v * (t - s) for (s, *_), (t, _, v) in pairwise(self._readings)]
+        given = [*accumulate(travels, initial=0.0)]
+        for stride in _STRIDES:
+            motions = [b - a for a, b in zip(turned, turned[stride:], strict=False)]
+            expected = [b - a for a, b in zip(given, given[stride:], strict=False)]
+            least = _RELATED * math.hypot(*motions) * math.hypot(*expected)
+            if len(turned) < _MOST or sum(map(mul, motions, expected)) >= least:
+                return False
+        return True
 
     def _note_delay(self) -> None:
         """Say that velocities are late if two blocks in a row show it, until one shows that not.

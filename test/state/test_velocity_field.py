@@ -111,6 +111,37 @@ def test_velocities_are_judged_by_their_mean_however_unsteady_the_motion_is(
     assert (found and found.values['meaning']) == meaning
 
 
+def swinging(t):
+    """Position, rad, velocity and acceleration."""
+    waves = [(40.0, 4.4, 0.0), (20.0, 1.9, 1.0)]
+    return [
+        sum(size * w**n * math.sin(w * t + start + n * math.pi / 2.0) for size, w, start in waves)
+        for n in range(3)
+    ]
+
+
+@pytest.mark.parametrize(('sent', 'wrong'), [
+    (lambda x, _v, _a: x, True), (lambda _x, _v, a: a, True), (lambda _x, v, _a: abs(v), True),
+    (lambda _x, v, _a: v, False), (lambda _x, v, _a: 10.0 * round(v / 10.0), False),
+])  # fmt: skip
+@pytest.mark.parametrize('held', [0.0, 0.2])
+def test_what_is_no_velocity_at_all_is_found_in_unsteady_motion(sent, wrong, held):
+    rotor, rate = RotorInput(replace(SETTINGS, max_rotor_acceleration=1e6)), 100
+    samples = []
+    for k in range(14 * rate):
+        t = k / rate
+        read = held * math.floor(t / held) if held else t  # a driver repeats readings
+        data = rotor_bytes(
+            SECOND + round(t * SECOND), position=[swinging(read)[0]], velocity=[sent(*swinging(t))]
+        )
+        with suppress(RejectedInputError):
+            samples.append(rotor.accept(data, int))
+    assert rotor.velocity_field.contradicts == wrong
+    named = Condition.VELOCITIES_ARE(meaning='an unknown quantity')
+    assert rotor.velocity_field.meaning == (named if wrong else None)
+    assert (samples[-1].velocity is None) == wrong
+
+
 def test_velocities_that_are_noise_around_zero_are_not_used():
     rotor = RotorInput(SETTINGS)
     samples = [rotor.accept(data, int) for data in messages(0.0, scatter=2.0)]
