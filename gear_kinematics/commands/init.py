@@ -24,6 +24,7 @@ from gear_kinematics.parameters.new_config import (
     write_new,
 )
 from gear_kinematics.report.document import printable
+from gear_kinematics.wire.batches import JointStateBatch
 from gear_kinematics.wire.nearest import among, listed
 
 _ASSUMED = 'could not be determined, and is assumed to be multi_turn'
@@ -66,7 +67,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     topic = chosen[0].topic
     ratios = _ratios(options, [channel.joint for channel in chosen])
     heard = next(driver.messages for driver in drivers if driver.topic == topic)
-    data, received = [m[2] for m in heard], [m[1] for m in heard]
+    data, received = JointStateBatch([m[2] for m in heard]), [m[1] for m in heard]
     encoders = {joint: kind_of_encoder(data, received, joint) for joint in ratios}
     found = {
         joint: (ratio, options.teeth, {e.name: e.value for e in encoders[joint] if e.value})

@@ -10,7 +10,7 @@ from pathlib import Path
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Console, stopped_by_signals, warn_of_shared_memory
 from gear_kinematics.parameters import NODE, NodeParameters
-from gear_kinematics.report.document import counted
+from gear_kinematics.report.document import counted, hertz
 from gear_kinematics.wire.nearest import listed
 
 
@@ -72,7 +72,7 @@ def run(options: argparse.Namespace) -> ExitCode:
             )
     print(f'{options.out}: {counted(sum(p.count for p in heard.values()), "message")}')
     for topic, polled in sorted(heard.items()):
-        rate = f', {polled.mean_rate:.0f} Hz' * (polled.count > 1)
+        rate = f', {hertz(polled.mean_rate)}' * (polled.count > 1)
         lost = f', {polled.lost} lost on the way' * bool(polled.lost)
         print(f'    {topic}: {counted(polled.count, "message")}{rate}{lost}')
     if any(polled.lost for polled in heard.values()):

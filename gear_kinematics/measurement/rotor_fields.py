@@ -52,6 +52,8 @@ def questions(
     stamp, values = _in_order(states, stamp)
     if len(stamp) < _FEWEST:
         return
+    if not np.any(values[:, 0] % 1.0) and len(np.unique(values[:, 0])) >= _FEWEST:
+        yield Observation.COUNTS()
     values[:, 0], (period, _) = _unwrapped(stamp, values[:, 0])
     steps = np.abs(np.diff(values[:, 0]))
     given = values[np.isfinite(values[:, 1]), 1]

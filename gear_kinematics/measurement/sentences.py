@@ -279,6 +279,10 @@ class Observation(Enum):
     )
     # What the messages of a rotor seem to have wrong
     SIZES_DIFFER = '{count:%d message|%d messages} rejected: ' + Rejection.ARRAY_SIZES
+    COUNTS = (
+        'the positions are whole numbers, as of an encoder in counts: let the driver send rad of '
+        'the rotor'
+    )
     STAMPS_REPEAT = '{count} of {total} stamps repeat the one before'
     NO_EFFORT = 'the effort is 0 throughout the motion, and taken as none'
     # What differs between recordings

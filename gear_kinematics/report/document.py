@@ -306,6 +306,11 @@ def number(value: float, digits: int = 3) -> str:
     return f'{mantissa}{e}{int(exponent)}' if e else mantissa
 
 
+def hertz(rate: float) -> str:
+    """Write a rate, Hz, without decimals unless it is low."""
+    return f'{rate:.2g} Hz' if len(f'{rate:.0f}') == 1 else f'{rate:.0f} Hz'
+
+
 def counted(count: int, noun: str) -> str:
     """Write a count with its noun."""
     return f'{count} {noun}' if count == 1 else f'{count} {noun}s'

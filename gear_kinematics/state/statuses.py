@@ -32,7 +32,7 @@ _EFFORT = (
     'set rotor_effort_factor (N·m per unit) if the messages have another unit, such as mA'
 )
 _TOO_SELDOM = (
-    '{rate:.0f} Hz is too slow to count turns at a max_rotor_speed of {limit:.4g} rad/s: lower it '
+    '{rate:g} Hz is too slow to count turns at a max_rotor_speed of {limit:.4g} rad/s: lower it '
     'to {speed:.3g} rad/s or less, or let the driver send at {least:.0f} Hz or more{other}'
 )
 _PEAK_TO_PEAK = 'peak to peak {angle:.3g} rad'

@@ -84,7 +84,7 @@ def too_seldom(
     if 2.0 * max_speed * gap <= period or (known and enough):
         return None
     return Condition.TOO_SELDOM(
-        rate=1.0 / gap,
+        rate=float(f'{1.0 / gap:.3g}'),
         limit=max_speed,
         speed=0.5 * period / (_RESERVE * gap),
         least=_RESERVE * 2.0 * max_speed / period,

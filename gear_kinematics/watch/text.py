@@ -17,7 +17,7 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
-from gear_kinematics.report.document import printable
+from gear_kinematics.report.document import hertz, printable
 from gear_kinematics.ros.live import replay_node
 from gear_kinematics.watch.commissioning import LiveCommissioning
 from gear_kinematics.watch.drivers import DriverTopic, Listener
@@ -40,7 +40,7 @@ def list_drivers(drivers: Sequence[DriverTopic], console: Console) -> None:
             'no topic of type JointState: is the driver running, with the same ROS_DOMAIN_ID?'
         )
     for driver in drivers:
-        line = f'{driver.topic}: {", ".join(driver.joints)} at {driver.rate:.0f} Hz'
+        line = f'{driver.topic}: {", ".join(driver.joints)} at {hertz(driver.rate)}'
         console.print(Text(printable(line)), soft_wrap=True)
 
 
@@ -68,7 +68,7 @@ def show(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> Non
         if not console.is_terminal:
             return rows, True
         if view.state == 'no node':
-            rows += [Entry(d.topic, ', '.join(d.joints), f'{d.rate:.0f} Hz') for d in view.drivers]
+            rows += [Entry(d.topic, ', '.join(d.joints), hertz(d.rate)) for d in view.drivers]
         if asked:
             text, done = asked.result() if asked.done() else (UNANSWERED, True)
             rows.append(Entry('', text, '', '' if done else 'bad'))
@@ -117,7 +117,7 @@ def show_recording(recorder: Recorder, console: Console, stopped: Callable[[], b
             rows = [Entry('recording', ', '.join(recorder.heard))]
         if console.is_terminal:
             rows = [
-                *(Entry(topic, f'{polled.rate:.0f} Hz', f'{polled.count} messages')
+                *(Entry(topic, hertz(polled.rate), f'{polled.count} messages')
                   for topic, polled in recorder.heard.items()),
                 Entry('', '' if recorder.heard else rows[0].value, 'q end'),
             ]  # fmt: skip

@@ -11,6 +11,7 @@ from typing import Literal
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.wording import shown
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.report.document import hertz
 from gear_kinematics.shape.angles import arc
 from gear_kinematics.state.statuses import ERROR, OK, WARN
 from gear_kinematics.watch.drivers import DriverTopic
@@ -153,7 +154,7 @@ def values_of(gear: GearNode) -> Iterator[Entry]:
             speed = _RPM * output.velocity
             detail = f'rotor {ratio.rotor_angle(speed):z.1f} rpm'
             yield Entry('output speed', f'{speed:z.2f} rpm', detail, tone)
-        yield Entry('output rate', f'{output.rate:.0f} Hz')
+        yield Entry('output rate', hertz(output.rate))
     zero, homed = parameters.rotor_zero, gear.homed_zero
     kept = _diagnostic(gear, 'rotor input', 'home file')
     if lost := homed not in (None, zero):

@@ -105,8 +105,10 @@
     showEntries(find('values'), now.values);
     showEntries(find('diagnostics'), now.diagnostics);
     showCurve(now.output);
-    showEntries(find('drivers').lastElementChild, now.drivers.map(({topic, joints, rate}) =>
-      ({name: topic, value: joints.join(', '), detail: `${rate.toFixed(0)} Hz`, tone: ''})));
+    showEntries(find('drivers').lastElementChild, now.drivers.map(({topic, joints, rate}) => {
+      const often = rate < 9.5 ? +rate.toPrecision(2) : Math.round(rate);
+      return {name: topic, value: joints.join(', '), detail: `${often} Hz`, tone: ''};
+    }));
     showJoints(now.drivers);
     showGuide(now.guide);
   }

@@ -77,6 +77,16 @@ def test_stamps_that_repeat_are_named(tmp_path):
     assert asked == Observation.STAMPS_REPEAT(count=792, total=800)
 
 
+@pytest.mark.parametrize('counts', [16384.0, 100.0])
+def test_counts_of_an_encoder_are_named(counts):
+    """They are no rad, unlike positions with one decimal, and those of a rotor at rest."""
+    counted, radians = np.rint(ROTOR / math.tau * counts), np.round(ROTOR, 1)
+    for positions, told in (counted, [Observation.COUNTS()]), (radians, []), (0.0 * ROTOR, []):
+        pairs = zip(map(int, stamps(TIMES)), positions, strict=True)
+        data = [rotor_bytes(stamp, position=[position]) for stamp, position in pairs]
+        assert [*questions(data, [0] * len(data), 'rotor')] == told
+
+
 @pytest.mark.parametrize(
     ('rate', 'velocity', 'asked'),
     [

@@ -9,7 +9,7 @@ import pytest
 import report_samples as samples
 from rich.console import Console
 
-from gear_kinematics.report.document import Verdict, number
+from gear_kinematics.report.document import Verdict, hertz, number
 from gear_kinematics.report.text import lines, render
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.document import document
@@ -179,6 +179,14 @@ def test_colours_tell_what_is_bad():
 )
 def test_numbers_are_short(value, written):
     assert number(value) == written
+
+
+@pytest.mark.parametrize(
+    ('rate', 'written'),
+    [(1003.4, '1003 Hz'), (9.6, '10 Hz'), (9.4, '9.4 Hz'), (1.0, '1 Hz'), (0.33, '0.33 Hz')],
+)
+def test_a_low_rate_is_not_0(rate, written):
+    assert hertz(rate) == written
 
 
 def test_zero_tolerance_is_used_up_by_any_error():
