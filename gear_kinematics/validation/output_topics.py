@@ -102,6 +102,7 @@ class OutputState(JointStateTopic):
         self._factors = {'velocity': FactorFit(), 'effort': FactorFit()}
         self._adopted = -1  # number of the latest sample that was given a stamp
         self._absent_velocities = Occurrences()
+        self._only_zeros = True  # whether all given velocities were 0, and no output had one
 
     def _expected(self, samples: Window) -> Sequence[Bounds]:
         ratio = self._gear.gear_ratio
@@ -136,8 +137,10 @@ class OutputState(JointStateTopic):
         none = ~states.present[rows].T
         if self.shared:
             none |= np.isnan(states.values[rows].T)
-        without = window['velocity_open'][at] & none[1] & ~np.isnan(window['velocity'][at])
-        self._without_velocity = without
+        velocity = window['velocity'][at]
+        given = window['velocity_open'][at] & ~np.isnan(velocity)
+        self._without_velocity = without = given & none[1]
+        self._only_zeros &= not np.any(given & ((velocity != 0.0) | ~none[1]))
         self._absent_velocities.add(window['stamp'][at[without]])
         window['velocity'][at[without]] = np.nan
         window['effort'][at[still_open & (states.values[rows, 2] == 0.0)]] = 0.0
@@ -149,9 +152,10 @@ class OutputState(JointStateTopic):
     def judge_velocities(self, *, contradict: bool) -> None:
         """Count outputs without a velocity from before the meaning of velocities was found.
 
-        They are right if the velocities contradict the positions, as the node may have known.
+        They are right if the velocities contradict the positions, as the node may have known. It
+        may also have known, from a motion before, what a recording of zeros alone does not show.
         """
-        if not contradict:
+        if not (contradict or self._only_zeros):
             self.errors[1].absent.add_all(self._absent_velocities)
             self._wrong += self._wrong_without_velocity
 

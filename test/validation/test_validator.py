@@ -210,6 +210,10 @@ def without_velocity(message) -> None:
     message.velocity = np.zeros(0)
 
 
+def with_velocity_0(message) -> None:
+    message.velocity = np.zeros(1)
+
+
 def in_rpm(message) -> None:
     message.velocity = message.velocity * 30.0 / math.pi
 
@@ -230,6 +234,25 @@ def test_what_values_mean_can_be_known_from_before_the_recording(
 ):
     changed = change_all(read_bag(BAGS / name), ROTOR, rotor)
     report = validate(change_all(changed, OUTPUT, outputs), config)
+    assert (report.verdict == Verdict.PASS) is passes
+
+
+@pytest.mark.parametrize(
+    ('topic', 'edit', 'passes'),
+    [
+        (OUTPUT, without_velocity, True),
+        (OUTPUT, with_velocity_0, False),
+        (ROTOR, fill('velocity', 1e-6), False),
+    ],
+)
+def test_zeros_for_velocities_may_have_been_known_from_before_a_short_recording(
+    recorded, config, topic, edit, passes
+):
+    """The node saw the rotor move before, without a velocity; one message is edited."""
+    zeros = change_all(recorded[:600], ROTOR, fill('velocity', 0.0))
+    changed, _ = change_one(change_all(zeros, OUTPUT, without_velocity), topic, edit)
+    report = validate(changed, config)
+    assert not report.rotor.velocity_is
     assert (report.verdict == Verdict.PASS) is passes
 
 
