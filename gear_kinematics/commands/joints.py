@@ -51,9 +51,11 @@ def choose_joint(
     for number, (topic, joint) in enumerate(found, 1):
         print(f'{number:3}  {printable(joint)} on {topic}')
     answer = ask(f'Number of the joint of the {role}{hint}: ')
-    if not (answer.isdecimal() and 1 <= int(answer) <= len(found)):
-        raise ValueError(f'{answer!r} is not a number from 1 to {len(found)}')
-    return found[int(answer) - 1]
+    if answer.isdecimal() and 1 <= int(answer) <= len(found):
+        return found[int(answer) - 1]
+    if len(named := [joint for joint in found if joint.joint == answer]) == 1:
+        return named[0]
+    raise ValueError(f'{answer!r} is not a number from 1 to {len(found)}')
 
 
 def joints_of_arm(joints: Sequence[Channel], topic: str) -> list[Channel]:

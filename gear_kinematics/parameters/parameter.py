@@ -27,7 +27,7 @@ class Parameter:
         """Return the fault of a value, or None."""
         kind = type(value)
         if kind is not self.kind:
-            quoted = ''
+            quoted = f'; write {value}.0' if (kind, self.kind) == (int, float) else ''
             if self.kind is str and kind in {int, float} and math.isfinite(value):
                 texts = dict.fromkeys((str(Fraction(str(value))), str(value)))
                 quoted = f'; quote it: {" or ".join(map(repr, texts))}'

@@ -27,7 +27,7 @@ from rich.console import Console
 from sensor_msgs.msg import JointState
 from watching import DEADLINE, WatcherStandIn
 
-from gear_kinematics.commands import init
+from gear_kinematics.commands import init, joints
 from gear_kinematics.commands.cli import main
 from gear_kinematics.measurement.commissioning.analysis import Channel
 from gear_kinematics.parameters import NodeParameters
@@ -737,6 +737,19 @@ def test_init_asks_for_the_ratio_of_each_joint(listening, monkeypatch, capsys):
     assert said.count(' (Enter: -101): ') == 2
     ratios = [each.gear_ratio for each in load_actuators(listening / 'actuator.yaml').values()]
     assert ratios == ['-101', '-101', '101/2']
+
+
+@pytest.mark.parametrize('answer', ['2', 'm1', 'm2'])
+def test_init_takes_the_number_or_the_name_of_a_joint(listening, monkeypatch, capsys, answer):
+    monkeypatch.setattr(joints, 'can_ask', lambda: True)
+    monkeypatch.setattr('builtins.input', lambda _: answer)
+    known = answer != 'm2'
+    assert main(['init', '--ratio', '-19']) == (0 if known else 2)
+    told = capsys.readouterr()
+    assert '  2  m1 on /motor/joint_states\n' in told.out
+    assert ("'m2' is not a number from 1 to 2" in told.err) is not known
+    written = [NodeParameters.load(file).rotor_joint for file in listening.iterdir()]
+    assert written == ['m1'] * known
 
 
 def test_init_without_an_answer_writes_nothing(listening, monkeypatch, capsys):
