@@ -28,8 +28,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Record until interrupted; ValueError if nothing was heard."""
-    configs = arguments.load_configs(options)
-    files = bags.files_of(options, configs, None) if options.config else {}
+    if options.actuator and not options.config:
+        raise ValueError('--actuator chooses in --config FILE: running arms are recorded whole')
+    configs = arguments.load_configs(options) if options.config else {}
+    files = bags.files_of(options, configs, None) if configs else {}
     warn_of_shared_memory(participants=1)
     # These need ROS, unlike most commands, and the last one rosbags.
     from gear_kinematics.ros.live import replay_node  # noqa: PLC0415
@@ -50,7 +52,7 @@ def run(options: argparse.Namespace) -> ExitCode:
             def ask(gear: str) -> None:
                 answers[gear] = thread.submit(parameters_of, asking, gear)
 
-            loads = bool(options.config and any(each.preload for each in configs.values()))
+            loads = any(each.preload for each in configs.values())
             found = (lambda _: None) if files else ask
             recorder = Recorder(node, bag, options.node, loads=loads, found=found)
             show_recording(recorder, Console(), stopped)
@@ -65,11 +67,9 @@ def run(options: argparse.Namespace) -> ExitCode:
         heard = recorder.heard
         missing = listed(sorted(recorder.inputs - heard.keys()))
         if not recorder.inputs & heard.keys():
-            raise ValueError(
-                f'nothing was recorded: no driver was heard on {missing}'
-                if missing
-                else 'nothing was recorded: no gear_state_publisher runs with this ROS_DOMAIN_ID'
-            )
+            none = recorder.absent or 'no gear_state_publisher runs with this ROS_DOMAIN_ID'
+            why = f'no driver was heard on {missing}' if missing else none
+            raise ValueError(f'nothing was recorded: {why}')
     print(f'{options.out}: {counted(sum(p.count for p in heard.values()), "message")}')
     for topic, polled in sorted(heard.items()):
         rate = f', {hertz(polled.mean_rate)}' * (polled.count > 1)

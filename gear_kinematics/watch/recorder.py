@@ -16,6 +16,7 @@ from gear_kinematics.ros.graph import Graph
 from gear_kinematics.ros.outputs import message_type
 from gear_kinematics.watch.polled import Polled
 from gear_kinematics.wire import topics
+from gear_kinematics.wire.nearest import among
 
 if TYPE_CHECKING:
     from gear_kinematics.bag.writing import BagWriter  # needs an extra
@@ -46,6 +47,7 @@ class Recorder:
         self._left_out = {topics.JOINT_STATES, *(() if loads else topics.LOAD_TOPICS)}
         self.heard: dict[str, Polled] = {}  # the topics on which messages have come
         self.gears: set[str] = set()  # full names of the gear nodes
+        self.absent = ''  # that the wanted node is not running, if others are
         self.inputs: set[str] = set()  # the topics to which the gear nodes subscribe
         self._node, self._bag = node, bag
         self._wanted = '' if wanted == NODE else f'/{wanted.removeprefix("/")}'
@@ -57,7 +59,11 @@ class Recorder:
 
     def poll(self) -> None:
         """Look for topics, and write the messages that have arrived; to be called often."""
-        for gear in Graph(self._node).gears:
+        running = Graph(self._node).gears
+        self.absent = ''
+        if running and self._wanted not in {'', *running}:
+            self.absent = f'{self._wanted} is not running{among(self._wanted, running)}'
+        for gear in running:
             if gear == self._wanted or not self._wanted:
                 if gear not in self.gears:
                     self.gears.add(gear)

@@ -112,7 +112,7 @@ def show_recording(recorder: Recorder, console: Console, stopped: Callable[[], b
 
     def frame(pressed: str) -> tuple[list[Entry], bool]:
         recorder.poll()
-        rows = [Entry('waiting', 'for a gear_state_publisher')]
+        rows = [Entry('waiting', recorder.absent or 'for a gear_state_publisher')]
         if recorder.heard:
             rows = [Entry('recording', ', '.join(recorder.heard))]
         if console.is_terminal:

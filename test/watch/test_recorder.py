@@ -10,6 +10,7 @@ from types import SimpleNamespace
 from unittest.mock import MagicMock
 
 import pytest
+from blocked_bags import refusal
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.qos import ReliabilityPolicy as Offer
 from watching import DEADLINE, ENCODER, JUDGED, MOTOR, NAMESPACE, NODE, driving, gearkin, node
@@ -94,6 +95,22 @@ def test_driver_that_starts_later_finds_a_subscription_of_its_reliability(offere
     assert [each.qos.reliability for each in opened] == [offered]
     _, polled = recorder._open['/motor']
     assert [polled._subscription] == opened
+
+
+def test_a_mistyped_node_is_named_beside_those_that_run(monkeypatch):
+    running = []
+    monkeypatch.setattr(module, 'Graph', lambda _: SimpleNamespace(gears=[*running]))
+    monkeypatch.setattr(Recorder, '_look', lambda *_: None)
+    recorder = Recorder(None, SimpleNamespace(write_all=lambda _: None), 'left/geer')
+    told = [recorder.poll() or recorder.absent for running[:] in ([], ['/left/gear'])]
+    hint = 'did you mean `/left/gear`? there are: /left/gear'
+    assert told == ['', f'/left/geer is not running; {hint}']
+
+
+def test_an_actuator_is_chosen_in_a_file_alone(tmp_path):
+    error = '--actuator chooses in --config FILE: running arms are recorded whole'
+    assert refusal('record', str(tmp_path / 'monday'), '--actuator', 'elbow') == error
+    assert not [*tmp_path.iterdir()]
 
 
 def test_the_parameters_of_each_node_that_answers_are_kept(tmp_path):
