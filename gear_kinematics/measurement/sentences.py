@@ -124,8 +124,9 @@ class Observation(Enum):
         'or locked.'
     )
     INFERRED = (
-        'Inferred, not measured: the angle is that of the motor encoder, with the output taken to '
-        'be locked. The figures include the compliance of motor, bench and clamping.'
+        'Inferred: no angle is known to be that of an encoder at the output, as by a name such as '
+        'output_angle. With that of the motor and a locked output, the figures include the '
+        'compliance of motor, bench and clamping.'
     )
     READ_BELOW_FRICTION = (
         'Lost motion is read at ±{torque:si} N·m, below the friction of {friction:si} N·m: it '
