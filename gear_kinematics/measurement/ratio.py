@@ -27,6 +27,7 @@ _MAX_DISTANCE = 2
 has it beyond a single one."""
 _BEYOND = 0.05  # share of such recordings: a coincidence must be as much less likely there
 _CANDIDATES = 10
+_MULTIPLE = 1e-3  # from a whole multiple of the assumed ratio, as by wrong counts per turn
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +79,9 @@ def wrong_ratio(encoders: Encoders, assumed: Fraction) -> Observed | None:
     else:
         what = Observation.ANOTHER_RATIO if found.taken else Observation.OTHER_RATIOS
         ratio = found.candidates[0]
+        times = round(found.measured.value / assumed)
+        if times > 1 and abs(found.measured.value / (times * assumed) - 1) < _MULTIPLE:
+            what, ratio = Observation.MULTIPLE_RATIO, times * assumed
     return what(measured=found.measured, assumed=assumed, ratio=ratio)
 
 

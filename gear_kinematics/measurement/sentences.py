@@ -103,6 +103,9 @@ class Observation(Enum):
     COUNTS_BACKWARDS = _RATIO + ': an encoder counts backwards, or --ratio={ratio} is right'
     ANOTHER_RATIO = _RATIO + '; gearkin commission finds it, or give --ratio={ratio}'
     OTHER_RATIOS = _RATIO + '; gearkin commission finds it, or give it, such as --ratio={ratio}'
+    MULTIPLE_RATIO = (
+        _RATIO + ', but a multiple: check counts per turn and units, or give --ratio={ratio}'
+    )
     TURN_FURTHER = 'turn the output by {degrees}° or more'
     SAMPLE_TOGETHER = 'turning further hardly helps: sample both encoders at once, and more often'
     # What torque ramps show

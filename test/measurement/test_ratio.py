@@ -256,6 +256,14 @@ def test_a_wrong_ratio_is_named_with_the_recorded_one(assumed, encoder):
     assert values['measured'].value == pytest.approx(-58 / 3, abs=5e-3)
 
 
+@pytest.mark.parametrize(('counts', 'ratio'), [(4096, -76), (8192, -38)])
+def test_counts_per_turn_that_are_too_few_are_suspected(counts, ratio):
+    """An encoder of 16384 counts a turn."""
+    rotor, output = angles(Fraction(-19), 6.0, noise=1e-5)
+    what, values = wrong_ratio(encoders(rotor * 16384 / counts, output), GearRatio(-19))
+    assert (what, values['ratio']) == (Observation.MULTIPLE_RATIO, ratio)
+
+
 @pytest.mark.parametrize(
     ('rotor', 'output', 'cause'),
     [
