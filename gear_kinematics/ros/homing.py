@@ -103,4 +103,6 @@ class Homing:
             zero, moved = found[name]
             kept = f'rotor_zero {zero:.3f} rad, {actuator.state.monitor.zero_kept}'
             texts.append(labelled(name, f'{moved} ({kept})'))
-        return True, '; '.join(texts)
+        homed = '; '.join(texts)
+        self._node.get_logger().info(homed)
+        return True, homed

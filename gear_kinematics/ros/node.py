@@ -127,6 +127,8 @@ class GearStatePublisher(PublishingNode):
             gear, known = each.gear, 'bodies unknown'
             if isinstance(gear, Mechanism):
                 known = f'ring {gear.ring_teeth}, satellite {gear.satellite_teeth} teeth'
+            if each.rotor_period and not each.absolute:
+                known += '; turns unknown until it is homed'
             joint = f'joint {each.rotor_joint!r}' if each.rotor_joint else 'the only joint'
             texts.append(labelled(name, f'{joint}, gear ratio {gear.gear_ratio} ({known})'))
         topic = self._rotor_driver.subscription.topic_name

@@ -42,12 +42,13 @@ def values_of(node):
 TURNED = -20.394
 
 
-def test_answer_can_be_checked_by_a_person(homing, tmp_path):
+def test_answer_can_be_checked_by_a_person(homing, tmp_path, capfd):
     node = homing()
     drive(node, [TURNED])
     answer = home(node)
     words = 'the shaft was at 61.5° and is now 0.0° (rotor_zero -20.394 rad, '
     assert (answer.success, answer.message) == (True, words + 'lost at restart: set home_file)')
+    assert f'gear_state_publisher]: {answer.message}\n' in capfd.readouterr().err
     path = tmp_path / 'home.yaml'
     node = homing(home_file=str(path))
     assert values_of(node)['home file'] == 'not homed yet'
@@ -55,6 +56,15 @@ def test_answer_can_be_checked_by_a_person(homing, tmp_path):
     assert home(node).message == f'{words}kept in {path})'
     again = 'the shaft was at 0.0° and is now 0.0° (rotor_zero -20.394 rad, '
     assert home(node).message == f'{again}kept in {path})'
+
+
+@pytest.mark.parametrize('encoder', ['single_turn', 'multi_turn'])
+def test_log_says_at_the_start_that_the_turns_are_unknown(homing, capfd, encoder):
+    node = homing(rotor_encoder=encoder)
+    drive(node, [TURNED])
+    unknown = values_of(node)['referenced'] == 'false'
+    logged = 'satellite 76 teeth; turns unknown until it is homed)' in capfd.readouterr().err
+    assert unknown is logged is (encoder == 'single_turn')
 
 
 @pytest.mark.parametrize(
