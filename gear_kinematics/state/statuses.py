@@ -61,7 +61,7 @@ class Condition(Enum):
     GAP = (
         ERROR,
         'a gap of {gap:.3f} s could hide a turn of the rotor',
-        'Let the driver send without gaps, or lower max_rotor_speed.',
+        'Let the driver send without gaps, or lower max_rotor_speed to what the motor reaches.',
     )
     REJECTED = (
         WARN,
