@@ -82,8 +82,10 @@ class BagWriter:
     """Writes a rosbag2 folder, version 9; the same messages always give the same bytes.
 
     A context manager. The folder is renamed to `path` when it is complete; after an exception or
-    an interruption, nothing is left.
+    an interruption, nothing is left, unless it `keeps` what was written before.
     """
+
+    keeps = False
 
     def __init__(
         self,
@@ -132,9 +134,17 @@ class BagWriter:
     ) -> None:
         """Finish the recording, or remove it after an exception; raises BagError if that fails."""
         with bag_errors(self.path), self._folder:
-            self._writer.__exit__(kind, error, trace)
-            if kind is None:
+            try:
+                with bag_errors(self.path):
+                    self._writer.__exit__(kind, error, trace)
+            except BagError as unfinished:
+                if not self.keeps:
+                    raise
+                error = error or unfinished
+            if error is None or self.keeps:
                 self._partial.rename(self.path)
+            if self.keeps and isinstance(error, BagError):
+                raise BagError(f'{error}; what was written before is kept') from error
 
     def add_file(self, name: str, content: bytes) -> None:
         """Put another file into the folder; raises BagError if it cannot be written."""

@@ -67,6 +67,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         heard = recorder.heard
         missing = listed(sorted(recorder.inputs - heard.keys()))
         if not recorder.inputs & heard.keys():
+            bag.keeps = False
             none = recorder.absent or 'no gear_state_publisher runs with this ROS_DOMAIN_ID'
             why = f'no driver was heard on {missing}' if missing else none
             raise ValueError(f'nothing was recorded: {why}')

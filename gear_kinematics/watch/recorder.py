@@ -79,6 +79,7 @@ class Recorder:
             if polled.last and topic not in self.heard:
                 self.heard[topic] = polled
                 self._bag.add_topic(topic, kind)
+                self._bag.keeps = True  # what was heard cannot be heard again
         self._bag.write_all(sorted(messages, key=itemgetter(1)))
 
     def _look(self, namespace: str, name: str) -> None:

@@ -2,6 +2,7 @@
 """Written bags: complete or nothing, read by others, with the descriptions of copied topics."""
 
 import re
+from contextlib import suppress
 from pathlib import Path
 
 import mcap.reader
@@ -13,7 +14,7 @@ from rosbags import rosbag2
 from rosbags.rosbag2.metadata import parse_qos
 from shipped_bags import TYPES, read_bag, write_bag
 
-from gear_kinematics.bag import Bag, BagError, TopicError
+from gear_kinematics.bag import Bag, BagError, DamagedBagError, Message, TopicError
 from gear_kinematics.bag.writing import BagWriter
 
 FORMS = [('mcap', 'none'), ('mcap', 'zstd'), ('sqlite3', 'none'), ('sqlite3', 'zstd')]
@@ -76,6 +77,34 @@ def test_an_interruption_leaves_nothing(recorded, tmp_path, storage, compression
     with pytest.raises(error):
         write_bag(tmp_path / 'bag', interrupted(), storage=storage, compression=compression)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize('step', ['write', 'close'])
+def test_a_bag_keeps_what_was_written_before_the_disk_was_full(
+    recorded, tmp_path, monkeypatch, step
+):
+    def full(*_):
+        raise OSError(28, 'No space left on device')
+
+    def write():
+        with BagWriter(tmp_path / 'bag') as writer:
+            for topic, kind in TYPES.items():
+                writer.add_topic(topic, kind)
+            writer.keeps = True
+            writer.write_all(recorded)
+            writer._file.close_chunk()
+            monkeypatch.setattr(writer._file, step, full)
+            writer.write_all(recorded[:1])
+
+    with pytest.raises(BagError) as raised:
+        write()
+    words = 'No space left on device; what was written before is kept'
+    assert str(raised.value) == f'{tmp_path}/bag: {words}'
+    assert [each.name for each in tmp_path.iterdir()] == ['bag']
+    read = list[Message]()
+    with Bag(tmp_path / 'bag') as bag, suppress(DamagedBagError):
+        read.extend(bag.messages(bag.topics))
+    assert read == recorded
 
 
 def test_a_bag_that_cannot_be_finished_leaves_nothing(tmp_path, monkeypatch):
