@@ -37,7 +37,7 @@ def findings(report: BagReport) -> list[Sentence]:
         if not each.passed
     ]
     wrong = [*report.causes, *gravest, *faults(report)]
-    wrong.sort(key=lambda found: found.cause in LESS_GRAVE)
+    wrong.sort(key=lambda found: (found.cause in LESS_GRAVE, not found.explains))
     return damage + [
         Sentence(
             'finding',

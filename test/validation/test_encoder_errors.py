@@ -16,6 +16,7 @@ from gear_kinematics.state.arm_state import ArmState
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.validation import explain
 from gear_kinematics.validation.compute import compute
+from gear_kinematics.validation.findings import findings
 from gear_kinematics.validation.validate_bag import validate
 
 ERRORS = '/transmission_error'
@@ -118,3 +119,14 @@ def test_errors_of_other_outputs_are_not_kept_beside_computed_ones(tmp_path):
 def test_a_message_that_is_none_fails(tmp_path):
     report = judged(tmp_path, lambda actuators: [*recording(actuators), (ERRORS, 10**9, b'')])
     assert not report.passed
+
+
+def test_another_ratio_is_named_before_the_errors_that_follow_from_it(tmp_path):
+    judged(tmp_path, recording)
+    own = {f'{name}.output_encoder_joint': name for name in RATIOS}
+    other = config(tmp_path / 'other.yaml', **own, **{'elbow.gear_ratio': '1457/27'})
+    report = validate(tmp_path / 'bag', other)
+    (elbow,) = (each for each in report.actuators if each.actuator == 'elbow')
+    first, *rest = (found.text for found in findings(elbow))
+    assert first.startswith('the recorded ratio is 1457/26, not 1457/27')
+    assert any('against the encoders' in text for text in rest)
