@@ -10,7 +10,7 @@ import numpy as np
 import oracle
 import pytest
 import report_samples as samples
-from chromium import chromium
+from chromium import chromium, noting
 
 from gear_kinematics import plotting
 from gear_kinematics.kinematics import Branch, Mechanism
@@ -26,7 +26,6 @@ pytestmark = pytest.mark.slow
 
 sync_api = pytest.importorskip('playwright.sync_api', reason='no playwright is installed')
 expect = sync_api.expect
-expect.set_options(timeout=60_000.0)  # a machine can be busy
 
 PIXEL = 1.0
 TIMES = [0.25 * k for k in range(41)]
@@ -61,11 +60,7 @@ def tab(browser, tmp_path_factory):
 
 def visit(tab, path):
     """Open a page, which loads nothing but itself and complains about nothing."""
-    tab.seen = []
-    tab.on('console', lambda message: tab.seen.append(message.text))
-    tab.on('pageerror', lambda error: tab.seen.append(str(error)))
-    tab.on('request', lambda request: tab.seen.append(request.url))
-    tab.goto(path.as_uri())
+    noting(tab).goto(path.as_uri())
     assert tab.seen == [path.as_uri()]
     tab.seen.clear()
 

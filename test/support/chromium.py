@@ -17,5 +17,15 @@ def chromium() -> Iterator:
         pytest.skip('no Chromium is installed')
     with sync_api.sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program)
+        sync_api.expect.set_options(timeout=60_000.0)  # a machine can be busy
         yield browser
         browser.close()
+
+
+def noting(page):
+    """Let a page note in `seen` what it asks for and complains about."""
+    page.seen = []
+    page.on('console', lambda message: page.seen.append(message.text))
+    page.on('pageerror', lambda error: page.seen.append(str(error)))
+    page.on('request', lambda request: page.seen.append(request.url))
+    return page

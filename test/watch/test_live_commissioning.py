@@ -250,7 +250,6 @@ def test_page_guides_writes_and_takes_into_the_node(tmp_path):
     ):
         page = browser.new_page()
         page.set_default_timeout(60_000.0)
-        sync_api.expect.set_options(timeout=60_000.0)
         page.goto(program.wait_for(r'Open (http://127\.0\.0\.1:\d+/[\w-]+/)')[1])
         page.locator('#commission summary').click()
         page.locator('select[name=rotor]').select_option(f'm1 on {MOTOR}')

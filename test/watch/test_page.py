@@ -8,7 +8,7 @@ import threading
 from contextlib import contextmanager
 
 import pytest
-from chromium import chromium
+from chromium import chromium, noting
 from live import Listener
 from watching import (
     DEADLINE,
@@ -28,6 +28,12 @@ from gear_kinematics.watch.view import Entry, Guide, View
 
 pytestmark = [pytest.mark.live, pytest.mark.slow, pytest.mark.usefixtures('driver')]
 
+sync_api = pytest.importorskip('playwright.sync_api', reason='no playwright is installed')
+pytest.importorskip('tornado', reason='no tornado is installed')
+from gear_kinematics.watch.server import Server  # noqa: E402, needs it
+
+expect = sync_api.expect
+
 
 @pytest.fixture(scope='module')
 def folder(tmp_path_factory):
@@ -36,9 +42,6 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope='module')
 def browser():
-    sync_api = pytest.importorskip('playwright.sync_api', reason='no playwright is installed')
-    pytest.importorskip('tornado', reason='no tornado is installed')
-    sync_api.expect.set_options(timeout=60_000.0)  # a machine can be busy
     with chromium() as browser:
         yield browser
 
@@ -48,12 +51,9 @@ def page(browser, folder):
     """Give the page as it was opened before there was a node, with all that it asked for."""
     with gearkin(folder, 'watch', '--node', NODE) as program:
         address = program.wait_for(r'Open (http://127\.0\.0\.1:\d+/[\w-]+/)')[1]
-        page = browser.new_page(viewport={'width': 1280, 'height': 900}, color_scheme='light')
+        size = {'width': 1280, 'height': 900}
+        page = noting(browser.new_page(viewport=size, color_scheme='light'))
         page.set_default_timeout(60_000.0)
-        page.seen = []
-        page.on('console', lambda message: page.seen.append(message.text))
-        page.on('pageerror', lambda error: page.seen.append(str(error)))
-        page.on('request', lambda request: page.seen.append(request.url))
         page.goto(address)
         yield page
         assert page.seen == [address]
@@ -64,13 +64,10 @@ def page(browser, folder):
 @pytest.fixture(scope='module')
 def connected(page, folder):
     """Give the page when it shows the node."""
-    from playwright.sync_api import expect  # noqa: PLC0415, an extra
-
     with node(folder) as process:
         expect(page.locator('#state')).to_have_text('connected')
         expect(page.locator('#diagnostics')).to_contain_text('rotor inputhealthy')
         page.node = process
-        page.expect = expect
         yield page
 
 
@@ -87,8 +84,6 @@ def angles(page) -> tuple[float, float]:
 
 
 def test_page_lists_drivers_before_there_is_a_node(page):
-    from playwright.sync_api import expect  # noqa: PLC0415, an extra
-
     motor = page.locator('#drivers dl > div').filter(has_text=MOTOR)
     expect(motor).to_have_text(re.compile(rf'^{MOTOR}brake, m1[1-9]\d+ Hz$'))
     expect(page.locator('#message')).to_contain_text(f'{NODE} is not running')
@@ -115,7 +110,6 @@ def test_mechanism_moves_as_the_gear_ratio_says(connected):
 
 
 def test_values_of_the_driver_and_of_both_encoders_are_shown(connected):
-    expect = connected.expect
     expect(reading(connected, 'output angle')).to_contain_text('°')
     expect(reading(connected, 'output rate')).to_contain_text(re.compile(r'[1-9]\d+ Hz'))
     # Twice the amplitude of 1e-4 rad.
@@ -141,7 +135,7 @@ def test_node_has_to_compute_only_what_is_shown():
 
 
 def test_home_is_asked_called_and_undone_with_the_keyboard(connected):
-    expect, question = connected.expect, connected.locator('#question')
+    question = connected.locator('#question')
     home, answer = connected.locator('#home'), connected.locator('#answer')
     connected.locator('body').click(position={'x': 5, 'y': 5})
     connected.keyboard.press('Tab')
@@ -179,7 +173,7 @@ def test_home_is_asked_called_and_undone_with_the_keyboard(connected):
 
 
 def test_another_node_is_chosen_from_those_that_run(connected, folder):
-    expect, nodes = connected.expect, connected.locator('#nodes')
+    nodes = connected.locator('#nodes')
     expect(nodes).to_be_hidden()
     expect(connected.locator('#node')).to_have_text(f'{NODE}: m1, ratio -19')
     with node(folder, OTHER):
@@ -238,8 +232,6 @@ CONTRAST = """element => {
 @contextmanager
 def shown(browser, view):
     """Open a page of one view, and give it with what it is asked for."""
-    from gear_kinematics.watch.server import Server  # noqa: PLC0415, needs an extra
-
     ended, watcher = threading.Event(), WatcherStandIn(view)
     server = Server(watcher)
     thread = threading.Thread(target=lambda: asyncio.run(server.run(ended.is_set)))
@@ -254,7 +246,7 @@ def shown(browser, view):
         thread.join(DEADLINE)
 
 
-def test_names_are_text_on_the_page(connected, browser):
+def test_names_are_text_on_the_page(browser):
     hostile = '<img src=x onerror=alert(1)>'
     view = View(
         node=hostile,
@@ -268,21 +260,21 @@ def test_names_are_text_on_the_page(connected, browser):
     with shown(browser, view) as (page, _):
         parts = '#node', '#message', '#values dt', '#values dd', '#diagnostics dd', '#drivers dt'
         for part in (*parts, '#guide p', '#guide .detail', '#guide dd'):
-            connected.expect(page.locator(part).first).to_have_text(hostile)
+            expect(page.locator(part).first).to_have_text(hostile)
         option = page.locator('#commission option').first
-        connected.expect(option).to_have_text(f'{hostile} on {hostile}')
+        expect(option).to_have_text(f'{hostile} on {hostile}')
         assert page.locator('img').count() == 0
 
 
-def test_a_question_that_was_cancelled_just_before_does_not_home_as_well(connected, browser):
+def test_a_question_that_was_cancelled_just_before_does_not_home_as_well(browser):
     with shown(browser, View(state='connected', question='Set it?', revision=7)) as (page, asked):
-        connected.expect(page.locator('#home')).to_be_enabled()
+        expect(page.locator('#home')).to_be_enabled()
         page.evaluate("""for (const answer of ['Cancel', 'Set it']) {
             document.getElementById('home').click();
             const buttons = [...document.querySelectorAll('#question button')];
             buttons.find(button => button.textContent === answer).click();
         }""")
-        connected.expect(page.locator('#answer')).to_have_text('home.')
+        expect(page.locator('#answer')).to_have_text('home.')
         page.evaluate('new Promise(done => requestAnimationFrame(() => setTimeout(done)))')
         page.get_by_role('button', name='Home').click()
         page.get_by_role('button', name='Cancel').click()
@@ -290,7 +282,6 @@ def test_a_question_that_was_cancelled_just_before_does_not_home_as_well(connect
 
 
 def test_page_connects_again_after_the_node_was_restarted(connected, folder):
-    expect = connected.expect
     connected.locator('#home').click()
     connected.get_by_role('button', name='Set it').click()
     expect(connected.locator('#undo')).to_have_text('Undo sets rotor_zero 0 again')
