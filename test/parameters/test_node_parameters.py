@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from refusals import refused
 
 from gear_kinematics.kinematics import Branch, MechanismError
 from gear_kinematics.parameters import NODE, ConfigError, NodeParameters, default_config
@@ -82,12 +83,9 @@ def config(folder: Path, **values) -> Path:
 
 def fault(folder: Path, **values) -> str:
     path = config(folder, **values)
-    with pytest.raises(ConfigError) as caught:
+    with refused(ConfigError, path) as caught:
         load(path)
-    text = str(caught.value)
-    assert text.startswith(f'{path}: ')
-    assert '\n' not in text
-    return text
+    return str(caught.value)
 
 
 def test_default_values_are_those_of_the_contract(tmp_path):
@@ -323,11 +321,8 @@ def test_what_is_no_parameter_file_is_refused_in_one_line(tmp_path, content, cau
     path = tmp_path / 'actuator.yaml'
     if content is not None:
         path.write_bytes(content)
-    with pytest.raises(ConfigError) as caught:
+    with refused(ConfigError, path, cause):
         load(path)
-    assert str(caught.value).startswith(f'{path}: ')
-    assert cause in str(caught.value)
-    assert '\n' not in str(caught.value)
 
 
 @pytest.mark.parametrize('path', ['mine.yaml', '/there/mine.yaml'])

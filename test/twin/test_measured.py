@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 from blocked_bags import gearkin_here
+from refusals import refused
 
 from gear_kinematics.kinematics.preload import Preload, Stiffness
 from gear_kinematics.twin.gear import TwinGear
@@ -168,9 +169,8 @@ def test_a_later_report_replaces_figures_of_an_earlier_one(loose, ramps, pins):
 def test_what_is_no_report_is_named(gear, tmp_path, content, fault):
     path = tmp_path / 'report.json'
     path.write_text(content, 'utf-8')
-    with pytest.raises(ValueError, match=fault) as error:
+    with refused(ValueError, path, fault):
         measured(gear, [path])
-    assert str(error.value).startswith(f'{path}: ')
     with pytest.raises(ValueError, match='No such file'):
         measured(gear, [tmp_path / 'none.json'])
 
