@@ -106,9 +106,7 @@ def _in_order(states: JointStates, stamp: Array) -> tuple[Array, Array]:
     return stamp[rows], states.values[rows]
 
 
-def recorded_questions(
-    bag: Bag, topic: str, joint: str, ratio: Fraction | None = None
-) -> Iterator[Observed | Fact]:
+def recorded_questions(bag: Bag, topic: str, joint: str) -> Iterator[Observed | Fact]:
     """Yield the questions on a topic of a bag, up to any damage; see `questions`."""
     data, received = list[bytes](), list[int]()
     try:
@@ -119,4 +117,4 @@ def recorded_questions(
                 break
     except DamagedBagError:
         pass  # the reader of the recording reports it
-    yield from questions(data, received, joint, ratio)
+    yield from questions(data, received, joint)

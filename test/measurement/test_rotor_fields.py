@@ -3,7 +3,6 @@
 
 import math
 import re
-from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -45,11 +44,8 @@ def recorded(folder, factor, efforts, wrap):
     ],
 )
 def test_wrong_fields_are_named(factor, efforts, asked, wrap, tmp_path, capsys, monkeypatch):
-    """By the function, by info, which does not know the ratio, and by commission."""
+    """By info, which does not know the ratio, and by commission."""
     path = recorded(tmp_path, factor, efforts, wrap)
-    with Bag(path) as bag:
-        found = [*map(str, recorded_questions(bag, '/rotor_state', 'rotor', Fraction(-19)))]
-    assert [each[: len(want)] for each, want in zip(found, asked, strict=True)] == asked
     assert main(['info', str(path)]) == 0
     told = capsys.readouterr().out
     assert ('/rotor_state: ' in told) is bool(asked)
