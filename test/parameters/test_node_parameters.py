@@ -10,7 +10,7 @@ import pytest
 import yaml
 from refusals import refused
 
-from gear_kinematics.kinematics import Branch, MechanismError
+from gear_kinematics.kinematics import MechanismError
 from gear_kinematics.parameters import NODE, ConfigError, NodeParameters, default_config
 from gear_kinematics.parameters.files import given_parameters, require_any
 
@@ -185,21 +185,6 @@ def test_unknown_parameter_is_refused_with_the_nearest_name(tmp_path, name, hint
     assert text.endswith(', a.cam_phase, a.axial_position, b.cam_phase, b.axial_position')
 
 
-def test_every_fault_is_listed_at_once(tmp_path):
-    text = fault(tmp_path, ring_teeth=1, rotor_encoder='x', module='thick')
-    assert all(name in text for name in ('ring_teeth', 'rotor_encoder', 'module'))
-    text = fault(tmp_path, branches=['a'], rotor_jiont='m1', **{'b.cam_phase': 0.5})
-    assert 'unknown parameter `rotor_jiont`; did you mean `rotor_joint`?' in text
-    assert 'unknown parameter `b.cam_phase`; `b` is not in `branches`' in text
-
-
-@pytest.mark.parametrize('nested', [True, False])
-def test_branch_keys_may_be_nested_or_dotted(tmp_path, nested):
-    phase = {'left': {'cam_phase': 0.5}} if nested else {'left.cam_phase': 0.5}
-    loaded = load(config(tmp_path, branches=['left'], **phase))
-    assert loaded.branches == loaded.mechanism.branches == (Branch('left', 0.5),)
-
-
 @pytest.mark.parametrize(
     'block',
     [
@@ -252,17 +237,6 @@ def test_file_that_leaves_open_which_node_is_meant_is_refused(tmp_path, names):
     assert str(caught.value) == (
         f'{path}: parameters of more than one node: {there}; choose one with --node'
     )
-
-
-@pytest.mark.parametrize('node', ['/left', '/gear_state_publisher', ''])
-def test_file_that_has_nothing_for_the_node_is_refused(tmp_path, node):
-    path = blocks(tmp_path, LEFT, RIGHT)
-    with pytest.raises(ConfigError) as caught:
-        load(path, node)
-    name = node if node.startswith('/') else f'/{node}'
-    text = f'{path}: no parameters of {name} in it, only of {LEFT}, {RIGHT}'
-    hint = f'; did you mean `{LEFT}`?' if node == '/gear_state_publisher' else ''
-    assert str(caught.value) == text + hint
 
 
 def test_one_of_several_files_has_something_for_the_node(tmp_path):
