@@ -228,7 +228,7 @@ def _read_fields(kind: Any, value: Any, where: str) -> Any:
         raise CalibrationError(f'{where} must have named values, not {value!r}')
     types, place = get_type_hints(kind), f'{where}.' if where else ''
     if missing := [place + name for name in types if name not in value]:
-        raise CalibrationError(f'{", ".join(missing)} is missing')
+        raise CalibrationError(f'missing: {", ".join(missing)}')
     if unknown := [f'{place}{name}' for name in value if name not in types]:
         raise CalibrationError(f'unknown: {", ".join(unknown)}')
     return kind(**{name: _read(types[name], value[name], place + name) for name in types})

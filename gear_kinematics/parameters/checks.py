@@ -30,4 +30,4 @@ def encoder_range(value: float) -> None:
 def factor(value: float) -> None:
     """Refuse a factor of 0, which would make every value 0."""
     if not value:
-        raise ValueError(f'must not be {value}, as all would be 0')
+        raise ValueError(f'must not be {value}, as every value would be 0')

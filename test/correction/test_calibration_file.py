@@ -104,7 +104,7 @@ def test_file_says_what_its_numbers_are():
         ({'schema': 'gear_kinematics/calibration/2'}, 'no calibration: its `schema` is not'),
         ({'units': {'angle': 'deg'}}, '`units` must be'),
         ({'half_widht': 1.0}, 'unknown: half_widht'),
-        ({'half_width': MISSING, 'spans': MISSING}, 'half_width, spans is missing'),
+        ({'half_width': MISSING, 'spans': MISSING}, 'missing: half_width, spans'),
         ({'half_width': float('nan')}, 'half_width must be a finite number, not nan'),
         ({'half_width': 10**400}, 'half_width must be a finite number, not 1000'),
         ({'half_width': 0.0}, 'half_width must be greater than 0'),
