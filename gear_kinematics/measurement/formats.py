@@ -50,10 +50,12 @@ def _mat(path: Path) -> TableFile:
             for key, inner in value.items():
                 add(f'{name}.{key}' if name else key, inner)
         elif all(isinstance(each, dict) for each in np.atleast_1d(value)):  # of scopes of Simulink
-            above = name.rpartition('.')[0]
-            for k, signal in enumerate(value):
-                label = signal.get('label') or f'{name}[{k}]'
-                add(f'{above}.{label}' if above else label, signal)
+            above, dot, own = name.rpartition('.')
+            labels = [signal.get('label', signal.get('Name')) for signal in value]  # of dSPACE
+            labels = [label if isinstance(label, str) else '' for label in labels]
+            for k, (label, signal) in enumerate(zip(labels, value, strict=True)):
+                known = label and labels.count(label) == 1
+                add(f'{above}{dot}{label if known else f"{own}[{k}]"}', signal)
         elif np.ndim(value) in {1, 2} and np.asarray(value).dtype.kind in 'iuf':
             values = np.squeeze(value)
             if values.ndim == 1 and values.size > 1:
@@ -69,9 +71,13 @@ def _mat(path: Path) -> TableFile:
 
         with h5py.File(path) as file:
             found = _of_hdf5(file)
+    except ValueError:
+        return open_text(path)  # as save -ascii writes it
     add('', {key: value for key, value in found.items() if key[:1] not in '_#'})
     if len({name.partition('.')[0] for name in columns}) == 1:  # all are in one structure
         columns = {name.partition('.')[2] or name: values for name, values in columns.items()}
+    if not columns:
+        raise ValueError('no columns of numbers: save the vectors of a timetable or timeseries')
     return loaded(columns)
 
 

@@ -641,6 +641,27 @@ def scope(path, time, rotor, output):
     return Sources()
 
 
+def scope_without_labels(path, time, rotor, output):
+    io = pytest.importorskip('scipy.io')
+    signals = np.array([{'values': values, 'label': ''} for values in (rotor, output)])
+    io.savemat(path, {'Scope': {'time': time, 'signals': signals}})
+    return Sources(rotor='signals[0].values', output='signals[1].values', unit='rad')
+
+
+def control_desk(path, time, rotor, output):
+    """As dSPACE has it, with two signals of the same name."""
+    io = pytest.importorskip('scipy.io')
+    names = zip(('Out1', 'Motor angle [rad]', 'Out1'), (time, rotor, output), strict=True)
+    signals = [{'Name': name, 'Data': values} for name, values in names]
+    io.savemat(path, {'r': {'X': {'Name': '', 'Data': time}, 'Y': np.array(signals)}})
+    return Sources(time='X.Data', output='Y[2].Data')
+
+
+def ascii_mat(path, time, rotor, output):
+    np.savetxt(path, np.stack([time, rotor, output]).T)
+    return Sources(time='1', rotor='2', output='3', unit='rad')
+
+
 def mat(path, time, rotor, output):
     io = pytest.importorskip('scipy.io')
     io.savemat(path, {'run': {'time': time, 'rotor_deg': DEG * rotor, 'output': {'rad': output}}})
@@ -699,7 +720,8 @@ def mf4(path, time, rotor, output):
 
 
 FORMATS = {'parquet': parquet, 'mat': mat, '7.3.mat': hdf5, 'tdms': tdms, 'mf4': mf4}
-FORMATS |= {'index.parquet': parquet_of_times, 'scope.mat': scope}
+FORMATS |= {'index.parquet': parquet_of_times, 'scope.mat': scope, 'ascii.mat': ascii_mat}
+FORMATS |= {'unnamed.mat': scope_without_labels, 'dspace.mat': control_desk}
 FORMATS |= {'xlsx': workbook, **dict.fromkeys(('csv.gz', 'tsv.zst', 'TXT.zip'), text)}
 
 
@@ -713,6 +735,12 @@ def test_other_formats(tmp_path, gear, reference, name):
     path.write_bytes(b'nothing at all')
     with pytest.raises(RecordingError, match=f'{re.escape(name)}: '):
         read(path, gear, given)
+
+
+def test_a_file_of_matlab_without_numbers_is_refused(tmp_path, gear):
+    pytest.importorskip('scipy.io').savemat(tmp_path / 'r.mat', {'name': 'bench 3'})
+    with pytest.raises(RecordingError, match='no columns of numbers: save the vectors of a time'):
+        read(tmp_path / 'r.mat', gear)
 
 
 def test_the_sheets_of_a_workbook_that_have_numbers_are_named(tmp_path, gear):
