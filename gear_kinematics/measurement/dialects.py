@@ -232,7 +232,8 @@ def _layout(lines: Sequence[str]) -> _Layout:
     start = filled[first]
     above = [line for line in lines[:start] if not _NO_NAMES.fullmatch(line)]
     row, *_ = samples = [rows[place] for place in filled[first:]]
-    if above:
+    # A line that is not divided, such as a title, has no names.
+    if any(len(_cells_above(line, separator, len(row))) >= min(2, len(row)) for line in above):
         found = _names(above, separator, max(map(len, samples)), 1 + max(numeric), row[0])
         if not found[0][0] and MOMENT.fullmatch(row[0]):
             found[0][0] = 'time'  # the index of pandas

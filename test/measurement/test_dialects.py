@@ -513,6 +513,7 @@ UNTOLD = {
     'degrees at which the output differs': plain(angle=DEG, unit=10.0),
     'angles of unknown sides': plain('t,pos_a,pos_b', angle=DEG),
     'no names': plain(''),
+    'a title, but no names': plain('Bench 3, of 2026', mark=';'),
     'an acceleration beside': lambda t, r, o: written(
         [t, r, o, 30.0 * r], 't,theta_m,theta_l,theta_m_ddot', '{:.5f}'),
     'revolutions': lambda t, r, o: written([t, r * REV % 1.0, o * REV % 1.0], NAMES),
