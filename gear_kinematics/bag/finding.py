@@ -19,8 +19,8 @@ _STORAGE_NAME = re.compile(
 )
 """Name of a file of a recording; since Lyrical, of a split one, a counter and the date."""
 _METADATA = 'metadata.yaml'
-_TEXTS = '.csv', '.tsv', '.txt', '.dat', '.asc', '.lvm'
-_COMMON = {'.txt', '.dat'}  # which often are no recordings
+_TEXTS = '.csv', '.tsv', '.txt', '.dat', '.asc', '.lvm', '.log'
+_COMMON = {'.txt', '.dat', '.log'}  # which often are no recordings
 COMPRESSED = '.gz', '.zst', '.zip', '.bz2', '.xz'  # of compressed texts, behind those of `TABLES`
 TABLES = {
     **dict.fromkeys(_TEXTS, 'text'),

@@ -21,8 +21,8 @@ _TRIED, _FEWEST, _ROWS = 12, 10, 10_000
 _ALIKE = 0.3  # least correlation of the steps of both encoders
 _LISTED = 600  # characters of the list of columns
 _NO_ANGLE = re.compile(
-    r'(?i)torq|effort|force|curr|vel(?!_mapper)|speed|rpm|/ ?s|temp|time|stamp|target|goal|cmd|'
-    r'elec|tau|cell|acc(?!um)|dot|err|volt|power|^t$|^[ft][xyz]'
+    r'(?i)torq|effort|force|curr|vel(?!_mapper)|speed|rpm|/ ?s|temp|time|stamp|target|goal|desire|'
+    r'cmd|command|setpoint|control|elec|tau|cell|acc(?!um)|dot|err|volt|power|^t$|^[ft][xyz]'
 )
 """Words in names of columns that are not proposed as angles."""
 _LIKELY = re.compile(

@@ -515,7 +515,7 @@ UNTOLD = {
     'no names': plain(''),
     'a title, but no names': plain('Bench 3, of 2026', mark=';'),
     'an acceleration beside': lambda t, r, o: written(
-        [t, r, o, 30.0 * r], 't,theta_m,theta_l,theta_m_ddot', '{:.5f}'),
+        [t, r, o, 30.0 * r, r], 't,theta_m,theta_l,theta_m_ddot,theta_command', '{:.5f}'),
     'revolutions': lambda t, r, o: written([t, r * REV % 1.0, o * REV % 1.0], NAMES),
     'a unit of one encoder alone': lambda t, r, o: written(
         [t, *in_counts(r), o * DEG], 'time,rotor,output [deg]'),
@@ -723,7 +723,7 @@ def mf4(path, time, rotor, output):
 FORMATS = {'parquet': parquet, 'mat': mat, '7.3.mat': hdf5, 'tdms': tdms, 'mf4': mf4}
 FORMATS |= {'index.parquet': parquet_of_times, 'scope.mat': scope, 'ascii.mat': ascii_mat}
 FORMATS |= {'unnamed.mat': scope_without_labels, 'dspace.mat': control_desk}
-FORMATS |= {'xlsx': workbook, **dict.fromkeys(('csv.gz', 'tsv.zst', 'TXT.zip'), text)}
+FORMATS |= {'xlsx': workbook, **dict.fromkeys(('csv.gz', 'tsv.zst', 'TXT.zip', 'log'), text)}
 
 
 @pytest.mark.parametrize('name', FORMATS)
