@@ -80,7 +80,7 @@ def are_no_times(clock: Column, times: Array) -> bool:
     They are called T, or temps (French for times), or have an unknown word, as cycle_time has.
     """
     if meaning(clock.name).unsure:
-        return bool(np.any(times[1:] < times[:-1]) or times[-1] <= times[0])
+        return not len(times) or bool(np.any(times[1:] < times[:-1]) or times[-1] <= times[0])
     if _is_temps(clock):
         return not np.all(times[1:] > times[:-1])
     falling = np.count_nonzero(times[1:] < times[:-1])

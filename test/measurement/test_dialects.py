@@ -788,7 +788,7 @@ def test_temperatures_are_no_times(tmp_path, gear, reference):
 
 def test_durations_are_no_times(tmp_path, gear, reference):
     t, r, o = reference('encoders')
-    for duration in (t - t + 0.04, 0.04 + 1e-3 * np.sin(t), -t):
+    for duration in (t - t + 0.04, 0.04 + 1e-3 * np.sin(t), -t, t + math.nan):
         content = written([duration, r, o], 'loop_time,rotor,output', 3 * ['{:.5f}'])
         assert not read(saved(tmp_path, content), gear).encoders.timed
 
