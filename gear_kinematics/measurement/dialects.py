@@ -8,7 +8,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from itertools import takewhile
+from itertools import pairwise, takewhile
 from operator import itemgetter
 from pathlib import Path
 from typing import IO, Any, NamedTuple
@@ -49,6 +49,9 @@ _TOPICS, _VALUE = (
     'value',
 )
 """Names of the columns of a table with a row for each value."""
+_IDS = re.compile(r'((joint|motor|actuator|servo|axis|node|can|id|name|index) ?)+')
+"""Names of the column of a table with a row for each joint."""
+_OFTEN = 0.9  # share of the rows that are of another joint than the one before
 
 
 class TableFile(NamedTuple):
@@ -153,10 +156,13 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
             )
 
     lower = [name.lower().strip('_') for name in layout.names]
-    if _VALUE in lower and (topics := [name for name in _TOPICS if name in lower]):
+    sample = [cells_of(line, layout.separator) for line in lines[layout.start :][:_ROWS]]
+    topics = [name for name in _TOPICS if name in lower] if _VALUE in lower else []
+    keys = [layout.names[lower.index(name)] for name in topics] or _ids(layout.names, sample)
+    if keys:
         frame = read(range(len(lower)), 1).set_axis(layout.names, axis=1)
-        columns = (layout.names[lower.index(name)] for name in (topics[0], _VALUE))
-        return _long(frame, layout.point, *columns)
+        value = layout.names[lower.index(_VALUE)] if topics else ''
+        return _long(frame, layout.point, keys[0], value, layout.units)
     elements = elements_of(lines[layout.start :][:_ROWS], layout.names, layout.separator)
     arrays = {element.place for element in elements.values()}
     names = [name for k, name in enumerate(layout.names) if k not in arrays] + [*elements]
@@ -323,13 +329,36 @@ def _joint_state(row: Sequence[str]) -> tuple[list[str], dict[str, str], dict[st
     return names, dict.fromkeys(joints, 'rad'), {}
 
 
-def _long(frame: Any, point: str, topic: str, value: str) -> TableFile:
-    """Return the series of a table with a row for each value, as exported from plots."""
+def _ids(names: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    """Return the columns that say of which joint a row is, if the rows are of several."""
+    found = []
+    for place, name in enumerate(names):
+        cells = [row[place] for row in rows if place < len(row)]
+        changes = sum(one != other for one, other in pairwise(cells))
+        several = 2 * len({*cells}) <= len(cells) and changes > _OFTEN * (len(cells) - 1)
+        plain = all(cell[:1] not in '[(' for cell in cells)
+        plain &= all(cell.isdecimal() or not weight(cell, '.') for cell in cells)
+        if several and plain and _IDS.fullmatch(' '.join(meaning(name).words)):
+            found.append(name)
+    angles = any(meaning(name).role == 'angle' for name in names)  # of neither side
+    return sorted(found, key=lambda name: 'name' not in meaning(name).words) if angles else []
+
+
+def _long(frame: Any, point: str, key: str, value: str, units: Mapping[str, str]) -> TableFile:
+    """Return the series of a table with a row for each value, as exported from plots, or joint.
+
+    Without a `value`, those of all columns are named after the joint and the column.
+    """
     clock = likeliest(frame.columns).get('time')
-    columns, clocks = {}, {}
-    for name, series in frame.groupby(topic, sort=False):
-        columns[str(name)] = numbers(series[value], point)
+    rest = [name for name in frame if name not in {key, clock, ''} and not frame[name].ndim > 1]
+    columns, clocks, known = {}, dict[str, str](), dict[str, str]()
+    for joint, series in frame.groupby(key, sort=False):
+        for column in [value] if value else rest:
+            name = str(joint) if value else f'{joint} {column}'
+            columns[name] = numbers(series[column], point)
+            known |= {name: units[column]} if column in units and not value else {}
+            clocks |= {name: f'{clock} of {joint}'} if clock else {}
         if clock:
-            clocks[str(name)] = own = f'{clock} of {name}'
-            columns[own] = numbers(series[clock], point)
-    return loaded(columns, dict.fromkeys(clocks.values(), meaning(clock or '').unit), clocks)
+            columns[own := f'{clock} of {joint}'] = numbers(series[clock], point)
+            known[own] = units.get(clock) or meaning(clock).unit
+    return loaded(columns, known, clocks)

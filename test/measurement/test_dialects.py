@@ -332,6 +332,10 @@ ENCODERS = {
         [t, r, o], 'robot_time,motor_ang,gearbox_ang'),
     'Chinese': lambda t, r, o: written(
         [t, r * DEG, o * DEG], '时间\uff08s\uff09,电机角度\uff08°\uff09,输出角度\uff08°\uff09'),
+    'a row for each joint': lambda t, r, o: 'time,id,joint_name,position_deg,torque\n' + ''.join(
+        f'{at:.2f},{k},{name},{value * DEG:.5f},0\n'
+        for at, *values in zip(t, r, o, strict=True)
+        for k, name, value in zip((11, 12), ('motor', 'output'), values, strict=True)),
     'counts of 16 bits': lambda t, r, o: written(
         [t, *in_counts(r) % 65536, o], 'time,rotor_counts,output_rad',
         ('{:.2f}', '{:.0f}', '{:.5f}')),
@@ -530,6 +534,9 @@ UNTOLD = {
 UNTOLD_RAMPS = {
     'two torques': lambda t, a, q: written(
         [t, a * DEG, q, q], 'time,angle_deg,torque_raw_Nm,torque_filtered_Nm', 4 * ['{:.6f}']),
+    'a row for each of three': lambda t, a, q: 'time,motor,position_deg,torque\n' + ''.join(
+        f'{at:.2f},{k},{(k == 2) * angle * DEG:.6f},{torque:.6f}\n'
+        for at, angle, torque in zip(t, a, q, strict=True) for k in (1, 2, 3)),
     'a torque in whole numbers': lambda t, a, q: written([t, a, np.round(q * 1e3)],
         'time,angle,torque', ('{:.2f}', '{:.6f}', '{:.0f}')),
     'units of rotation': lambda t, a, q: written(
