@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# pid-controller 1.0.5 (npm): PID.MANUAL starts a controller and PID.AUTOMATIC stops it; 10 s at a stop take 10 s to leave.
+# pid-controller 1.0.5 (npm): PID.MANUAL starts a controller and PID.AUTOMATIC stops it, and its integral has no limit.
 #
 # The package offers the constants PID.AUTOMATIC and PID.MANUAL for setMode(). What happens: they are 1 and 0, but
 # setMode() takes 0 as automatic and 1 as manual, so that a joint that is set to manual is driven with full output,
