@@ -133,11 +133,16 @@ class ArmState:
         if self._single:
             return self._single.encode()
         stamp = answered[0][1].sample.stamp
-        joined: dict[str, _Parts] = defaultdict(lambda: ([], []))
+        joined: dict[str, _Parts] = {}
         encoded: list[tuple[str, bytes]] = []
+        errors: _Errors = []
         for name, state in answered:
+            if state.errors:
+                errors.append((name, state.errors))
             for topic, template, numbers in state.rows():
                 if isinstance(template, JointStateTemplate):
+                    if topic not in joined:
+                        joined[topic] = [], []
                     templates, given = joined[topic]
                     templates.append(template)
                     given += numbers
@@ -145,7 +150,6 @@ class ArmState:
                     encoded.append((topic_of(name, topic), template.encode(stamp, numbers)))
         for topic, parts in joined.items():
             encoded.append((topic, _joined(stamp, parts)))
-        errors = [(name, state.errors) for name, state in answered if state.errors]
         return encoded + self.encode_errors(errors) if errors else encoded
 
     def encode_errors(self, errors: _Errors) -> list[tuple[str, bytes]]:

@@ -142,7 +142,8 @@ class RotorInput:
         """
         self.received += 1
         try:
-            stamp, unnormalised, position, velocity, effort = self._reader.read(data)
+            values = data if type(data) is tuple else self._reader.read(data)
+            stamp, unnormalised, position, velocity, effort = values
             self.unnormalised_stamps += unnormalised
             return self._take(stamp or self._clock(now), position, velocity, effort)
         except RejectedInputError as rejection:

@@ -171,12 +171,8 @@ class JointsReader:
         numbers = (*layout.unpack(data), None)
         found: list[JointValues | RejectedInputError | None] = []
         for joint in layout.joints:
-            if joint is None:
-                found.append(None)
-                continue
-            pick, take = joint
             try:
-                found.append(take(pick(numbers), data))
+                found.append(joint and joint[1](joint[0](numbers), data))
             except RejectedInputError as rejection:
                 found.append(rejection)
         return found
