@@ -7,6 +7,7 @@ from itertools import groupby
 from operator import attrgetter
 from typing import Literal
 
+from gear_kinematics.commands.output import complain
 from gear_kinematics.measurement.commissioning.analysis import Channel
 from gear_kinematics.report.document import printable
 from gear_kinematics.wire.nearest import listed, nearest
@@ -35,8 +36,13 @@ def choose_joint(
     Topic and name are given as far as they are known. `hint` says what else to do where there are
     several joints. Raises ValueError if there is none, or there are several and nobody to ask.
     """
-    found = _candidates(joints, given, {'rotor': ROTOR_STATE, 'output': OUTPUT_ENCODER}[role])
+    usual = {'rotor': ROTOR_STATE, 'output': OUTPUT_ENCODER}[role]
+    found = _candidates(joints, given, usual)
     if len(found) == 1:
+        topic, joint = found[0]
+        if role == 'output' and not given.joint and base_name(topic) != usual:
+            taken = f'{printable(joint)} on {topic} is taken as the encoder at the output'
+            complain(f'{taken}; --encoder-joint names another')
         return found[0]
     if not (found and can_ask()):
         names = [joint.joint for joint in joints]

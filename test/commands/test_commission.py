@@ -191,6 +191,16 @@ def test_joints_are_found_and_a_check_takes_those_of_the_file(topics, positions,
     assert main(['commission', bag, '--check', str(file)]) == 0
 
 
+def test_a_joint_that_is_taken_as_the_output_unasked_is_named(positions, tmp_path, capsys):
+    """It may be the other motor of an arm without encoders at the outputs."""
+    bag = str(joint_states(tmp_path, positions, motors=['m', 'o']))
+    taken = 'gearkin: o on /motors is taken as the encoder at the output; --encoder-joint names '
+    for options, said in ([], f'{taken}another\n'), (['--encoder-joint', 'o'], ''):
+        file = tmp_path / f'{len(options)}.yaml'
+        assert main(['commission', bag, '-o', str(file), '--joint', 'm', *options]) == 0
+        assert capsys.readouterr().err == said
+
+
 def test_range_of_the_rotor_is_found_and_written(shared_path, positions, tmp_path, capsys):
     """In a table of the protocol of ±12.5 rad, and in a bag."""
     times, rotor, output = positions
