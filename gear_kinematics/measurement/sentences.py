@@ -2,22 +2,17 @@
 """Everything that a measurement can say of a recording, each with its sentence.
 
 A sentence is formatted with the values of an `Observed`, in SI units. `{x:arcmin}` shows a number
-or an estimate in a unit of `_UNITS`, and `{x:arcmin.2}` a number to two digits;
+or an estimate in a unit of `MeasuredFormatter`, and `{x:arcmin.2}` a number to two digits;
 `{n:%d loop|%d loops}` shows a count with its noun, or nothing if it is 0; lists have commas.
 """
 
-import math
-import string
 from enum import Enum
 from typing import Any, NamedTuple
 
-from gear_kinematics.measurement.wording import ARC_MINUTES, PERCENT, plus_minus
-from gear_kinematics.report.document import number
-from gear_kinematics.statistics.uncertainty import Estimate
+from gear_kinematics.measurement.wording import PERCENT, MeasuredFormatter
 from gear_kinematics.wire.joint_reader import Rejection
 
 NAMED = 3  # moments of a kind that are named
-_UNITS = {'si': 1.0, 'arcmin': ARC_MINUTES, 'deg': math.degrees(1.0), 'ms': 1e3}
 
 # Parts of several sentences
 _RESTS = 'At zero torque the output rests anywhere within {hysteresis:arcmin}′'
@@ -331,28 +326,10 @@ class Observed(NamedTuple):
     def __str__(self) -> str:
         at, unit = ('at', ' s') if self.values.get('timed') else ('at sample', '')
         known = {'at': at, 'unit': unit, 'coverage': PERCENT}
-        return _Formatter().vformat(self.what.value, (), known | self.values)
+        return MeasuredFormatter().vformat(self.what.value, (), known | self.values)
 
     @property
     def sentence(self) -> str:
         """The sentences, or the clause as one."""
         text = str(self)
         return f'{text[0].upper()}{text[1:].removesuffix(".")}.'
-
-
-class _Formatter(string.Formatter):
-    """Formats numbers and estimates in units, counts and lists."""
-
-    def format_field(self, value: Any, spec: str) -> str:
-        if isinstance(value, list):
-            return ', '.join(self.format_field(each, spec) for each in value)
-        if '%d' in spec:
-            one, _, more = spec.partition('|')
-            text = one if value == 1 else more or one
-            return text % value if value else ''
-        unit, _, digits = spec.partition('.')
-        if unit not in _UNITS:
-            return format(value, spec)
-        if isinstance(value, Estimate):
-            return plus_minus(value, _UNITS[unit])
-        return number(value * _UNITS[unit], int(digits or 3))

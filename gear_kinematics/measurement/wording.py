@@ -2,12 +2,15 @@
 """The formatting of measured quantities."""
 
 import math
+import string
+from typing import Any
 
 from gear_kinematics.report.document import number
 from gear_kinematics.statistics.uncertainty import COVERAGE, Estimate
 
 ARC_MINUTES = 60.0 * 180.0 / math.pi  # per radian; catalogues give lost motion in arc minutes
 PERCENT = f'{100.0 * COVERAGE:g} %'  # probability with which an interval contains the value
+_UNITS = {'si': 1.0, 'arcmin': ARC_MINUTES, 'deg': math.degrees(1.0), 'ms': 1e3}
 _EXACT = 1e-5  # relative uncertainty below which values are rounded to six digits
 _TINY = 1e-9  # uncertainty below which small values are written with an exponent
 
@@ -34,3 +37,22 @@ def shown(value: str | float | None) -> str:
     if value is None:
         return 'undetermined'
     return f'{value:.6g}' if isinstance(value, float) else str(value) or "''"
+
+
+class MeasuredFormatter(string.Formatter):
+    """Formats numbers and estimates in units of `_UNITS`, counts and lists."""
+
+    def format_field(self, value: Any, spec: str) -> str:
+        """Format a value as a unit with digits, the forms of a noun, or Python's own want it."""
+        if isinstance(value, list):
+            return ', '.join(self.format_field(each, spec) for each in value)
+        if '%d' in spec:
+            one, _, more = spec.partition('|')
+            text = one if value == 1 else more or one
+            return text % value if value else ''
+        unit, _, digits = spec.partition('.')
+        if unit not in _UNITS:
+            return format(value, spec)
+        if isinstance(value, Estimate):
+            return plus_minus(value, _UNITS[unit])
+        return number(value * _UNITS[unit], int(digits or 3))
