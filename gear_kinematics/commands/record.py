@@ -73,7 +73,7 @@ def run(options: argparse.Namespace) -> ExitCode:
             raise ValueError(f'nothing was recorded: {why}')
     print(f'{options.out}: {counted(sum(p.count for p in heard.values()), "message")}')
     for topic, polled in sorted(heard.items()):
-        rate = f', {hertz(polled.mean_rate)}' * (polled.count > 1)
+        rate = f', {hertz(polled.mean_rate)}' * (polled.count > 2)  # noqa: PLR2004, two may come at once
         lost = f', {polled.lost} lost on the way' * bool(polled.lost)
         print(f'    {topic}: {counted(polled.count, "message")}{rate}{lost}')
     if any(polled.lost for polled in heard.values()):

@@ -95,9 +95,9 @@ class Polled:
 
     @property
     def mean_rate(self) -> float:
-        """Messages per second, from the first to the last."""
+        """Messages per second, from the first to the last; 0 if it is not known."""
         span = self.last.received - self._begun if self.last else 0
-        return SECOND * (self.count - 1) / span if span else 0.0
+        return SECOND * (self.count - 1) / span if span > 0 else 0.0
 
     @property
     def lost(self) -> int:

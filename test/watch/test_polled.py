@@ -41,6 +41,7 @@ class Handle(nullcontext):
         (range(7000, 7101, 10), bool, 11, 100.0),
         (range(7000, 7101, 5), lambda data: data == b'\0', 11, 100.0),  # every other message
         ([7000], bool, 1, 0.0),
+        ([7001, 7000], bool, 2, 0.0),  # the latest of two publishers, in any order
         ([], bool, 0, 0.0),
     ],
 )
