@@ -75,7 +75,7 @@ class Plausibility:
     def restrict(self, max_speed: float, max_acceleration: float, period: float = 0.0) -> None:
         """Change the limits from now on."""
         self.limits = RotorLimits(max_speed, max_acceleration)
-        self.period, self.wraps = period, Wraps()
+        self.period, self.wraps = period, Wraps(period)
         self.seen_speed = self.seen_acceleration = 0.0
         """rad/s and rad/s², of motions beyond the limits, which are raised above them."""
 
@@ -177,7 +177,10 @@ class Plausibility:
         if not reached or (self._doubted and self._stays(position, step, stamp)):
             return self._doubt(position, stamp)
         self._doubted.clear()
-        wraps = abs(last_step) > LEAST_STEP and self._wraps(step, stamp)
+        possible = self.wraps.counted if self.period else abs(last_step) > LEAST_STEP
+        wraps = possible and self._wraps(step, stamp)
+        clear = 2.0 * (high - low) < self.period
+        self.wraps.counted = round((position - before - step) / self.period) if clear else 0
         for size in (abs(step), abs(step - last_step)):
             if EQUAL < size < 0.5 * self.noise:
                 self.noise = max(2.0 * size, FLOOR)
@@ -191,7 +194,7 @@ class Plausibility:
         self._stamp = stamp
         self._look_always()
         usual = (span + last_span) // 2
-        if usual <= LONGEST_NS:
+        if usual <= LONGEST_NS and not self.wraps.counted:
             shortest, longest = (1.0 - REGULAR) * usual, (1.0 + REGULAR) * usual
             if shortest <= span <= longest:
                 # A step that differs tells of the resolution, as long as that is coarse.
@@ -211,10 +214,11 @@ class Plausibility:
         position, changed, last_step, last_span = self._last
         *_, former_step, former_span = self._former
         span = stamp - changed
-        if self.period or not (former_span and last_span and span):
+        moves = min(abs(former_step), abs(step)) >= _LEAST_MOTION
+        if not (former_span and last_span and span and moves):
             return False
-        if min(abs(former_step), abs(step)) < _LEAST_MOTION:
-            return False
+        if self.period:
+            return self.wraps.check((former_step, last_step, step), (former_span, last_span, span))
         speeds = former_step / (former_span * 1e-9), step / (span * 1e-9)
         return self.wraps.note(last_step, position, last_span * 1e-9, speeds, jump=False)
 
@@ -264,8 +268,7 @@ class Plausibility:
         spans = [(b - a) * 1e-9 for a, b in pairwise(times)]
         steps = [self._wrapped(b - a) for a, b in pairwise(positions)]
         stale = min(STALEST, max(spans))
-        noise = self.noise
-        total = sum(spans)
+        noise, total = self.noise, sum(spans)
         if total < 0.0:
             return Belief.IMPLAUSIBLE
         speed = sum(steps) / total if total else 0.0
@@ -324,10 +327,9 @@ class Plausibility:
         way, stale = 0.5 * (former + speed) * time, min(STALEST, 1.25e-9 * span)
         uncertain = self.noise + max(abs(former), abs(speed)) * stale
         uncertain += _REPEATED * abs(way) + 0.25 * change * time
-        turned = position - before
-        if abs(turned) > self.limits.speed * (time + stale) + self.noise:
-            return False
-        return abs(speed - former) <= change and abs(turned - way) <= uncertain
+        turned, most = position - before, self.limits.speed * (time + stale) + self.noise
+        within = abs(turned) <= most and abs(turned - way) <= uncertain
+        return within and abs(speed - former) <= change
 
     def _wrapped(self, step: float) -> float:
         return math.remainder(step, self.period) if self.period else step

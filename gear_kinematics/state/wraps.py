@@ -1,11 +1,12 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Recognises positions that repeat, by equal steps back while the rotor turns on.
+"""Recognises positions that repeat, by equal steps back while the rotor turns on, or not as set.
 
 A wrap shows as a jump only where readings are frequent. Otherwise the rotor could have turned back
 as far between two of them, and only the repetition tells a wrap from a motion. Then no period but
 one turn is recognised, because the quick return of a machine looks like a wrap after any other.
 """
 
+import math
 from dataclasses import dataclass, field
 
 from gear_kinematics.kinematics.rotor_turns import TURN
@@ -17,6 +18,9 @@ _EQUAL = 0.02  # of their size: what they may differ by, as stamps are uneven
 _ENDS = 0.3  # of their size: most motion during a step, and what their ends may differ by
 _STEADY = 0.5  # of the greater speed: what the speeds before and after may differ by
 _RESERVE = 1.25  # times what is needed: limits that are proposed
+_MANY = 16  # wraps, whose mean shows that a range is another
+_EVEN = 1.1  # greatest ratio of times between readings of which the steps are compared
+_OFF, _SURE = 0.05, 6.0  # rad, by which it is then off at least, and standard errors of the mean
 _RANGE = 'rotor_encoder_range, which gearkin init can find'
 
 
@@ -24,7 +28,12 @@ _RANGE = 'rotor_encoder_range, which gearkin init can find'
 class Wraps:
     """Collects steps back of positions that are not known to repeat."""
 
-    period: float = 0.0  # rad, after which the positions repeat; 0 if they do not seem to
+    known: float = 0.0  # rad, after which the positions repeat by the parameters; 0: never
+    period: float = 0.0  # rad, after which they repeat instead; 0 if they do not seem to
+    counted: int = 0  # periods that were taken for wraps in the last step
+    _times: int = 0  # wraps that were checked, and of what they were off by, rad, its sums
+    _off: float = 0.0
+    _squares: float = 0.0
     _steps: list[tuple[float, float, float]] = field(default_factory=list)
 
     @property
@@ -32,9 +41,27 @@ class Wraps:
         """The period, and the parameter to set for it, if the positions repeat."""
         if not self.period:
             return None
-        turn = abs(self.period - TURN) < _EQUAL * TURN
+        turn = not self.known and abs(self.period - TURN) < _EQUAL * TURN
         setting = 'rotor_encoder to single_turn' if turn else _RANGE
         return Condition.WRAPS(angle=TURN if turn else self.period, setting=setting)
+
+    def check(self, steps: tuple[float, float, float], spans: tuple[int, int, int]) -> bool:
+        """Check the known period by the step of a wrap; return whether it is another.
+
+        The steps, rad, are those before the wrap, of it, without the periods `counted`, and behind
+        it, in spans of time, ns. What the motion does not explain shows how far the range is off.
+        """
+        if max(spans) > _EVEN * min(spans):
+            return bool(self.period)
+        before, wrap, after = steps
+        off = math.copysign(1.0, self.counted) * (wrap - 0.5 * (before + after))
+        self._times += 1
+        self._off, self._squares = self._off + off, self._squares + off * off
+        mean = self._off / self._times
+        error = math.sqrt(max(0.0, self._squares / self._times - mean * mean) / self._times)
+        if self._times >= _MANY and abs(mean) > _OFF + _SURE * error:
+            self.period = abs(self.counted) * self.known + mean
+        return bool(self.period)
 
     def note(
         self, step: float, end: float, time: float, speeds: tuple[float, float], *, jump: bool

@@ -223,6 +223,31 @@ def test_positions_that_wrap_are_named_after_three_wraps(rate, speed, period):
     assert rotor.plausibility.wraps.fact is None
 
 
+@pytest.mark.parametrize(('period', 'changes'), [
+    (25.0, {'rotor_encoder': 'single_turn'}), (25.0, {'rotor_encoder_range': 24.9}),
+    (25.0, {'rotor_encoder_range': 25.0}), (TURN, {'rotor_encoder': 'single_turn'}),
+    (4.0 * TURN, {'rotor_encoder': 'single_turn'}), (12.0, {'rotor_encoder_range': 12.06}),
+])  # fmt: skip
+@pytest.mark.parametrize('late', [0.0, 0.1])
+def test_positions_that_wrap_at_another_range_than_the_configured_one_are_named(
+    period, changes, late
+):
+    parameters, generator = replace(MULTI, **changes), np.random.default_rng(8)
+    times = np.arange(8000) / 1000
+    angles = 250.0 * np.sin(times) + 40.0 * np.sin(5.0 * times)
+    times = times + late * 1e-3 * generator.random(len(times))
+    rotor, samples = fed(parameters, messages(times[:1], angles[:1] * 0.0))
+    rotor.home(0.0)
+    for data in messages(times, np.mod(angles, period)):
+        with suppress(RejectedInputError):
+            samples.append(rotor.accept(data, int))
+    known = parameters.rotor_period
+    other = abs(math.remainder(period, known)) > 0.05
+    named = Condition.WRAPS(angle=pytest.approx(period, abs=0.01), setting=ANY)
+    assert rotor.plausibility.jumped == (named if other else None)
+    assert rotor.referenced != other
+
+
 @pytest.mark.parametrize('rate', [10, 20, 50, 1000])
 def test_machine_with_a_quick_return_or_a_drive_that_restarts_does_not_wrap(rate):
     times = np.arange(40 * rate) / rate
