@@ -46,9 +46,10 @@ def questions(
     stamp = _stamps(states, received)
     if unfit := int(np.count_nonzero(states.joint_found & ~states.arrays_fit)):
         yield Observation.SIZES_DIFFER(count=unfit)
-    repeated = int(np.count_nonzero(np.diff(stamp) == 0))
-    if 2 * repeated > len(stamp):
-        yield Observation.STAMPS_REPEAT(count=repeated, total=len(stamp))
+    own = stamp[states.joint_found]  # other joints may have the same time
+    repeated = int(np.count_nonzero(np.diff(own) == 0))
+    if 2 * repeated > len(own):
+        yield Observation.STAMPS_REPEAT(count=repeated, total=len(own))
     stamp, values = _in_order(states, stamp)
     if len(stamp) < _FEWEST:
         return

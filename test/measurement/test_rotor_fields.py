@@ -83,6 +83,16 @@ def test_counts_of_an_encoder_are_named(counts):
         assert [*questions(data, [0] * len(data), 'rotor')] == told
 
 
+def test_other_joints_of_the_same_time_repeat_no_stamp():
+    """As of an arm and its grippers, whose publishers share a topic."""
+    data = [
+        rotor_bytes(int(stamp), names=[name], position=[float(position)])
+        for stamp, position in zip(stamps(TIMES), ROTOR, strict=True)
+        for name in ('rotor', 'left_gripper', 'right_gripper')
+    ]
+    assert [*questions(data, [*range(len(data))], 'rotor')] == []
+
+
 @pytest.mark.parametrize(
     ('rate', 'velocity', 'asked'),
     [
