@@ -20,6 +20,7 @@ UNITS = {'angle': 'rad', 'torque': 'N·m', 'speed': 'rad/s', 'time': 's'}
 """The units of all numbers in a file."""
 _GREATEST = 1e30  # far above any number of a real gear
 _LONGEST_PERIOD = 2**26  # rotor turns; products of two such numbers are exact in float64
+_WIDEST = 0.1  # rad: half width of an interval beyond which no gear and encoders deviate
 
 
 def is_calibration(path: Path) -> bool:
@@ -122,7 +123,11 @@ class Calibration:
         spans = self.spans.speed, self.spans.torque, self.spans.angle
         reach = abs(self.constant) + sum(math.hypot(each.cos, each.sin) for each in self.orders)
         reach += sum(stop.radius * abs(stop.coefficient) for stop in self.hysteresis)
+        width = self.half_width
         bounds = {
+            f'an interval of ± {width:.3g} rad is too wide for a gear; are its numbers in rad?': (
+                width <= _WIDEST
+            ),
             f"an error of {reach:.3g} rad is no gear's; are its numbers in rad?": reach <= math.pi,
             f'the orders must repeat within {_LONGEST_PERIOD} rotor turns': (
                 self.period <= _LONGEST_PERIOD
@@ -137,7 +142,7 @@ class Calibration:
                 span[0] <= span[1] for span in spans if span is not None
             ),
             'half_width must be greater than 0 and at most outside_half_width': (
-                0.0 < self.half_width <= self.outside_half_width
+                0.0 < width <= self.outside_half_width
             ),
         }
         if faults := [fault for fault, holds in bounds.items() if not holds]:

@@ -119,6 +119,10 @@ def test_file_says_what_its_numbers_are():
         ),
         ({'orders': [order(cycles='1/99999989')]}, 'must repeat within 67108864 rotor turns'),
         ({'orders': [order(cos=3.0, sin=-1.0)]}, "an error of 3.16 rad is no gear's"),
+        (
+            {'half_width': 0.2, 'outside_half_width': 0.3},
+            'an interval of ± 0.2 rad is too wide for a gear; are its numbers in rad?',
+        ),
         ({'hysteresis': [{'radius': 0.0, 'coefficient': 1.0}]}, 'a radius of the hysteresis must'),
         (
             {'spans': {'speed': [1.0, -1.0], 'torque': None, 'angle': [0.0, 1.0], 'time': 1.0}},
