@@ -6,9 +6,12 @@ import re
 import warnings
 from collections.abc import Iterable, Sequence
 from functools import cache
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
+
+from gear_kinematics.measurement.names import meaning
 
 MOMENT = re.compile(
     r'(\d{1,4}[-./](\d\d?|[a-z]{3})[-./]\d{2,4}[T ] ?)?\d?\d:\d\d(:\d\d([.,]\d+)?|[.,]\d+)\s?'
@@ -18,6 +21,9 @@ MOMENT = re.compile(
 _TUPLE = re.compile(r'\(.*,( .*)?\)')  # as Python writes them
 _NEGATIVE = re.compile(r'^\((\d[\d.,]*)\)$')
 """Negative numbers in brackets, as in accounts, which Excel writes."""
+_IDS = re.compile(r'((joint|motor|actuator|servo|axis|node|can|id|name|index) ?)+')
+"""Names of the column of a table with a row for each joint."""
+_OFTEN = 0.9  # share of the rows that are of another joint than the one before
 MISSING = {'', 'nan', '-nan', 'inf', '-inf', 'null', 'none', '<na>', 'n/a', 'na', '-', '[]'}
 
 
@@ -160,3 +166,18 @@ def elements_of(lines: Sequence[str], names: Sequence[str], separator: str) -> d
             keys = [f'{column}[{k}]' for k in range(many)] if many > 1 else [column]
             found |= {key: Element(place, place, k) for k, key in enumerate(keys)}
     return found
+
+
+def ids_of(names: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    """Return the columns that say of which joint a row is, if the rows are of several."""
+    found = []
+    for place, name in enumerate(names):
+        cells = [row[place] for row in rows if place < len(row)]
+        changes = sum(one != other for one, other in pairwise(cells))
+        several = 2 * len({*cells}) <= len(cells) and changes > _OFTEN * (len(cells) - 1)
+        plain = all(cell[:1] not in '[(' for cell in cells)
+        plain &= all(cell.isdecimal() or not weight(cell, '.') for cell in cells)
+        if several and plain and _IDS.fullmatch(' '.join(meaning(name).words)):
+            found.append(name)
+    angles = any(meaning(name).role == 'angle' for name in names)  # of neither side
+    return sorted(found, key=lambda name: 'name' not in meaning(name).words) if angles else []

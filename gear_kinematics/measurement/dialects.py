@@ -8,7 +8,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from itertools import pairwise, takewhile
+from itertools import takewhile
 from operator import itemgetter
 from pathlib import Path
 from typing import IO, Any, NamedTuple
@@ -22,12 +22,14 @@ from gear_kinematics.measurement.cells import (
     are_divided,
     cells_of,
     elements_of,
+    ids_of,
     may_be_divided,
     numbers,
     weight,
 )
-from gear_kinematics.measurement.columns import likeliest
+from gear_kinematics.measurement.columns import likeliest, nanoseconds_of
 from gear_kinematics.measurement.names import known_units, meaning
+from gear_kinematics.wire.cdr import SECOND
 
 _MOST_ROWS = 1_000_000  # 15 minutes at 1 kHz; a row takes up to 250 bytes besides those of pandas
 _HEAD, _BLOCK = 2**16, 2**17  # bytes that show the dialect; characters that are read at a time
@@ -49,9 +51,6 @@ _TOPICS, _VALUE = (
     'value',
 )
 """Names of the columns of a table with a row for each value."""
-_IDS = re.compile(r'((joint|motor|actuator|servo|axis|node|can|id|name|index) ?)+')
-"""Names of the column of a table with a row for each joint."""
-_OFTEN = 0.9  # share of the rows that are of another joint than the one before
 
 
 class TableFile(NamedTuple):
@@ -158,7 +157,7 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
     lower = [name.lower().strip('_') for name in layout.names]
     sample = [cells_of(line, layout.separator) for line in lines[layout.start :][:_ROWS]]
     topics = [name for name in _TOPICS if name in lower] if _VALUE in lower else []
-    keys = [layout.names[lower.index(name)] for name in topics] or _ids(layout.names, sample)
+    keys = [layout.names[lower.index(name)] for name in topics] or ids_of(layout.names, sample)
     if keys:
         frame = read(range(len(lower)), 1).set_axis(layout.names, axis=1)
         value = layout.names[lower.index(_VALUE)] if topics else ''
@@ -329,27 +328,12 @@ def _joint_state(row: Sequence[str]) -> tuple[list[str], dict[str, str], dict[st
     return names, dict.fromkeys(joints, 'rad'), {}
 
 
-def _ids(names: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """Return the columns that say of which joint a row is, if the rows are of several."""
-    found = []
-    for place, name in enumerate(names):
-        cells = [row[place] for row in rows if place < len(row)]
-        changes = sum(one != other for one, other in pairwise(cells))
-        several = 2 * len({*cells}) <= len(cells) and changes > _OFTEN * (len(cells) - 1)
-        plain = all(cell[:1] not in '[(' for cell in cells)
-        plain &= all(cell.isdecimal() or not weight(cell, '.') for cell in cells)
-        if several and plain and _IDS.fullmatch(' '.join(meaning(name).words)):
-            found.append(name)
-    angles = any(meaning(name).role == 'angle' for name in names)  # of neither side
-    return sorted(found, key=lambda name: 'name' not in meaning(name).words) if angles else []
-
-
 def _long(frame: Any, point: str, key: str, value: str, units: Mapping[str, str]) -> TableFile:
-    """Return the series of a table with a row for each value, as exported from plots, or joint.
-
-    Without a `value`, those of all columns are named after the joint and the column.
-    """
+    """Return the series of a table with a row for each value, or each joint, which has several."""
     clock = likeliest(frame.columns).get('time')
+    unit = units.get(clock) or meaning(clock).unit if clock else ''
+    if nanoseconds := nanoseconds_of(clock or '', [*frame]):
+        frame[clock], unit = frame[clock] * SECOND + frame[nanoseconds], 'ns'
     rest = [name for name in frame if name not in {key, clock, ''} and not frame[name].ndim > 1]
     columns, clocks, known = {}, dict[str, str](), dict[str, str]()
     for joint, series in frame.groupby(key, sort=False):
@@ -360,5 +344,5 @@ def _long(frame: Any, point: str, key: str, value: str, units: Mapping[str, str]
             clocks |= {name: f'{clock} of {joint}'} if clock else {}
         if clock:
             columns[own := f'{clock} of {joint}'] = numbers(series[clock], point)
-            known[own] = units.get(clock) or meaning(clock).unit
+            known[own] = unit
     return loaded(columns, known, clocks)

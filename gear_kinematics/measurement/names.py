@@ -170,7 +170,7 @@ def _role(
     torque, quantity = 'torque' in kinds, not kinds.isdisjoint({'angle', 'torque'})
     unclear = (torque and 'angle' in kinds) or (rotor and output and not torque)
     others = None in kinds or ('current' in kinds and not torque)
-    unsaid = kinds == {'input'} or (unit in FOREIGN and not quantity)
+    unsaid = kinds == {'input'} or (unit in {*FOREIGN, *TIME_UNITS} and not quantity)
     if not keys or others or unclear or unsaid or '/' in unit or unit in _SPEEDS:
         return none
     # A count of turns comes after the angle within a turn, and the state of a motor after both.

@@ -332,9 +332,9 @@ ENCODERS = {
         [t, r, o], 'robot_time,motor_ang,gearbox_ang'),
     'Chinese': lambda t, r, o: written(
         [t, r * DEG, o * DEG], '时间\uff08s\uff09,电机角度\uff08°\uff09,输出角度\uff08°\uff09'),
-    'a row for each joint': lambda t, r, o: 'time,id,joint_name,position_deg,torque\n' + ''.join(
-        f'{at:.2f},{k},{name},{value * DEG:.5f},0\n'
-        for at, *values in zip(t, r, o, strict=True)
+    'a row for each joint': lambda t, r, o: 'sec,nanosec,id,joint_name,position_deg\n' + ''.join(
+        f'{at // 1:.0f},{at % 1 * 1e9:.0f},{k},{name},{value * DEG:.5f}\n'
+        for at, *values in zip(t + 1.79e9, r, o, strict=True)
         for k, name, value in zip((11, 12), ('motor', 'output'), values, strict=True)),
     'counts of 16 bits': lambda t, r, o: written(
         [t, *in_counts(r) % 65536, o], 'time,rotor_counts,output_rad',
