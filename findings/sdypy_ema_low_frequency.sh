@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# sdypy-EMA 0.31.0: a vibration of an arm at 20 Hz is found at 0 Hz with a damping of 0; from 26 Hz on it is found right.
+# sdypy-EMA 0.31.0: a vibration of an arm at 20 Hz is found at 0 Hz with a damping of 0; one at 26 Hz is found right.
 #
 # An arm has natural frequencies at 20 Hz and 55 Hz, and its frequency responses have next to no noise. Expected of
 # select_closest_poles([20, 55]): 20 Hz with a damping ratio of 0.01 and 55 Hz with 0.02, which are among the poles
