@@ -2,12 +2,14 @@
 """What one node for an arm costs, against a node for each gear and a textbook node, in one run.
 
     python benchmark/arm.py [--joints 7] [--rate 1000] [--seconds 5] [--rounds 5] [--poses]
-                            [--kinds arm gears 'one gear' textbook] [--baseline FOLDER] [--json]
+                            [--kinds arm gears 'one gear' textbook echo]
+                            [--baseline FOLDER] [--json]
 
 A driver sends all joints in one message at a steady rate, and a listener takes output_state, with
 --poses body_poses of each gear as well. The arm is one gear_state_publisher with `actuators`; the
 gears are one gear_state_publisher each; one more gear_state_publisher alone gives the latency to
-compare with; the textbook node does the job of the arm in rclpy. With --baseline, the gears and
+compare with; the textbook node does the job of the arm in rclpy; the echo is a node that publishes
+the bytes that it takes, which costs what no node can save. With --baseline, the gears and
 the one gear are nodes of the checkout of another version. All take turns, so that what else the
 machine does befalls all of them. CPU time is that of all nodes together for each message of the
 driver, and memory is PSS, in which a page that processes share counts once. Values and ratios
@@ -88,8 +90,8 @@ def main() -> None:
             ratio = summary['ratios'][other][field]
             met = 'met' if ratio <= bound else 'NOT MET'
             print(f'{met:8}{field}, x {other}: {ratio:.3g}, at most {bound:g}')
-    if 'textbook' in summary['ratios']:
-        print(f'        cpu, x textbook: {summary["ratios"]["textbook"]["cpu"]:.3g}')
+    for other in {'textbook', 'echo'} & summary['ratios'].keys():
+        print(f'        cpu, x {other}: {summary["ratios"][other]["cpu"]:.3g}')
 
 
 def _kinds(surroundings: Surroundings, options: argparse.Namespace) -> dict[str, Kind]:
@@ -112,6 +114,7 @@ def _kinds(surroundings: Surroundings, options: argparse.Namespace) -> dict[str,
         'gears': Kind(gears, of_gears, options.baseline),
         'one gear': Kind(gears[:1], of_gears[: len(outputs)], options.baseline),
         'textbook': Kind([(program('textbook_arm.py'), actuators)], of_arm),
+        'echo': Kind([(program('echo_node.py'), [])], of_arm[:1]),
     }
 
 
