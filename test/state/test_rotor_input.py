@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The rotor input, by the rows of the contract's table of bad input."""
+"""The rotor input: what rejected messages leave, resets, zero and direction, any numbers."""
 
 import math
 from contextlib import suppress

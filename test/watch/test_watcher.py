@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What `gearkin watch` shows, and whom its server answers, without a node."""
+"""What `gearkin watch` shows, whom its server answers, and what init writes, without a node."""
 
 import asyncio
 import io
