@@ -39,6 +39,7 @@ def between(
             raise argparse.ArgumentTypeError(f'must be {bounds}, not {text}')
         return value
 
+    number.__name__ = kind.__name__
     return number
 
 

@@ -113,6 +113,10 @@ class _Parser(argparse.ArgumentParser):
         self.error(message)
 
     def error(self, message: str) -> NoReturn:
+        found = re.search(r"invalid (\w+) value: (?='.*'$)", message)  # the name of a function
+        if found:
+            whole = 'whole ' * (found[1] == 'int')
+            message = message.replace(found[0], f'must be a {whole}number, not ')
         complain(f'{message}; see {self.prog} --help')
         raise SystemExit(ExitCode.UNUSABLE)
 

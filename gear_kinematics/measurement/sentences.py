@@ -302,11 +302,11 @@ class Observation(Enum):
         'than those of the others.'
     )
     # Limits
-    WITHIN_LIMIT = _VALUE + 'is within ' + _LIMIT
-    BEYOND_LIMIT = _VALUE + 'is beyond ' + _LIMIT
-    PERHAPS_BEYOND = _VALUE + 'may be beyond ' + _LIMIT
+    WITHIN_LIMIT = _VALUE + 'meets ' + _LIMIT
+    BEYOND_LIMIT = _VALUE + 'violates ' + _LIMIT
+    PERHAPS_BEYOND = _VALUE + 'may violate ' + _LIMIT
     MEASURED_ONCE = (
-        f'{_VALUE}cannot be shown to hold {_LIMIT}: it was measured once, so that its uncertainty '
+        f'{_VALUE}cannot be shown to meet {_LIMIT}: it was measured once, so that its uncertainty '
         'is not known'
     )
     NOT_KNOWN = 'the {figure} is not known'

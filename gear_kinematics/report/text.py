@@ -98,7 +98,7 @@ def section_lines(section: Section, *, brief: bool = False) -> Iterator[str]:
 
 def _joined(text: str, more: str) -> str:
     """Join two texts after a semicolon, or after a full stop if the second is a sentence."""
-    return f'{text}{"." if more[0].isupper() else ";"} {more}'
+    return f'{text.removesuffix(".")}{"." if more[0].isupper() else ";"} {more}'
 
 
 def _table_lines(table: Table) -> Iterator[str]:

@@ -156,7 +156,9 @@ def test_file_for_two_nodes_is_refused_naming_them(two_nodes, tmp_path, monkeypa
 
 @pytest.mark.parametrize(('arguments', 'cause'), [
     ('', 'arguments are required: COMMAND; see gearkin --help'), ('unknown', "'unknown'"),
-    ('describe --ring-teeth many', "--ring-teeth: invalid int value: 'many'; see"),
+    ('describe --ring-teeth many', "--ring-teeth: must be a whole number, not 'many'; see"),
+    ('validate bag --jobs 1.5', "--jobs: must be a whole number, not '1.5'; see"),
+    ('lost-motion a.csv --max-backlash 3′', "must be a number, not '3′'; see"),
     ('describe --satellite-teeth 80', 'satellite_teeth (80) must be less than'),
     ('describe --module 0', 'module must be'),
     ('describe --eccentricity nan', '--eccentricity must be between 1e-06 and 1.0'),

@@ -158,7 +158,7 @@ def test_options_decide(name, options, code, bags, capsys):
 @pytest.mark.parametrize(('options', 'cause'), [
     (['--tolerance-effort=-1e-9'], '--tolerance-effort: must be at least 0, not -1e-9'),
     (['--tolerance-position', 'nan'], '--tolerance-position: must be at least 0, not nan'),
-    (['--tolerance-angle', 'small'], "invalid number value: 'small'; see gearkin validate"),
+    (['--tolerance-angle', 'small'], "must be a number, not 'small'; see gearkin validate"),
     (['--poses-topic', '/output_state'], 'good: no topic /output_state of type geometry_msgs'),
     (['--output-topic', '/nope'], 'good: no topic /nope of type sensor_msgs'),
     (['--json', '-', '--junit', '-'], 'only one report can go to stdout'),

@@ -9,7 +9,7 @@ import pytest
 import report_samples as samples
 from rich.console import Console
 
-from gear_kinematics.report.document import Verdict, hertz, number
+from gear_kinematics.report.document import Document, Section, Sentence, Verdict, hertz, number
 from gear_kinematics.report.text import lines, render
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.document import document
@@ -78,6 +78,13 @@ def test_every_fault_is_a_sentence_that_names_and_locates_it():
     lost = samples.Finding(FindingCause.NO_OUTPUT, count=1, values={'topic': '/a'}, explains=True)
     order = [f.text for f in findings(replace(samples.FAILING, findings=(lost,)))]
     assert order.index(sentence(lost)) == 4
+
+
+def test_sentences_are_joined_by_one_full_stop():
+    held = Sentence('finding', 'The limit is met.')
+    section = Section('a', (), verdict=Verdict.PASS, answer='There is play.', findings=(held,))
+    (line,) = lines(Document('', (section,), {}), brief=True)
+    assert line == 'a: verdict: passed. There is play. The limit is met.'
 
 
 def test_a_brief_report_is_verdict_findings_and_one_line_of_numbers():
