@@ -182,7 +182,7 @@ def open_bag(path: Path) -> Iterator[Bag]:
         if path.is_file() and not BAG_NAME.search(path.name):
             kinds = (
                 f'{error}; bags are .mcap, .db3, .bag and folders, tables {", ".join(TABLES)}, '
-                f'texts also compressed as {", ".join(COMPRESSED)}'
+                f'texts also compressed, as {", ".join(f".csv{end}" for end in COMPRESSED)}'
             )
             raise BagError(kinds) from error
         raise

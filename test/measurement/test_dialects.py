@@ -769,7 +769,8 @@ def test_the_sheets_of_a_workbook_that_have_numbers_are_named(tmp_path, gear):
 
 def test_what_is_neither_table_nor_bag_is_refused_with_what_can_be_read(tmp_path, gear):
     (tmp_path / 'r.ods').write_bytes(b'PK\x03\x04')
-    with pytest.raises(BagError, match=r'bags are .mcap.* tables .csv.*\.parquet.* as \.gz'):
+    kinds = r'bags are .mcap.* tables .csv.*\.parquet.* as \.csv\.gz, \.csv\.zst, \.csv\.zip'
+    with pytest.raises(BagError, match=kinds):
         read(tmp_path / 'r.ods', gear)
 
 
