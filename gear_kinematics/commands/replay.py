@@ -51,7 +51,9 @@ def run(options: argparse.Namespace) -> ExitCode:
         total = count_due(bag, [topic]) if shown else None
         if not (options.no_wait or options.quiet):
             waiting = f'waiting for a subscriber on {options.published}'
-            print(f'{waiting}, or end this and give its topic with --as', file=sys.stderr)
+            if options.published == ROTOR_STATE:
+                waiting += ', or end this and give its topic with --as'
+            print(waiting, file=sys.stderr)
         with (
             stopped_by_signals() as stopped,
             message_progress(options.bag.name, quiet=options.quiet) as progress,

@@ -16,8 +16,8 @@ from gear_kinematics.validation.task import QUANTITIES
 _WHY_LEFT_OUT = {
     BEFORE: 'the recording had just begun',
     AFTER: 'the recording ended first',
-    NO_INPUT: 'their input was not recorded',
-    LOST: 'the recorder says that it lost them',
+    NO_INPUT: 'the input was not recorded',
+    LOST: 'lost by the recorder, by its own count',
 }
 
 

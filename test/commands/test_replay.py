@@ -39,6 +39,15 @@ def test_a_replay_that_cannot_be_done_gets_one_line_and_code_2(
     assert cause in refusal('replay', '--no-wait', *arguments)
 
 
+@pytest.mark.parametrize(('options', 'hint'), [
+    ([], 'rotor_state, or end this and give its topic with --as'), (['--as', 'x'], 'x'),
+])  # fmt: skip
+def test_a_topic_is_asked_for_only_where_none_is_given(options, hint, bags, monkeypatch, capsys):
+    monkeypatch.setattr('gear_kinematics.ros.replay.play', lambda *_, **__: Played())
+    assert main(['replay', str(bags / 'good'), *options]) == 0
+    assert capsys.readouterr().err == f'waiting for a subscriber on {hint}\n'
+
+
 def test_the_file_of_an_arm_finds_the_topic_of_its_rotors(tmp_path, monkeypatch):
     states = {'/arm/motors': ['shoulder', 'elbow'], '/hand/motors': ['thumb', 'finger']}
     messages = [(topic, 1, rotor_bytes(1, names, [0.0, 0.0])) for topic, names in states.items()]

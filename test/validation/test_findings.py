@@ -5,9 +5,12 @@ from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
+from report_samples import OUTPUT
+
 from gear_kinematics.validation.causes import FindingCause
-from gear_kinematics.validation.findings import sentence
+from gear_kinematics.validation.findings import findings, sentence
 from gear_kinematics.validation.input_health import CHECKS
+from gear_kinematics.validation.recorder import AFTER, BEFORE, LOST, NO_INPUT
 from gear_kinematics.validation.report import Finding, InputReport, unusable
 
 GOLDEN = Path(__file__).with_name('findings.txt')
@@ -78,6 +81,21 @@ def test_time_of_a_finding_is_that_since_the_start_where_both_are_known():
     found, report = Finding(FindingCause.MISSING, count=1, stamp=2 * 10**9), unusable(Path(), '')
     assert sentence(found, report) == '1 message missing, the first at stamp 2000000000'
     assert sentence(Finding(FindingCause.MISSING, count=1), report) == '1 message missing'
+
+
+def test_why_messages_are_skipped_fits_one_and_several():
+    report = unusable(Path(), '')
+    for count in (1, 2):
+        left_out = {BEFORE: count, AFTER: count, NO_INPUT: count, LOST: count}
+        topic = replace(OUTPUT, left_out=left_out)
+        told = [found.text for found in findings(replace(report, topics=(topic,)))]
+        messages = '1 message' if count == 1 else '2 messages'
+        assert told[-4:] == [
+            f'{messages} skipped: the recording had just begun',
+            f'{messages} skipped: the recording ended first',
+            f'{messages} skipped: the input was not recorded',
+            f'{messages} skipped: lost by the recorder, by its own count',
+        ]
 
 
 def test_one_of_a_kind_is_in_the_singular():
