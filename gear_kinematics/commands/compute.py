@@ -105,6 +105,7 @@ def _print_summary(out: Path, result: ComputeResult) -> None:
             rotor.disorder.clock_step,
             rotor.velocity_field.in_recording,
             result.questions[name],
+            result.outside[name],
             'the effort is 0 throughout the motion, and left out'
             if rotor.effort_field.absent
             else '',

@@ -13,11 +13,14 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.kinematics.rotor_turns import TURN, repeated
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.rotor_samples import RotorSamples
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.wire.cdr import SECOND
 
@@ -46,6 +49,17 @@ def range_fault(
     which = Condition.AT_EITHER_END if possible[0] else Condition.OUTSIDE
     at, low, high = (math.degrees(each) for each in (angle, low, high))
     return which(angle_deg=at, low_deg=low, high_deg=high)
+
+
+def farthest_outside(parameters: NodeParameters, samples: RotorSamples) -> Fact | None:
+    """Return how the output angle of known turns farthest from the range contradicts it, if so."""
+    if not (parameters.output_range and samples.referenced.any()):
+        return None
+    turned = (TURN * samples.turns + samples.angle)[samples.referenced]
+    angles = turned / float(parameters.gear.gear_ratio)
+    middle = sum(parameters.output_range) / 2.0
+    farthest = float(angles[np.argmax(np.abs(angles - middle))])
+    return range_fault(parameters, farthest, parameters.transmission_error_limit)
 
 
 class Decision(NamedTuple):

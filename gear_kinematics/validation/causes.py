@@ -85,6 +85,7 @@ class FindingCause(Enum):
     JUMPED = '{rotor.jumped}'
     VELOCITY_IS = '{rotor.velocity_is}'
     BEYOND_LIMITS = '{rotor.beyond_limits}'
+    OUTSIDE = '{rotor.outside}'
     SET_BACK = '{rotor.set_back}'
     OF_OTHERS = '{messages} of {rotor.topic} for other joints, which is no fault'
     ZERO_STAMPS = (

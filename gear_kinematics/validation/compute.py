@@ -18,6 +18,7 @@ from gear_kinematics.state.effort_field import questioned
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Fact
+from gear_kinematics.state.turn_reference import farthest_outside
 from gear_kinematics.wire.batches import join_joint_states
 from gear_kinematics.wire.topics import (
     BODY_POSES,
@@ -44,6 +45,7 @@ class ComputeResult:
     computed: int  # messages written on each output topic
     copied: int  # messages copied from other topics
     questions: Mapping[str, Fact | None]  # by actuator: efforts that are hardly torques of a rotor
+    outside: Mapping[str, Fact | None]  # by actuator: an output angle outside of its range
     left_out: tuple[str, ...]  # topics not copied: not chosen, or not possible in a rosbag2
 
 
@@ -96,7 +98,7 @@ def compute(
     chosen = {*inputs, *others}
     _check_topics(source, rotor_topic, chosen, outputs)
     kept, computed, copied = list[str](), 0, 0
-    efforts = dict.fromkeys(gears, 0.0)
+    efforts, outside = dict.fromkeys(gears, 0.0), dict[str, Fact | None].fromkeys(gears)
     with BagWriter(target, storage=storage, compression=compression) as writer:
         for name, content in files.items():
             writer.add_file(name, content)
@@ -115,7 +117,7 @@ def compute(
         for batch in source.batches({*kept, *outputs}, progress, publish_times=True):
             messages = [message for message in batch if message[0] not in outputs]
             copied += sum(topic != rotor_topic for topic, *_ in messages)
-            answers = _answers(gears, messages, rotor_topic, encoder_topic, efforts)
+            answers = _answers(gears, messages, rotor_topic, encoder_topic, efforts, outside)
             computed += len(answers[OUTPUT_STATE])
             # A stable sort by these puts each output directly after its rotor message.
             places, received = [*range(len(messages))], [message[1] for message in messages]
@@ -130,6 +132,7 @@ def compute(
         computed,
         copied,
         {name: questioned(effort) for name, effort in efforts.items()},
+        outside,
         left_out=tuple(sorted(source.topics.keys() - {*kept, *outputs})),
     )
 
@@ -155,13 +158,19 @@ def _answers(
     rotor: str,
     encoder: str,
     efforts: dict[str, float],
+    outside: dict[str, Fact | None],
 ) -> dict[str, dict[int, bytes]]:
-    """Return outputs by name in the node and row of the input; raise `efforts` to the greatest."""
+    """Return outputs by name in the node and row of the input.
+
+    Raises `efforts` to the greatest, and sets the first angles `outside` of their ranges.
+    """
     found = defaultdict[str, list[dict[int, bytes]]](list)
     for actuator, gear in gears.items():
         answers = gear.batch(messages, rotor, encoder)
         sizes = np.abs(np.nan_to_num(answers.samples.effort))
         efforts[actuator] = float(np.max(sizes, initial=efforts[actuator]))
+        found_outside = farthest_outside(gear.parameters, answers.samples)
+        outside[actuator] = outside[actuator] or found_outside
         for state, encoded in gear.encode_batch(answers).items():
             rows = zip(answers.samples.row.tolist(), encoded, strict=True)
             found[topic_of(actuator, state)].append({row: data for row, data in rows if data})

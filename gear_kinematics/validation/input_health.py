@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.state.rotor_input import RotorInput
-from gear_kinematics.state.statuses import Condition
+from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.report import Finding, Gap, InputReport
 from gear_kinematics.wire.batches import once_for_joints
@@ -35,6 +35,7 @@ class InputHealth:
         self._longest: list[Gap] = []
         self._overspeed = 0
         self._fastest = 0.0
+        self.outside: Fact | None = None  # the first output angle outside of its range
 
     def update(self, stamp: NDArray[np.int64], rotor_angle: Array) -> None:
         """Add the next samples: stamps in ns, angles in rad, (n,)."""
@@ -89,6 +90,7 @@ class InputHealth:
             velocity_is=str(rotor_input.velocity_field.in_recording or ''),
             set_back=str(rotor_input.disorder.clock_step or ''),
             beyond_limits=str(rotor_input.plausibility.beyond_limits or ''),
+            outside=str(self.outside or ''),
         )
 
 
@@ -127,7 +129,16 @@ def _counted(rotor: InputReport) -> Iterator[Finding]:
             yield Finding(FindingCause[name.upper()], count=count, values={'rotor': rotor})
 
 
-_NOTED = 'jumped', 'jumps', 'velocity_is', 'beyond_limits', 'set_back', 'of_others', 'zero_stamps'
+_NOTED = (
+    'jumped',
+    'jumps',
+    'outside',
+    'velocity_is',
+    'beyond_limits',
+    'set_back',
+    'of_others',
+    'zero_stamps',
+)
 """Fields of `InputReport` that are noted; their causes have the same names."""
 
 CHECKS: Sequence[Callable[[InputReport], Iterator[Finding]]] = (

@@ -121,6 +121,7 @@ class InputReport:
     jumped: str = ''  #: how turns were lost, such as by the encoder's last jump, in words; or ''
     velocity_is: str = ''  #: what velocities that contradict the positions seem to be; or ''
     beyond_limits: str = ''  #: speed and acceleration beyond their limits, in words; or ''
+    outside: str = ''  #: an output angle outside of `output_range`, in words; or ''
     set_back: str = ''  #: the clock's last step back by less than a second, in words; or ''
     overspeed: int = 0  #: steps faster than `max_rotor_speed`
     max_speed: float = 0.0  #: greatest speed between two positions, rad/s

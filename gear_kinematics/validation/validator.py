@@ -18,6 +18,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.loads import LoadEstimator
+from gear_kinematics.state.turn_reference import farthest_outside
 from gear_kinematics.validation import input_health
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.corrected_topics import CORRECTED, Unbroken, why_unjudged
@@ -217,6 +218,8 @@ class Validator:
         self.samples = samples = self._state.samples(messages.data, messages.received)
         self._inputs.update(samples.received, samples.stamp, samples.rejected)
         self._health.update(samples.stamp, TURN * samples.turns + samples.angle)
+        outside = farthest_outside(self._state.parameters, samples)
+        self._health.outside = self._health.outside or outside
         columns = {name: getattr(samples, name) for name, _ in SAMPLES[4:]}
         columns['number'] = first_number(samples.segment) + self._samples
         columns['number'] += np.arange(len(samples.stamp))

@@ -2,6 +2,7 @@
 """gearkin compute as a user or a CI job runs it."""
 
 import math
+import re
 import sqlite3
 from contextlib import closing
 
@@ -124,6 +125,17 @@ def test_a_joint_of_270_degrees_is_at_250(shared_path, tmp_path):
         angle = decode_joint_states([last], 'output_shaft').values[0, 0]
         assert math.degrees(angle) == pytest.approx(found, abs=0.01)
         assert main(['validate', str(out), '--config', str(config)]) == 0
+
+
+def test_outputs_outside_of_their_range_are_named(tmp_path):
+    config, out = tmp_path / 'config.yaml', tmp_path / 'out'
+    config.write_text('/**:\n  ros__parameters:\n    output_range: [1.0, 2.0]\n')
+    done = gearkin_here('compute', BAGS / 'servo_point_to_point', out, '--config', config)
+    assert done.returncode == 0
+    said = r'the output, at -?\d+\.\d\d°, is outside of output_range, 57\.30° to 114\.59°'
+    assert re.search(f'gearkin: .*: {said}', done.stderr)
+    done = gearkin_here('validate', out, '--config', config)
+    assert re.search(said, done.stdout)
 
 
 @pytest.mark.parametrize(

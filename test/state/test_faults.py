@@ -198,7 +198,8 @@ ROWS = {
         part({}),
         {},
         (OUTSIDE,),
-        settings=replace(MULTI, output_range=(0.0, 1.0)),
+        FindingCause.OUTSIDE,
+        replace(MULTI, output_range=(0.0, 1.0)),
     ),
 }
 

@@ -24,6 +24,7 @@ ROTOR = InputReport(
     beyond_limits='the speed reaches 700 rad/s',
     jumps=2,
     set_back='the clock was set back by 0.3 s',
+    outside='the output, at -10.00°, is outside of output_range, 0.00° to 270.00°',
     of_others=12,
     zero_stamps=3,
     duplicates=2004,
