@@ -60,14 +60,9 @@ class RotorInput:
         self.disorder, self._bursts = Disorder(), Bursts()
         speed, acceleration, period = limits = _limits(parameters)
         self.plausibility = Plausibility(*limits)
-        self.turns = RotorTurns(
-            period=period,
-            max_speed=speed,
-            max_acceleration=acceleration,
-            longest_silence=parameters.longest_silence * SECOND,
-        )
+        self.turns = RotorTurns(period=period, max_speed=speed, max_acceleration=acceleration)
         self._configure(parameters)
-        self._select_joint()
+        self._start()
 
     def _configure(self, parameters: NodeParameters) -> None:
         self._parameters = parameters
@@ -76,7 +71,9 @@ class RotorInput:
         self._torque_factor = parameters.rotor_direction * parameters.rotor_effort_factor
         """N·m of the rotor, in its direction, per unit of the effort in the messages."""
 
-    def _select_joint(self) -> None:
+    def _start(self) -> None:
+        """Start with the joint and the encoder of the parameters, of which nothing is known."""
+        self.turns.reset()
         self._reader = JointReader(self._parameters.rotor_joint)
         self.velocity_field = VelocityField(float(1 / self._parameters.gear.gear_ratio))
         self.effort_field = EffortField()
@@ -101,9 +98,8 @@ class RotorInput:
         joint, period = parameters.rotor_joint, parameters.rotor_period
         if (joint, period) != (before.rotor_joint, before.rotor_period):
             self.turns.period = period
-            self.turns.reset()
             self.plausibility.reset()
-            self._select_joint()
+            self._start()
             self.missing_joint, self.last = '', None
 
     @property
