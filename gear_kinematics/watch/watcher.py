@@ -144,6 +144,8 @@ class Watcher:
             case {'do': 'undo'} if undo:
                 gear = self._ready_gear(command)
                 gear.set(gear.earlier, f'Undone: {undo} again.', answer)
+            case {'do': 'undo'}:
+                raise ValueError('There is nothing to undo.')
             case {'do': 'commission', 'rotor': [_, _] as rotor, 'output': [_, _] as output}:
                 self._commission(Channel(*map(str, rotor)), Channel(*map(str, output)), command)
                 answer.set_result(Answer('', done=True))

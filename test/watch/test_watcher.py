@@ -520,7 +520,7 @@ JOINTS = {'rotor': ['/j', 'm'], 'output': ['/j', 'o']}
 
 @pytest.mark.live
 @pytest.mark.parametrize(('command', 'answer'), [
-    ({'do': 'home'}, 'No node is ready.'), ({'do': 'undo'}, 'This command is not possible now.'),
+    ({'do': 'home'}, 'No node is ready.'), ({'do': 'undo'}, 'There is nothing to undo.'),
     ({'do': 'write'}, 'This command is not possible now.'),
     ({'do': 'exit'}, 'This command is not possible now.'),
     ({'do': 'commission', **JOINTS, 'output': []}, 'This command is not possible now.'),
