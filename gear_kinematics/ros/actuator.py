@@ -38,20 +38,28 @@ class Actuator:
         self.referenced: bool | None = None  # whether turns are known, as last published
         self._seen = 0.0  # time of the last valid input; s of a steady clock
         self._speed = 0.0  # of the rotor, rad/s, by its positions
-        self._segment, self._due = -1, 0  # of these, and the stamp of the next measurement, ns
+        self._due = 0  # the stamp of the next measurement, ns
+        self._gaps, self._origin = 0, -1
+        """Number of gaps that could hide a turn, and of all else that begins a new segment."""
 
     def note(self, now: float) -> None:
         """Note a valid message of the rotor, and its mean speed over `_SPEED_SPAN`, 0 at first."""
         state = self.state
         state.monitor.last_input = self._seen = now
-        if state.segment != self._segment:  # other turns or zero
-            self._segment, self._speed = state.segment, 0.0
-        elif state.sample[0] < self._due:  # its stamp, by the fastest way
+        sample = state.sample
+        if 0 < self._due - sample[0] <= _SPEED_SPAN:  # its stamp, by the fastest way
             return
+        turns = state.input.turns
+        origin, gaps = state.segment - turns.unknown_gaps, turns.unknown_gaps
+        if origin == self._origin and sample.stamp > self._before.stamp:
+            moved = sample.position.since(self._before.position)
+            if gaps != self._gaps:  # whole turns may be missing
+                moved = math.remainder(moved, turns.period)
+            self._speed = moved / (sample.stamp - self._before.stamp) * SECOND
         else:
-            elapsed = (state.sample.stamp - self._before.stamp) / SECOND
-            self._speed = state.sample.position.since(self._before.position) / elapsed
-        self._before, self._due = state.sample, state.sample.stamp + _SPEED_SPAN
+            self._speed = 0.0
+        self._before, self._origin, self._gaps = sample, origin, gaps
+        self._due = sample.stamp + _SPEED_SPAN
 
     @property
     def rotor_angle(self) -> float:

@@ -93,6 +93,16 @@ def test_shaft_that_turns_is_not_homed(homing, positions, period, velocity, refu
         assert node.get_parameter('rotor_zero').value == 0.0
 
 
+@pytest.mark.parametrize(('step', 'refused'), [(1.0, '1.05'), (0.0, '')])
+def test_shaft_that_turns_is_not_homed_where_each_gap_could_hide_a_turn(homing, step, refused):
+    """A single-turn encoder at 20 Hz; 20 rad/s at the rotor are 1.05 rad/s at the output."""
+    node = homing(rotor_encoder='single_turn')
+    drive(node, [step * k % math.tau for k in range(10)], 50 * MILLISECOND)
+    answer = home(node)
+    assert answer.success != bool(refused), answer.message
+    assert answer.message.startswith(f'the shaft turns at {refused} rad/s') == bool(refused)
+
+
 def test_turns_that_the_output_encoder_adds_are_no_speed(homing):
     node = homing(rotor_encoder='single_turn', output_encoder_reference='absolute')
     answers = []
