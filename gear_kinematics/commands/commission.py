@@ -81,7 +81,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _read(options: argparse.Namespace, request: analysis.Request) -> analysis.Commissioning:
-    source = replace(sources(options), as_recorded=True)
+    source = replace(sources(options), as_recorded=True, needs_times=True)
     recordings = []
     for path in options.recordings:
         with bags.naming(path):

@@ -18,6 +18,7 @@ from gear_kinematics.measurement.recording import Array
 
 _TRIED, _FEWEST, _ROWS = 12, 10, 10_000
 """Number of columns and examples that are tried; least and most rows that are compared."""
+_FIRST = 4  # number of columns among which the times are
 _ALIKE = 0.3  # least correlation of the steps of both encoders
 _LISTED = 600  # characters of the list of columns
 _NO_ANGLE = re.compile(
@@ -29,7 +30,10 @@ _LIKELY = re.compile(
     r'(?i)pos|\bq|_q|ang|enc|theta|winkel|rotation|(rad|deg|rev|inc|cnt|counts)\b'
 )
 """Words in names of columns that are proposed first."""
-_TORQUE = re.compile(r'(?i)torq|effort|moment|tau|load|n[·.* -]?m\b|^[tm][xyz]$')
+_TORQUE = re.compile(
+    r'(?i)^(?!.*(target|goal|desire|cmd|command|setpoint)).*'
+    r'(torq|effort|moment|tau|load|n[·.* -]?m\b|^[tm][xyz]$)'
+)
 """Words in names of columns that are proposed as torques."""
 
 
@@ -67,6 +71,15 @@ def advice(
     if error.example or '--' in str(error):
         return str(error)
     return f'{text}, by {", ".join(map(_option, ("angle", "torque", "rotor", "output")))}'
+
+
+def rising(table: TableFile) -> dict[str, str]:
+    """Return the first of the columns whose numbers only rise, as those of times do, if any."""
+    for name in filter(None, table.names[:_FIRST]):
+        values = np.asarray(table.load([name])[0][name])
+        if values.dtype.kind in 'iufM' and len(values) > 1 and np.all(values[1:] > values[:-1]):
+            return {'time': name}
+    return {}
 
 
 def _option(field: str) -> str:

@@ -47,6 +47,7 @@ class Sources:
     rotor_counts: int | None = None  # per turn of the encoder of the rotor, or of the angle column
     output_counts: int | None = None  # per turn of the output's encoder
     as_recorded: bool = False  # whether to keep wraps, unknown counts and rotor messages
+    needs_times: bool = False
     rotor_topic: str | None = None
     encoder_topic: str | None = None
     command: str = ''  # the command line so far, to which advice adds options

@@ -11,7 +11,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
-from gear_kinematics.measurement.advice import advice
+from gear_kinematics.measurement.advice import advice, rising
 from gear_kinematics.measurement.clocks import FASTEST, MOST, are_no_times, stamps, with_unit
 from gear_kinematics.measurement.columns import (
     Column,
@@ -70,9 +70,11 @@ def read_table(
         read = _Samples(table, sources, ratio)
         encoders = None if 'angle' in read.found else read.encoders(period)
         if both and not encoders:
-            raise ColumnsError(
-                'not both a rotor and an output: give --rotor-column and --output-column'
-            )
+            cause = 'not both a rotor and an output: give --rotor-column and --output-column'
+            raise ColumnsError(cause)
+        if sources.needs_times and not read.timed:
+            cause = 'no column of times, such as time_s; name it with --time-column'
+            raise ColumnsError(cause, **rising(table))
         locked = None if encoders else read.locked(period)
         said, remarks, faults = tuple(read.said), tuple(read.remarks), tuple(read.faults)
         return Recording(
@@ -163,8 +165,7 @@ class _Samples:
         self.used = len(self.series['output' if 'output' in self.found else 'angle'].stamp)
         self.said = [f'time [{clock.unit}] from {clock.name}' if clock else 'no times']
         self.said += map(described, self.found, self.found.values())
-        fewest = min(map(np.count_nonzero, usable.values()))
-        rows = fewest if together is None else len(together)
+        rows = min(map(np.count_nonzero, usable.values())) if together is None else len(together)
         self.said.append(f'{self.used} of {rows} rows')
 
     def _loaded(
@@ -299,10 +300,9 @@ class _Samples:
         )
         # A few readings may be stray.
         if np.ptp(np.quantile(locked.angle, (0.01, 0.99))) > _MOST_TWIST:
-            twist = np.ptp(locked.angle)
             raise ColumnsError(
-                f'the output turns by {np.degrees(twist):.3g}° under torque: it is not '
-                'locked, or the unit is another, which --angle-unit gives'
+                f'the output turns by {np.degrees(np.ptp(locked.angle)):.3g}° under torque: it is '
+                'not locked, or the unit is another, which --angle-unit gives'
             )
         return locked
 

@@ -2,6 +2,7 @@
 """gearkin commission as a user runs it."""
 
 import json
+import shlex
 from dataclasses import replace
 from pathlib import Path
 
@@ -144,6 +145,14 @@ def test_counts_without_their_number_and_times_are_needed(positions, tmp_path):
     said = refusal('commission', path)
     assert 'of the rotor are counts (183 wraps at 4096)' in said
     assert '--rotor-counts and --output-counts' in said
+
+
+def test_the_command_line_for_a_table_without_names_works(positions, tmp_path):
+    path = tmp_path / 'r.csv'
+    np.savetxt(path, np.stack(positions).T, '%.6f', ',')
+    command = refusal('commission', path, '-o', tmp_path / 'a.yaml').split('for example: ')[1]
+    assert command.endswith('--rotor-column 2 --output-column 3 --angle-unit deg --time-column 1')
+    assert main(shlex.split(command.replace(' deg ', ' rad '))[1:]) == 0
 
 
 def joint_states(folder, positions, **topics):

@@ -44,16 +44,12 @@ class Joint:
         """Unwrap a recording of positions as they were read.
 
         Raises:
-            RecordingError: if there are too few samples, no times, or another unit than rad.
+            RecordingError: if there are too few samples, or another unit than rad.
         """
         encoders, path = recording.both, recording.path
         motion, measured = encoders.rotor, encoders.measured
         if len(measured) <= 1:
             raise RecordingError(f'{path}: only one sample of both encoders')
-        if not encoders.timed:
-            raise RecordingError(
-                f'{path}: no column of times, such as time_s; name it with --time-column'
-            )
         rotor = motion.turns * TURN + motion.angle
         for body, values, step in (
             ('rotor', rotor, encoders.rotor_step),
