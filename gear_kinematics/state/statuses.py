@@ -103,8 +103,7 @@ class Condition(Enum):
     BEYOND_LIMITS = (
         WARN,
         '{which}',
-        'Raise the limit to what the motor can do, or check unit and precision of the positions, '
-        'and unit and clock of the stamps.',
+        'Raise the limit to what the motor can do, or check the units of positions and stamps.',
     )
     BEYOND_SPEED = WARN, '{speed:.4g} rad/s exceed max_rotor_speed', ''
     BEYOND_ACCELERATION = WARN, '{acceleration:.4g} rad/s² exceed max_rotor_acceleration', ''
