@@ -1,13 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# python-can-damiao 0.1.0: of the answers of motors that arrive together, only the first is ever received.
+# python-can-damiao 0.1.0: of answers that arrive together only the first is received, and with a wrong identifier.
 #
 # Expected: recv() gives one frame after the other, as with each other interface of python-can. What happens: it takes
 # all whole frames out of what has arrived, returns the first of them, and forgets the others. So the answers of six
 # motors to commands that are sent in a row are one answer, or some of them, depending on how the operating system
-# hands them over. A pseudo-terminal answers here as the adapter of Damiao does, in frames of 16 bytes as the driver
-# itself describes them.
-# For us: command and read one motor at a time, or use an adapter of SocketCAN.
+# hands them over. The adapter sends the lowest byte of an identifier first, and the driver takes it as the highest, so
+# that 0x11 is 0x11000000. A pseudo-terminal answers here as the adapter does, in the frames of 16 bytes that the
+# DM_CAN.py of DM_Control_Python reads.
+# For us: use an adapter of SocketCAN; otherwise read one motor at a time, and tell the motors by their data.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
 set -eu
@@ -26,26 +27,28 @@ import can
 device, host = pty.openpty()
 tty.setraw(device)
 tty.setraw(host)
+MOTORS = range(0x11, 0x17)  # the identifiers to which they answer; their own are 1 to 6
 
 
 def answer(motor):
-    return b'\xaa\x11\x08' + motor.to_bytes(4, 'big') + bytes([motor]) * 8 + b'\x55'
+    return b'\xaa\x11\x08' + motor.to_bytes(4, 'little') + bytes([motor & 15, 128, 0, 128, 8, 0, 30, 28]) + b'\x55'
 
 
 def received(bus):
-    identifiers = []
+    found = []
     while (message := bus.recv(timeout=0.5)) is not None:
-        identifiers.append(message.arbitration_id)
-    return identifiers
+        found.append((hex(message.arbitration_id), message.data[0]))
+    return found
 
 
 with can.Bus(interface='damiao', channel=os.ttyname(host), bitrate=1000000) as bus:
-    os.write(device, b''.join(answer(motor) for motor in range(1, 7)))
+    os.write(device, b''.join(answer(motor) for motor in MOTORS))
     together = received(bus)
     one_by_one = []
-    for motor in range(1, 7):
+    for motor in MOTORS:
         os.write(device, answer(motor))
         one_by_one += received(bus)
 print('together', together, 'one by one', one_by_one)
-assert together == [1] and one_by_one == [1, 2, 3, 4, 5, 6]
+assert together == [('0x11000000', 1)]
+assert one_by_one == [(f'0x{motor:x}000000', motor & 15) for motor in MOTORS]
 PYTHON
