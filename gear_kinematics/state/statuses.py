@@ -77,6 +77,7 @@ class Condition(Enum):
     LOSSES_UNKNOWN = OK, 'losses unknown', ''
     VELOCITIES_ARE = WARN, _VELOCITIES, _VELOCITY
     VELOCITIES_UNKNOWN = WARN, _VELOCITIES + ', {factor:.3g} times the slope', _VELOCITY
+    POSITIONS_ARE = WARN, _VELOCITIES, 'Let the driver send positions of the rotor in rad.'
     VELOCITIES_LATE = (
         WARN,
         'the velocities are {delay:.3f} s late',

@@ -47,7 +47,13 @@ class VelocityMeaning(StrEnum):
     DEGREES = 'deg/s'
     OUTPUT = 'the velocity of the output'
     OPPOSITE = 'the velocity with the opposite sign'
+    OF_TURNS = 'rad/s, and the positions turns'
+    OF_DEGREES = 'rad/s, and the positions degrees'
+    OF_OUTPUT = 'those of the rotor, and the positions those of the output'
     UNKNOWN = 'an unknown quantity'
+
+
+_POSITIONS = {VelocityMeaning.OF_TURNS, VelocityMeaning.OF_DEGREES, VelocityMeaning.OF_OUTPUT}
 
 
 class VelocityField:
@@ -61,6 +67,9 @@ class VelocityField:
             VelocityMeaning.DEGREES: 180.0 / math.pi,
             VelocityMeaning.OUTPUT: output_factor,
             VelocityMeaning.OPPOSITE: -1.0,
+            VelocityMeaning.OF_TURNS: 2.0 * math.pi,
+            VelocityMeaning.OF_DEGREES: math.pi / 180.0,
+            VelocityMeaning.OF_OUTPUT: 1.0 / output_factor,
         }
         self.finding = VelocityMeaning.UNDECIDED
         self.factor = math.nan  # ratio of velocities in messages to the slope of positions
@@ -103,7 +112,9 @@ class VelocityField:
             return Condition.POSITIONS_STAND()
         if self.finding is VelocityMeaning.UNKNOWN and not math.isnan(self.factor):
             return Condition.VELOCITIES_UNKNOWN(meaning=self.finding, factor=self.factor)
-        return Condition.VELOCITIES_ARE(meaning=self.finding)
+        positions = self.finding in _POSITIONS
+        which = Condition.POSITIONS_ARE if positions else Condition.VELOCITIES_ARE
+        return which(meaning=self.finding)
 
     @property
     def in_recording(self) -> Fact | None:

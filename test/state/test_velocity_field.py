@@ -39,6 +39,9 @@ FAST, SLOW = {}, {'speed': 1.0, 'rate': 25, 'duration': 8.0}
     (0.0, FAST, '0'), (30.0 / math.pi, FAST, 'rpm'), (0.5 / math.pi, FAST, 'turns/s'),
     (180.0 / math.pi, FAST, 'deg/s'), (-1.0 / 19.0, FAST, 'the velocity of the output'),
     (-1.0, FAST, 'the velocity with the opposite sign'), (3.0, FAST, 'an unknown quantity'),
+    (2.0 * math.pi, FAST, 'rad/s, and the positions turns'),
+    (math.pi / 180.0, FAST, 'rad/s, and the positions degrees'),
+    (-19.0, FAST, 'those of the rotor, and the positions those of the output'),
     (1.0, {'scatter': 3.0}, None), (1.0, {'speed': -100.0}, None),
     (0.0, {'speed': 0.5}, None),  # too slow to tell
     (0.0, SLOW, '0'), (0.5 / math.pi, SLOW, 'turns/s'),
