@@ -413,6 +413,13 @@ def wrap(lines: Lines, size: float) -> None:
     lines.first = 0
 
 
+def other_range(lines: Lines, size: float) -> None:
+    """Let the position repeat after another range than the parameters say."""
+    parameters = replace(lines.recording.parameters, rotor_encoder_range=_CONFIGURED)
+    lines.recording = lines.recording._replace(parameters=parameters)
+    wrap(lines, size)
+
+
 class Kind(NamedTuple):
     """A kind of fault."""
 
@@ -428,6 +435,8 @@ class Kind(NamedTuple):
 
 _ANGLES = tuple(float(f'{x:.2g}') for x in np.geomspace(0.1, 1000.0, 21))
 _TIMES = tuple(float(f'{x:.2g}') for x in np.geomspace(0.001, 3.0, 15))
+_CONFIGURED = 25.0  # rad
+_OTHER_RANGES = (TURN, 2.0 * TURN, 24.0, 24.9, 4.0 * TURN, 26.0, 50.0, 65.536, 100.0)
 _RANGES = (TURN, 2.0 * TURN, 25.0, 4.0 * TURN, 100.0, 500.0)
 _DISTANCES = tuple(map(float, np.geomspace(1e4, 1e8, 9)))
 _FACTORS = (0.0, -1.0, 0.5 / math.pi, 30.0 / math.pi, 180.0 / math.pi, 1 / -19, 0.5, 1.5, 2.0, 3.0)
@@ -438,6 +447,8 @@ KINDS = (
     Kind('the drive restarts within 0.3 s', 'rad', _ANGLES, restart),
     Kind('a second publisher for 0.5 s', 'rad', _ANGLES, second),
     Kind('the position repeats after a range', 'rad', _RANGES, wrap, angles=False),
+    Kind('the position repeats after another range than 25 rad', 'rad', _OTHER_RANGES, other_range,
+         angles=False),
     Kind('the sign of the positions changes', 'rad', (0.0, *_ANGLES), flip),
     Kind('a stuck reading', 's', _TIMES, stick, angles=False),
     Kind('lost messages', 's', _TIMES, gap, angles=False),
@@ -482,7 +493,7 @@ class Node:
             position = gear.rotor(each.data, lambda: each.received).position
         except RejectedInputError:
             return
-        if not self.outputs and gear.parameters.single_turn:
+        if not self.outputs and gear.parameters.rotor_period:
             gear.input.home(each.true)
             gear.monitor.unreferenced = 0
         referenced = gear.input.referenced
@@ -531,9 +542,9 @@ def suits(kind: Kind, recording: Recording) -> bool:
     """Whether a kind of fault can be put into a recording."""
     if kind.dual:
         return recording.output is not None
-    if kind.put is single and recording.output is not None:  # which finds another zero
-        return False
-    return kind.put not in {wrap, single} or not recording.parameters.single_turn
+    if kind.put in {single, other_range} and recording.output is not None:
+        return False  # its encoder finds another zero
+    return kind.put not in {wrap, other_range, single} or not recording.parameters.single_turn
 
 
 def trial(task: tuple[Path, int]) -> Outcome:
@@ -555,9 +566,10 @@ def trial(task: tuple[Path, int]) -> Outcome:
     part = recording.cut(slice(begin, end))
     lines = Lines(part, moment - begin, random)
     kind.put(lines, size)
+    faulty = lines.recording
     judge = seed // len(KINDS) % _JUDGED == 0 and part.output is None
     messages, phase = list(lines.sent()), float(random.uniform(0.1, 1.0))
-    node = live(part, messages, phase, encoded=judge)
+    node = live(faulty, messages, phase, encoded=judge)
     said = [time for time, text in node.reports if text and time >= at]
     delay = (said[0] - at) / SECOND if said else math.nan
     fine, worst = called_fine(node)
@@ -565,7 +577,7 @@ def trial(task: tuple[Path, int]) -> Outcome:
     if judge:
         clean = list(Lines(part, 0, random).sent())
         as_it_is = recorded(part, clean, live(part, clean, phase, encoded=True))
-        judged = float(bool(recorded(part, messages, node) - as_it_is))
+        judged = float(bool(recorded(faulty, messages, node) - as_it_is))
     return Outcome(kind.name, abs(size), recording.name, delay, fine, worst, judged, seed)
 
 

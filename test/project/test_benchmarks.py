@@ -39,7 +39,7 @@ def test_benchmark_prints_its_results_as_json(arguments):
 def test_no_wrong_output_is_called_fine_and_no_real_recording_raises_an_alarm():
     found = json.loads(run('injected_faults.py', '--faults', '140').stdout)
     assert found['alarms'] == {}
-    assert len({kind for kind, *_ in found['outcomes']}) == 15
+    assert len({kind for kind, *_ in found['outcomes']}) == 16
     assert [row for row in found['outcomes'] if row[4]] == []
     assert sum(delay is not None for _, _, _, delay, *_ in found['outcomes']) > 50
 
