@@ -7,8 +7,8 @@
 # euler, axisangle, xyaxes and zaxis the tip is at (2, 0, 0), where (0, 2, 0) or (0, 0, -2) is right. An axis that a
 # default class gives to all joints is replaced by z, so that an arm that is to move upwards moves sideways, and an
 # angle of a joint with a ref is not counted from this ref. No exception or warning says so.
-# For us: let MuJoCo compile and save the model first, which leaves only quat and no defaults; a ref has to be
-# subtracted.
+# For us: calculate with MuJoCo, or write each quat, type and axis out and subtract each ref. A model that MuJoCo saves
+# does not help: it leaves out the type of a hinge, at which kinpy raises a KeyError.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
 set -eu
