@@ -6,8 +6,8 @@
 # Expected of getInterpolatedData() in steps of 1 s, as OPC UA part 13 has it: each value lies on the line between the
 # values before and after it, whether they are inside of the query or not, so that at t seconds it is t rad. What
 # happens: only the values within the query are read. From 0 to 12 s all is right. From 0 to 9 s the shaft stands at 4
-# rad from 4 s on, marked as uncertain; from 1 to 9 s there is no data but at 4 s; from 5 to 9 s, where nothing was
-# stored, it is a TypeError. Queries that follow one another therefore join to a wrong movement.
+# rad from 4 s on, marked as uncertain; from 1 to 9 s there is no data but at 4 s. Queries that follow one another
+# therefore join to a wrong movement.
 # For us: begin and end a query at samples that were stored, or read the raw history and interpolate it yourself.
 #
 # Exit code 0: still so. Needs node and npm; installs the versions into a temporary folder.
@@ -41,17 +41,13 @@ async function main() {
   for (const time of [0, 4, 10]) {
     shaft.setValueFromSource({ dataType: 'Double', value: time }, undefined, at(time));
   }
-  const query = (from, to) => new Promise((resolve) => {
-    try {
-      aggregates.getInterpolatedData(shaft, 1000, at(from), at(to), (error, values) => resolve(error || values));
-    } catch (error) {
-      resolve(error);
-    }
+  const query = (from, to) => new Promise((resolve, reject) => {
+    aggregates.getInterpolatedData(shaft, 1000, at(from), at(to), (error, values) => (error ? reject(error) : resolve(values)));
   });
   const found = {};
-  for (const [from, to] of [[0, 12], [0, 9], [1, 9], [5, 9]]) {
+  for (const [from, to] of [[0, 12], [0, 9], [1, 9]]) {
     const values = await query(from, to);
-    found[`${from} to ${to}`] = values instanceof Error ? values.name : values.map(({ statusCode, value }) => {
+    found[`${from} to ${to}`] = values.map(({ statusCode, value }) => {
       if (statusCode.isBad()) return statusCode.name.split('#')[0];
       return Math.round(value.value * 1e6) / 1e6 + (statusCode.isGoodish() ? '' : '?');
     }).join(' ');
@@ -62,7 +58,6 @@ async function main() {
     '0 to 12': '0 1 2 3 4 5 6 7 8 9 10 10?',
     '0 to 9': '0 1 2 3 4 4? 4? 4? 4?',
     '1 to 9': 'BadNoData BadNoData BadNoData 4 BadNoData BadNoData BadNoData BadNoData',
-    '5 to 9': 'TypeError',
   });
 }
 
