@@ -4,9 +4,10 @@
 #
 # The drive gives whole turns and the counts within the turn (0x30), all counts in 48 bits with a sign (0x31), the
 # speed in 16 and the pulses in 32 bits with a sign (0x32, 0x33). read_angle_carry() adds turns to counts as if both
-# were counts, read_encoder_value() shifts the words by 8 instead of 16 bits and ignores the sign, as the other two
-# do. The greatest current and the microsteps given to Servo() are never sent, because its own __init__() hides the
-# dataclass's. An instrument answers here as the manual of the MKS SERVO42D says.
+# were counts. read_encoder_value() shifts the words by 8 instead of 16 bits, and ignores the sign, as the methods for
+# the speed and the pulses do as well. The greatest current and the microsteps given to Servo() are never sent, as its
+# own __init__() takes the place of the dataclass's, which would have called __post_init__(). An instrument answers
+# here as the manual of the MKS SERVO42D says.
 # For us: put the words of 0x31 together yourself, and call write_max_current() and write_subdivision().
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
