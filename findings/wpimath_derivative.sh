@@ -1,13 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# wpimath 2026.2.2: a joint that stands still 1 rad from its goal turns at -50 rad/s for its controller's first output.
+# wpimath 2026.2.2: for a joint that stands still 1 rad from its goal, a derivative gain of 1 gives -50 at first, not 0.
 #
 # A PIDController with a derivative gain of 1 and its usual period of 20 ms. Expected of a joint that stands still: 0.
 # What happens: the error before the first one is taken as 0, so that the first output is -50, and again after each
-# reset(). With enableContinuousInput(-pi, pi) the error is kept within half a turn, but its change is not: a joint
-# that creeps past the point opposite to its goal, from 3.1 to 3.2 rad, turns at 309 rad/s for one step, and -5 is
-# right. A drive that is limited to 12 V gets its full voltage for one period, towards the goal at the start, and in
-# the wrong direction at the half turn.
+# reset(). With enableContinuousInput(-pi, pi) the error is kept within half a turn, but its change is not: for a
+# joint that creeps past the point opposite to its goal, from 3.1 to 3.2 rad, the output is 309 for one step, and -5
+# is right. A drive that is limited to 12 V gets its full voltage for one period, towards the goal at the start, and
+# at the half turn in the direction of the motion that it is to damp.
 # For us: add a damping of the measured speed instead of the derivative gain, or leave out the first output after
 # reset().
 #
