@@ -3,12 +3,12 @@
 # pid-controller 1.0.5 (npm): PID.MANUAL starts a controller and PID.AUTOMATIC stops it, and its integral has no limit.
 #
 # The package offers the constants PID.AUTOMATIC and PID.MANUAL for setMode(). What happens: they are 1 and 0, but
-# setMode() takes 0 as automatic and 1 as manual, so that a joint that is set to manual is driven with full output,
-# and one that is set to automatic gets none. Only the texts 'auto' and 'manual' are right. The library for Arduino on
-# which it is based limits its integral to the limits of the output at each step; here only a change of the limits
-# does so. After 10 s at an obstacle, with an output limited to 5, the integral is 100, and when the goal is on the
-# other side, the joint pushes on for another 10 s. In manual mode, setOutput(9) is not limited to 5 either.
-# For us: give the modes as texts, and set ITerm to at most the limit after each compute().
+# setMode() takes 0 as automatic and 1 as manual, so that a joint that is set to manual is driven by the controller,
+# and one that is set to automatic gets an output of 0. Only the texts 'auto' and 'manual' are right. The library for
+# Arduino on which it is based limits its integral to the limits of the output at each step; here only a change of the
+# limits does so. After 10 s at an obstacle, with an output limited to 5, the integral is 100, and when the goal is on
+# the other side, the joint pushes on for another 10 s. In manual mode, setOutput(9) is not limited to 5 either.
+# For us: give the modes as texts, and bring ITerm into the limits of the output after each compute().
 #
 # Exit code 0: still so. Needs node and npm; installs the version into a temporary folder.
 set -eu
