@@ -4,8 +4,8 @@
 #
 # Expected: an answer to an SDO carries the value in CANopen's order of bytes, the lowest first, as the request did
 # and as the package sends PDOs. What happens: values arrive rightly, and are answered with the highest byte first, so
-# that a master reads each value of more than one byte, and each small one, wrongly: 1 is read as 16777216. The
-# package canopen reads here, over a virtual bus, from a drive that keeps the object 0x607A.
+# that a master reads other values, also small ones: 1 is read as 16777216. The package canopen reads here, over a
+# virtual bus, from a drive that keeps the object 0x607A.
 # For us: reverse the bytes of a value before the drive's function returns it.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
