@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# roboglia 0.1.0: a joint with an AX-12A stays at -150.1°, or at the last counts that were read, while it moves.
+# roboglia 0.1.0: a moving joint that takes an AX-12A's position in degrees stays at -150.1°, or at its last raw read.
 #
 # Expected: a register that no loop keeps up to date is read from the device when its value is asked for, as the
 # documentation of `value` has it, also a position in degrees. What happens: registers in other units, as
