@@ -18,6 +18,7 @@ python3 -m venv "$folder/venv"
     'tabular2mcap[protobuf]==0.1.12' pandas==3.1.1 scipy==1.17.1
 cd "$folder"
 timeout 60 venv/bin/python - <<'PYTHON'
+import json
 from pathlib import Path
 
 from tabular2mcap.converter.functions import ConverterFunction, ConverterFunctionJinja2Environment
@@ -50,6 +51,13 @@ positions, stamps = converted(filtered, 'stamp', 'stamp,position', *rows)
 print('numbers alone', positions, stamps)
 assert positions == [1.5, 1.55, 1.6]
 assert stamps == [1795838400000000000, 1795838400000999936, 1795838400002000128]
+
+rows[1] = f'{STAMPS[1]},'
+try:
+    converted(filtered, 'stamp', 'stamp,position', *rows)
+    raise SystemExit('an empty cell among numbers alone is no error')
+except json.JSONDecodeError as error:
+    print('numbers alone, with an empty cell', error)
 
 rows = [f'1795838400,{stamp % 10**9},{position}' for stamp, position in zip(STAMPS, ('1.5', '', '1.6'), strict=True)]
 position = "{{ position if position == position and position is not none else 'NaN' }}"
