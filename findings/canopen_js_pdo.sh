@@ -4,7 +4,7 @@
 #
 # Expected: as CiA 301 has it, the transmission types 254 and 255 are both event-driven, and a TPDO with a SYNC start
 # value of 1 is sent from the SYNC with the counter 1 on. What happens: a simulated drive sends nothing for type 255,
-# which most EDS files of drives have, nor with a start value, because the counter is looked for in the second byte of
+# which many EDS files of drives have, nor with a start value, because the counter is looked for in the second byte of
 # a SYNC, which has one. A value with a scaleFactor is divided and then cut off instead of rounded: so 125 of the
 # thousand values from 0.00 to 9.99 are read back by 0.01 less. A stub takes the place of the native CRC, which is not
 # needed here.
