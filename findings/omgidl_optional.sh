@@ -4,9 +4,10 @@
 #
 # A DDS message of position, @optional torque and velocity, serialized by pycdr2 1.0.0, which is that of Cyclone DDS.
 # In XCDR2 a byte before an optional member says whether it is there. Expected of a reader of "CDR, XCDR1 and XCDR2":
-# it reads the byte. What happens in a struct that is @final or @appendable: the annotation is ignored, and with it
-# the byte. All members after it are read from the wrong place, without an error; only a message without the torque,
-# which is shorter, ends in a RangeError. In a @mutable struct the torque is read right.
+# it reads the byte. What happens in a struct that is @final or @appendable: the annotation is ignored, as the README of
+# its parser says of all but a default value, and with it the byte. All members after it are read from the wrong place,
+# without an error; only a message without the torque, which is shorter, ends in a RangeError. In a @mutable struct the
+# torque is read right.
 # @lichtblick/omgidl-serialization 1.0.0 does the same.
 # For us: ROS messages have no optional members. In an IDL of your own make the struct @mutable, or write NaN instead.
 #
