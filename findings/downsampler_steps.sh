@@ -5,8 +5,8 @@
 # A shaft recorded each millisecond. Expected of means in steps of 2.5 ms: 800 in 2 s. What happens: a step holds two
 # or three samples in turn, and two are less than the 90 % of 2.5 that a mean needs, so that 400 are NaN, without a
 # warning; in steps of 2 or 10 ms none is. Where 50 samples are missing, LTTB and M4 put a row of NaN 0.1 s behind the
-# last sample, as for records of minutes. That is 49 ms after the record goes on: the times of the result, 1.099 s and then
-# 1.050 s, do not rise, and the row is drawn as a break where there is none.
+# last sample, as for records of minutes. That is 49 ms after the record goes on: the times of the result, 1.099 s and
+# then 1.050 s, do not rise, and the row is drawn as a break where there is none.
 # For us: use steps of whole samples, or min_completeness=0.5; after LTTB or M4 drop the rows of NaN.
 #
 # Exit code 0: still so. Its lttbc is compiled here, as its wheel is for numpy 1. Needs a C compiler.
