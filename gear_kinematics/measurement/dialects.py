@@ -333,11 +333,12 @@ def _long(frame: Any, point: str, key: str, value: str, units: Mapping[str, str]
     clock = likeliest(frame.columns).get('time')
     unit = units.get(clock) or meaning(clock).unit if clock else ''
     if nanoseconds := nanoseconds_of(clock or '', [*frame]):
-        frame[clock], unit = frame[clock] * SECOND + frame[nanoseconds], 'ns'
-    rest = [name for name in frame if name not in {key, clock, ''} and not frame[name].ndim > 1]
+        seconds, rest = (numbers(frame[name], point) for name in (clock, nanoseconds))
+        frame[clock], unit = seconds * SECOND + rest, 'ns'
+    others = [name for name in frame if name not in {key, clock, ''} and frame[name].ndim == 1]
     columns, clocks, known = {}, dict[str, str](), dict[str, str]()
     for joint, series in frame.groupby(key, sort=False):
-        for column in [value] if value else rest:
+        for column in [value] if value else others:
             name = str(joint) if value else f'{joint} {column}'
             columns[name] = numbers(series[column], point)
             known |= {name: units[column]} if column in units and not value else {}

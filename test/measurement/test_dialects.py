@@ -335,7 +335,8 @@ ENCODERS = {
     'a row for each joint': lambda t, r, o: 'sec,nanosec,id,joint_name,position_deg\n' + ''.join(
         f'{at // 1:.0f},{at % 1 * 1e9:.0f},{k},{name},{value * DEG:.5f}\n'
         for at, *values in zip(t + 1.79e9, r, o, strict=True)
-        for k, name, value in zip((11, 12), ('motor', 'output'), values, strict=True)),
+        for k, name, value in zip((11, 12), ('motor', 'output'), values, strict=True))
+        + '-,-,11,motor,-\n',
     'counts of 16 bits': lambda t, r, o: written(
         [t, *in_counts(r) % 65536, o], 'time,rotor_counts,output_rad',
         ('{:.2f}', '{:.0f}', '{:.5f}')),
