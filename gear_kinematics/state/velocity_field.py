@@ -23,7 +23,7 @@ _STRIDES = 1, 4, 16  # noted readings between compared ones: more while the roto
 _MOST = 1 + (_READINGS - 1) * _STRIDES[-1]  # noted readings
 _FAR = 3.0  # times or less than a third of the slope: no rounding, where the rotor is slow
 _STEADY = 0.1  # of the speed: what it may vary by in a comparison
-_STANDS = 0.4  # the same where the positions stand: less than a filter's after a stop
+_STANDS = 0.4  # the same where the positions stand
 _AGREES = 0.25  # of the slope: delays of filters and the rest of the acceleration
 _ALIKE = 0.1  # of a factor that has a name
 _TRAVEL = 3.0  # rad, at least, in a comparison
@@ -270,6 +270,8 @@ class VelocityField:
         most = (_STEADY if slope else _STANDS) * max(abs(mean), abs(slope))
         if any(abs(velocity - mean) > most for velocity in velocities):
             return True
+        if not slope and abs(velocities[-1]) < (1.0 - _STEADY) * abs(velocities[0]):
+            return True  # as behind a filter after a stop
         factor = mean / slope if slope else math.inf
         rounded = 1.0 / _FAR < factor < _FAR or (self._moved and not factor)
         if not (slow and rounded):

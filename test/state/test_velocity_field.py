@@ -187,6 +187,7 @@ def test_turns_that_pass_while_a_single_turn_encoder_is_stuck_stay_unknown(setti
 @pytest.mark.parametrize(('velocity', 'stuck'), [
     (lambda t: 50.0 + 25.0 * math.sin(3.0 * t), True),
     (lambda t: 300.0 * math.exp(-10.0 * t), False),  # of a filter behind a rotor that stops
+    (lambda t: 300.0 * math.exp(-2.0 * t), False),
     (lambda t: 20.0 * math.sin(20.0 * t), False),
 ])  # fmt: skip
 def test_velocities_of_an_unsteady_motion_show_that_an_encoder_is_stuck(velocity, stuck):
