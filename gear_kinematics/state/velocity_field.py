@@ -30,6 +30,7 @@ _TRAVEL = 3.0  # rad, at least, in a comparison
 _NOISES = 10  # of a reading, at least, in a comparison
 _FEWEST = 10  # turns between readings in a comparison of an unsteady motion
 _ALIGNED = 0.95  # the square of a correlation from which a factor explains the velocities
+_FEW = 4  # velocities between readings, of which the mean is that of an oscillation
 _RELATED = 0.5  # the correlation that a motion has with its velocities, at least
 _LATE, _EXPLAINED = 0.03, 0.9
 """s, and the square of a correlation, from which a delay is worth a word. Noise of the positions
@@ -94,7 +95,7 @@ class VelocityField:
     def _begin_block(self) -> None:
         self._turns = 0  # between readings, and what is known of them
         self._path = self._squares = self._velocity_squares = self._products = 0.0
-        self._sparse = False  # whether a reading had one velocity only, that at its end
+        self._sparse = False  # whether a reading had too few velocities for their mean
         # Products of what the velocities differ by and what the speed changed by, as travels.
         self._late = self._off_squares = self._change_squares = 0.0
 
@@ -167,7 +168,7 @@ class VelocityField:
             readings.clear()
         travel = max(_TRAVEL, _NOISES * noise)
         if self._count:
-            self._sparse |= self._count == 1
+            self._sparse |= self._count < _FEW
             mean, self._total, self._count = self._total / self._count, 0.0, 0
             self._moved |= mean != 0.0
             readings.append((stamp, position, mean))

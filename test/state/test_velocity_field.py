@@ -145,6 +145,15 @@ def test_what_is_no_velocity_at_all_is_found_in_unsteady_motion(sent, wrong, hel
     assert (samples[-1].velocity is None) == wrong
 
 
+def test_velocities_of_an_oscillation_that_is_sampled_seldom_are_right():
+    rotor, w = RotorInput(SETTINGS), 7.0 * math.tau
+    for t in np.arange(280) / 20.0:
+        position, velocity = 3.0 * math.sin(w * t), 3.0 * w * math.cos(w * t)
+        stamp = SECOND + round(t * SECOND)
+        rotor.accept(rotor_bytes(stamp, position=[position], velocity=[velocity]), int)
+    assert rotor.velocity_field.in_recording is None
+
+
 def test_velocities_that_are_noise_around_zero_are_not_used():
     rotor = RotorInput(SETTINGS)
     samples = [rotor.accept(data, int) for data in messages(0.0, scatter=2.0)]
