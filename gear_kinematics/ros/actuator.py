@@ -54,7 +54,7 @@ class Actuator:
         if origin == self._origin and sample.stamp > self._before.stamp:
             moved = sample.position.since(self._before.position)
             if gaps != self._gaps:  # whole turns may be missing
-                moved = math.remainder(moved, turns.period)
+                moved = math.remainder(moved, turns.period or math.inf)
             self._speed = moved / (sample.stamp - self._before.stamp) * SECOND
         else:
             self._speed = 0.0

@@ -103,6 +103,12 @@ def test_shaft_that_turns_is_not_homed_where_each_gap_could_hide_a_turn(homing, 
     assert answer.message.startswith(f'the shaft turns at {refused} rad/s') == bool(refused)
 
 
+def test_a_shaft_at_rest_is_homed_after_its_driver_was_silent(homing):
+    node = homing(output_encoder_reference='absolute', input_timeout=0.5)
+    drive(node, [1.0, 1.0], SECOND)
+    assert home(node).success
+
+
 def test_turns_that_the_output_encoder_adds_are_no_speed(homing):
     node = homing(rotor_encoder='single_turn', output_encoder_reference='absolute')
     answers = []
