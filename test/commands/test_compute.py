@@ -109,7 +109,7 @@ def test_other_joints_on_the_topic_are_no_fault(shared_path, tmp_path, capsys):
     assert main(['compute', str(bag), str(out), '--joint', 'm1']) == 0
     assert '300 outputs for 300 rotor states, 0 other' in capsys.readouterr().out
     assert main(['validate', str(out)]) == 0
-    assert '600 messages of /joint_states belong to other joints' in capsys.readouterr().out
+    assert '600 messages of /joint_states for other joints' in capsys.readouterr().out
 
 
 def test_a_joint_of_270_degrees_is_at_250(shared_path, tmp_path):
