@@ -20,8 +20,8 @@ from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.kinematics.rotor_turns import TURN, repeated
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.rotor_input import RotorInput
-from gear_kinematics.state.rotor_samples import RotorSamples
 from gear_kinematics.state.statuses import Condition, Fact
+from gear_kinematics.wire.batches import Array
 from gear_kinematics.wire.cdr import SECOND
 
 SAMPLES = 60
@@ -51,12 +51,14 @@ def range_fault(
     return which(angle_deg=at, low_deg=low, high_deg=high)
 
 
-def farthest_outside(parameters: NodeParameters, samples: RotorSamples) -> Fact | None:
-    """Return how the output angle of known turns farthest from the range contradicts it, if so."""
-    if not (parameters.output_range and samples.referenced.any()):
+def farthest_outside(parameters: NodeParameters, rotor_angles: Array) -> Fact | None:
+    """Return how the output's angle that is farthest from the range contradicts it, if it does.
+
+    The angles of the rotor, rad, (n,), are those of which the turns are known.
+    """
+    if not (parameters.output_range and len(rotor_angles)):
         return None
-    turned = (TURN * samples.turns + samples.angle)[samples.referenced]
-    angles = turned / float(parameters.gear.gear_ratio)
+    angles = rotor_angles / float(parameters.gear.gear_ratio)
     middle = sum(parameters.output_range) / 2.0
     farthest = float(angles[np.argmax(np.abs(angles - middle))])
     return range_fault(parameters, farthest, parameters.transmission_error_limit)

@@ -13,6 +13,7 @@ import numpy as np
 from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, TopicError
 from gear_kinematics.bag.roles import Topics, find_in_namespace, in_namespace
 from gear_kinematics.correction.calibration_file import Calibration
+from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.effort_field import questioned
 from gear_kinematics.state.gear_state import GearState
@@ -167,12 +168,13 @@ def _answers(
     found = defaultdict[str, list[dict[int, bytes]]](list)
     for actuator, gear in gears.items():
         answers = gear.batch(messages, rotor, encoder)
-        sizes = np.abs(np.nan_to_num(answers.samples.effort))
+        samples = answers.samples
+        sizes = np.abs(np.nan_to_num(samples.effort))
         efforts[actuator] = float(np.max(sizes, initial=efforts[actuator]))
-        found_outside = farthest_outside(gear.parameters, answers.samples)
-        outside[actuator] = outside[actuator] or found_outside
+        angles = (TURN * samples.turns + samples.angle)[samples.referenced]
+        outside[actuator] = outside[actuator] or farthest_outside(gear.parameters, angles)
         for state, encoded in gear.encode_batch(answers).items():
-            rows = zip(answers.samples.row.tolist(), encoded, strict=True)
+            rows = zip(samples.row.tolist(), encoded, strict=True)
             found[topic_of(actuator, state)].append({row: data for row, data in rows if data})
     joined = {}
     for name, parts in found.items():

@@ -218,8 +218,6 @@ class Validator:
         self.samples = samples = self._state.samples(messages.data, messages.received)
         self._inputs.update(samples.received, samples.stamp, samples.rejected)
         self._health.update(samples.stamp, TURN * samples.turns + samples.angle)
-        outside = farthest_outside(self._state.parameters, samples)
-        self._health.outside = self._health.outside or outside
         columns = {name: getattr(samples, name) for name, _ in SAMPLES[4:]}
         columns['number'] = first_number(samples.segment) + self._samples
         columns['number'] += np.arange(len(samples.stamp))
@@ -274,6 +272,8 @@ class Validator:
             group.update(oldest['received'], oldest['stamp'], answered, self._begun)
         moved = Window(oldest.columns)
         self._changes.move(moved)
+        angles = (TURN * moved['turns'] + moved['angle'])[moved['referenced']]
+        self._health.outside = self._health.outside or farthest_outside(self._parameters, angles)
         if self._references and self._encoder:
             self._references.take_rotor(moved)
         if self.errors:

@@ -483,6 +483,19 @@ def test_the_offset_that_homing_leaves_passes_and_is_said(recorded, config, chan
     assert causes == [FindingCause.CHANGED]
 
 
+@pytest.mark.parametrize('moved', [0.0, 1.0])
+def test_outputs_are_in_the_range_in_which_homing_before_the_recording_put_them(
+    recorded, config, moved
+):
+    """By the zero of the configuration, they would be outside of it by 1 rad."""
+    messages = [data for topic, _, data in recorded if topic == OUTPUT]
+    angles = [replaying.decode(data, JOINT_STATE).position[0] for data in messages]
+    span = min(angles) + moved, max(angles) + moved
+    report = validate(recorded, replace(config, rotor_zero=19.0, output_range=span))
+    assert bool(report.rotor.outside) == bool(moved)
+    assert report.passed
+
+
 @pytest.mark.parametrize('change', [{'rotor_direction': -1}, {'rotor_zero': 2.0}])
 def test_a_parameter_that_was_changed_while_the_node_ran_is_the_likely_cause(
     recorded, config, change
