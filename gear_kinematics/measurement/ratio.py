@@ -19,6 +19,7 @@ from gear_kinematics.statistics.uncertainty import Estimate
 _SETTLED, _MOST_PLAY = 0.05, math.radians(2.0)
 """Travel left out after a reversal, as play is crossed: share of the whole, and at most, rad."""
 _LEAST = 230  # samples in motion
+_FEWEST_WRAPS, _MOST_SPAN = 3, 1.001  # in turns, what an encoder of one turn shows with noise
 _ONE_TURN = 390  # deg of the output: more than a turn, within which hardly anything repeats
 _MOST_TURNED = 3600  # deg of the output, at most, that the user is asked to turn
 _BY_CHANCE = 0.05  # probability below which a simple fraction in the interval is no coincidence
@@ -72,6 +73,8 @@ def wrong_ratio(encoders: Encoders, assumed: Fraction) -> Observed | None:
             measured = upside_down.measured
             return Observation.UPSIDE_DOWN(measured=measured, assumed=assumed, ratio=ratio)
     if not found:
+        if _wraps(encoders.rotor.turned):
+            return Observation.WRAPS_UNCOUNTED()
         more = np.ptp(np.unwrap(encoders.measured)) > np.ptp(encoders.rotor.turned)
         return Observation.EXCHANGED() if more else None
     if found.fits(-assumed):
@@ -111,6 +114,8 @@ def estimate_ratio(
     for angle, body in ((rotor, 'rotor'), (output, 'output')):
         if not np.ptp(angle):
             raise RecordingError(f'the {body} does not turn')
+    if _wraps(rotor):
+        raise RecordingError(str(Observation.WRAPS_UNCOUNTED()))
     centred = (rotor - np.mean(rotor)) / np.ptp(rotor)
     slope = float(centred @ (output - np.mean(output)) / (centred @ centred) / np.ptp(rotor))
     times = np.asarray(STEP * np.arange(len(rotor)) if time is None else time, float)
@@ -128,6 +133,12 @@ def estimate_ratio(
     if abs(measured.value) + measured.expanded < 1.0:
         raise RecordingError('the output turns more than the rotor: exchange the two')
     return _judged(measured, turned)
+
+
+def _wraps(rotor: Array) -> bool:
+    """Return whether angles, rad, stay within a turn and often step by more than half of it."""
+    steps = np.count_nonzero(np.abs(np.diff(rotor)) > 0.5 * TURN)
+    return bool(steps >= _FEWEST_WRAPS and np.ptp(rotor) <= _MOST_SPAN * TURN)
 
 
 def _judged(measured: Estimate, turned: float) -> RatioEstimate:

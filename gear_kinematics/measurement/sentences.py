@@ -90,6 +90,10 @@ class Observation(Enum):
     NO_RAMPS = '{why}'
     # The ratio of both encoders
     NOT_THE_RATIO = 'The recording does not have the ratio {assumed}: {why}.'
+    WRAPS_UNCOUNTED = (
+        "the rotor's position stays within a turn and jumps by more than half of it: sample often "
+        'enough to count its wraps, and set rotor_encoder to single_turn'
+    )
     EXCHANGED = 'the output turns more than the rotor: exchange the two'
     UPSIDE_DOWN = (
         _RATIO + ', which is upside down: give --ratio={ratio}, the speed of the rotor by that of '

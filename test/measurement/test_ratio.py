@@ -279,3 +279,17 @@ def test_counts_per_turn_that_are_too_few_are_suspected(counts, ratio):
 def test_angles_without_a_ratio_are_refused(rotor, output, cause):
     with pytest.raises(RecordingError, match=cause):
         estimate_ratio(rotor, output)
+
+
+@pytest.mark.parametrize('rate', [5.0, 100.0], ids=['wraps too fast', 'wraps not counted'])
+@pytest.mark.parametrize('travel', [340.0, 4000.0])
+def test_a_rotor_that_wraps_is_named_and_no_ratio_is_proposed(rate, travel):
+    """Such a rotor has no ratio, whether it turns less than the output or not."""
+    time = np.arange(0.0, 60.0, 1.0 / rate)
+    output = 0.5 * math.radians(travel) * np.sin(0.4 * time)
+    rotor = np.remainder(-19.0 * output, TURN)
+    wraps = Observation.WRAPS_UNCOUNTED()
+    both = encoders(rotor, output, np.round(1e9 * time).astype(np.int64))
+    assert wrong_ratio(both, GearRatio(-19)) == wraps
+    with pytest.raises(RecordingError, match=str(wraps)):
+        estimate_ratio(rotor, output, time)
