@@ -32,6 +32,7 @@ _FEWEST = 10  # turns between readings in a comparison of an unsteady motion
 _ALIGNED = 0.95  # the square of a correlation from which a factor explains the velocities
 _FEW = 4  # velocities between readings, of which the mean is that of an oscillation
 _RELATED = 0.5  # the correlation that a motion has with its velocities, at least
+_FILTERED = 0.5  # share by which what a filter leaves of a motion may differ from a projection
 _LATE, _EXPLAINED = 0.03, 0.9
 """s, and the square of a correlation, from which a delay is worth a word. Noise of the positions
 looks like half of `SPAN`, but explains a half."""
@@ -218,15 +219,18 @@ class VelocityField:
         Travels over short times do not match where a driver repeats readings, but longer ones do.
         """
         turned = [position for _, position, _ in self._readings]
-        travels = [v * (t - s) for (s, *_), (t, _, v) in pairwise(self._readings)]
+        travels = [1e-9 * v * (t - s) for (s, *_), (t, _, v) in pairwise(self._readings)]
         given = [*accumulate(travels, initial=0.0)]
+        filtered = True
         for stride in _STRIDES:
             motions = [b - a for a, b in zip(turned, turned[stride:], strict=False)]
             expected = [b - a for a, b in zip(given, given[stride:], strict=False)]
-            least = _RELATED * math.hypot(*motions) * math.hypot(*expected)
-            if len(turned) < _MOST or sum(map(mul, motions, expected)) >= least:
+            product, size = sum(map(mul, motions, expected)), math.hypot(*expected)
+            if len(turned) < _MOST or product >= _RELATED * math.hypot(*motions) * size:
                 return False
-        return True
+            # What a filter leaves of a motion is the projection of that motion on it.
+            filtered &= abs(product - size * size) < _FILTERED * size * size
+        return not filtered
 
     def _note_delay(self) -> None:
         """Say that velocities are late if two blocks in a row show it, until one shows that not.

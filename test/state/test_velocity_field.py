@@ -13,6 +13,7 @@ from live import SECOND, rotor_bytes
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition
+from gear_kinematics.state.velocity_field import VelocityField
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
 SETTINGS = NodeParameters.load()
@@ -213,3 +214,17 @@ def test_velocities_of_an_encoder_that_is_stuck_contradict_it():
         position = min(0.02 * k, 5.0)
         rotor.accept(rotor_bytes(k * SECOND // 500 + 1, position=[position], velocity=[10.0]), int)
     assert rotor.velocity_field.meaning == Condition.POSITIONS_STAND()
+
+
+@pytest.mark.parametrize('rate', [50, 100, 500])
+def test_velocities_behind_a_filter_are_no_unknown_quantity(rate):
+    """A filter of 0.2 s leaves 37 % of swings of 2 Hz, 68° late."""
+    turning, time = 4.0 * math.pi, np.arange(30 * rate) / rate
+    response = 1j * turning / (1.0 + 0.2j * turning)
+    for seed in range(5):
+        swing = 10.0 * np.exp(1j * (turning * time + seed))
+        noise = 1e-3 * np.random.default_rng(seed).normal(size=len(time))
+        states = np.column_stack([swing.real + noise, (response * swing).real, np.nan * time])
+        field = VelocityField(-1 / 19)
+        field.believed(SECOND + np.round(SECOND * time).astype(np.int64), states, 1e-3)
+        assert not field.contradicts
