@@ -51,14 +51,17 @@ def range_fault(
     return which(angle_deg=at, low_deg=low, high_deg=high)
 
 
-def farthest_outside(parameters: NodeParameters, rotor_angles: Array) -> Fact | None:
+def farthest_outside(
+    parameters: NodeParameters, turns: Array, angle: Array, referenced: Array
+) -> Fact | None:
     """Return how the output's angle that is farthest from the range contradicts it, if it does.
 
-    The angles of the rotor, rad, (n,), are those of which the turns are known.
+    Turns and angle, rad, are those of the rotor, and those that are not referenced are left out;
+    all are (n,).
     """
-    if not (parameters.output_range and len(rotor_angles)):
+    if not (parameters.output_range and referenced.any()):
         return None
-    angles = rotor_angles / float(parameters.gear.gear_ratio)
+    angles = (TURN * turns + angle)[referenced] / float(parameters.gear.gear_ratio)
     middle = sum(parameters.output_range) / 2.0
     farthest = float(angles[np.argmax(np.abs(angles - middle))])
     return range_fault(parameters, farthest, parameters.transmission_error_limit)

@@ -13,7 +13,6 @@ import numpy as np
 from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, TopicError
 from gear_kinematics.bag.roles import Topics, find_in_namespace, in_namespace
 from gear_kinematics.correction.calibration_file import Calibration
-from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.effort_field import questioned
 from gear_kinematics.state.gear_state import GearState
@@ -171,8 +170,9 @@ def _answers(
         samples = answers.samples
         sizes = np.abs(np.nan_to_num(samples.effort))
         efforts[actuator] = float(np.max(sizes, initial=efforts[actuator]))
-        angles = (TURN * samples.turns + samples.angle)[samples.referenced]
-        outside[actuator] = outside[actuator] or farthest_outside(gear.parameters, angles)
+        outside[actuator] = outside[actuator] or farthest_outside(
+            gear.parameters, samples.turns, samples.angle, samples.referenced
+        )
         for state, encoded in gear.encode_batch(answers).items():
             rows = zip(samples.row.tolist(), encoded, strict=True)
             found[topic_of(actuator, state)].append({row: data for row, data in rows if data})

@@ -272,8 +272,9 @@ class Validator:
             group.update(oldest['received'], oldest['stamp'], answered, self._begun)
         moved = Window(oldest.columns)
         self._changes.move(moved)
-        angles = (TURN * moved['turns'] + moved['angle'])[moved['referenced']]
-        self._health.outside = self._health.outside or farthest_outside(self._parameters, angles)
+        self._health.outside = self._health.outside or farthest_outside(
+            self._parameters, moved['turns'], moved['angle'], moved['referenced']
+        )
         if self._references and self._encoder:
             self._references.take_rotor(moved)
         if self.errors:
