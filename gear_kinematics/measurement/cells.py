@@ -148,9 +148,8 @@ def _array(cell: Any) -> list[str]:
     return [one.strip(' "\'') for one in parts] if inner else []
 
 
-def elements_of(lines: Sequence[str], names: Sequence[str], separator: str) -> dict[str, Element]:
+def elements_of(names: Sequence[str], rows: Sequence[Sequence[str]]) -> dict[str, Element]:
     """Find the elements of arrays by name; those of sensor_msgs/JointState bear their joint's."""
-    rows = [cells_of(line, separator) for line in lines]
     found = {}
     for place, column in enumerate(names):
         arrays = [array for row in rows if place < len(row) and (array := _array(row[place]))]

@@ -162,7 +162,7 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
         frame = read(range(len(lower)), 1).set_axis(layout.names, axis=1)
         value = layout.names[lower.index(_VALUE)] if topics else ''
         return _long(frame, layout.point, keys[0], value, layout.units)
-    elements = elements_of(lines[layout.start :][:_ROWS], layout.names, layout.separator)
+    elements = elements_of(layout.names, sample)
     arrays = {element.place for element in elements.values()}
     names = [name for k, name in enumerate(layout.names) if k not in arrays] + [*elements]
 
