@@ -21,9 +21,11 @@ _TRIED, _FEWEST, _ROWS = 12, 10, 10_000
 _FIRST = 4  # number of columns among which the times are
 _ALIKE = 0.3  # least correlation of the steps of both encoders
 _LISTED = 600  # characters of the list of columns
+_WANTED = 'target|goal|desire|cmd|command|setpoint'
+"""Words in names of columns of what was commanded, not measured."""
 _NO_ANGLE = re.compile(
-    r'(?i)torq|effort|force|curr|vel(?!_mapper)|speed|rpm|/ ?s|temp|time|stamp|target|goal|desire|'
-    r'cmd|command|setpoint|control|elec|tau|cell|acc(?!um)|dot|err|volt|power|^t$|^[ft][xyz]'
+    r'(?i)torq|effort|force|curr|vel(?!_mapper)|speed|rpm|/ ?s|temp|time|stamp|control|elec|tau|'
+    rf'cell|acc(?!um)|dot|err|volt|power|^t$|^[ft][xyz]|{_WANTED}'
 )
 """Words in names of columns that are not proposed as angles."""
 _LIKELY = re.compile(
@@ -31,7 +33,7 @@ _LIKELY = re.compile(
 )
 """Words in names of columns that are proposed first."""
 _TORQUE = re.compile(
-    r'(?i)^(?!.*(target|goal|desire|cmd|command|setpoint)).*'
+    rf'(?i)^(?!.*({_WANTED})).*'
     r'(torq|effort|moment|tau|load|n[·.* -]?m\b|^[tm][xyz]$)'
 )
 """Words in names of columns that are proposed as torques."""
