@@ -11,6 +11,7 @@ import numpy as np
 
 from gear_kinematics.kinematics.gear_ratio import GearRatio, simplest_fraction
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.measurement.commissioning.encoder_range import MOST_SPAN
 from gear_kinematics.measurement.recording import Array, Encoders, RecordingError
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.two_encoders import STEP, EncoderFit, directions
@@ -19,7 +20,7 @@ from gear_kinematics.statistics.uncertainty import Estimate
 _SETTLED, _MOST_PLAY = 0.05, math.radians(2.0)
 """Travel left out after a reversal, as play is crossed: share of the whole, and at most, rad."""
 _LEAST = 230  # samples in motion
-_FEWEST_WRAPS, _MOST_SPAN = 3, 1.001  # in turns, what an encoder of one turn shows with noise
+_FEWEST_WRAPS = 3
 _ONE_TURN = 390  # deg of the output: more than a turn, within which hardly anything repeats
 _MOST_TURNED = 3600  # deg of the output, at most, that the user is asked to turn
 _BY_CHANCE = 0.05  # probability below which a simple fraction in the interval is no coincidence
@@ -138,7 +139,7 @@ def estimate_ratio(
 def _wraps(rotor: Array) -> bool:
     """Return whether angles, rad, stay within a turn and often step by more than half of it."""
     steps = np.count_nonzero(np.abs(np.diff(rotor)) > 0.5 * TURN)
-    return bool(steps >= _FEWEST_WRAPS and np.ptp(rotor) <= _MOST_SPAN * TURN)
+    return bool(steps >= _FEWEST_WRAPS and np.ptp(rotor) <= MOST_SPAN * TURN)
 
 
 def _judged(measured: Estimate, turned: float) -> RatioEstimate:

@@ -12,7 +12,7 @@ from gear_kinematics.measurement.recording import Array
 _UNCLEAR = 0.3, 0.7  # steps, in ranges, that may be a motion or a wrap
 _MOST_UNCLEAR = 0.05  # number of unclear steps, as in gaps, per wrap; with more, there is no wrap
 _GAP = 1.5  # usual times between samples
-_MOST_SPAN = 1.001  # ranges that wrapped positions span at most, with noise and rounding
+MOST_SPAN = 1.001  #: ranges that wrapped positions span at most, with noise and rounding
 _EQUAL = 0.02  # share by which the range that steps show may be wrong, as the speed changes
 _AROUND = 8  # samples before and after a wrap in which the motion goes on
 _LEAST_MOTION = 1e-3  # ranges in these samples; with less, the shaft rests
@@ -40,12 +40,12 @@ def count_wraps(
         return 0
     motion = np.abs(size - np.round(size))[np.maximum(wraps - 1, 0)]  # goes on in the wrap
     same = abs(float(np.median(size[wraps] + motion)) - 1.0) < error
-    return len(wraps) if same and np.ptp(values) <= _MOST_SPAN * turn else 0
+    return len(wraps) if same and np.ptp(values) <= MOST_SPAN * turn else 0
 
 
 def unwrapped(values: Array, seconds: Array, step: Step, period: float = 0.0) -> Array:
     """Unwrap positions by a known period, or by the range that `find_range` finds."""
-    if not period or np.ptp(values) > _MOST_SPAN * period:
+    if not period or np.ptp(values) > MOST_SPAN * period:
         period, _ = find_range(values, seconds, step)
     return np.unwrap(values, period=period) if period else values
 
