@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 TURN = 2.0 * math.pi
 TURN_TAIL = 2.4492935982947064e-16  #: 2π - TURN: the rounding error of TURN
+EXACT_TURN = Fraction(TURN) + Fraction(TURN_TAIL)  #: 2π to 32 digits
 LARGEST_ANGLE = 2**51 * TURN
 """Angle, rad. Up to it, 2^51 turns, `split_turns` finds the right turn: the two roundings of its
 quotient add up to at most 3/8 of a turn, less than the half that rounding to the nearest allows.
@@ -27,7 +28,6 @@ float64 holds every integer exactly."""
 _MANY_TURNS = 2**25 * TURN  # rad; fewer turns times _TURN_HIGH or _TURN_LOW fit into 53 bits
 _TURN_HIGH = math.floor(TURN * 2.0**24) / 2.0**24
 _TURN_LOW = TURN - _TURN_HIGH
-_EXACT_TURN = Fraction(TURN) + Fraction(TURN_TAIL)  # 2π to 32 digits
 _WHOLE = 1e-6  # relative difference of a period from the whole turns that are meant
 _USUAL, _MOST_GAPS = 20, 40  # surplus of gaps that were too long: least for usual; greatest
 _NOISE = 0.05  # rad, greatest noise of any encoder
@@ -156,8 +156,8 @@ def repeated(count: int, period: float) -> RotorPosition:
     if abs(period - turns * TURN) <= _WHOLE * period:
         return RotorPosition(count * turns, 0.0)
     product = count * Fraction(period)
-    turns = round(product / _EXACT_TURN)
-    return RotorPosition(turns, float(product - turns * _EXACT_TURN))
+    turns = round(product / EXACT_TURN)
+    return RotorPosition(turns, float(product - turns * EXACT_TURN))
 
 
 class RotorTurns:

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple
 
-from gear_kinematics.kinematics.rotor_turns import TURN, TURN_TAIL
+from gear_kinematics.kinematics.rotor_turns import EXACT_TURN, TURN
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +84,7 @@ def turns(angle: float) -> Fraction:
     """
     if not math.isfinite(angle):
         raise ValueError(f'an angle must be finite, not {angle} rad')
-    return Fraction(angle) / (Fraction(TURN) + Fraction(TURN_TAIL))
+    return Fraction(angle) / EXACT_TURN
 
 
 def angle_between(start: Fraction, end: Fraction) -> float:
