@@ -80,13 +80,12 @@ def homing_client(node: Node, name: str, actuator: str) -> Any:
 def parameters_of(node: Node, name: str) -> Mapping[str, NodeParameters]:
     """Ask a gear's node for the parameters of its actuators; empty if it does not answer."""
     gear, end = GearNode(node, name), time.monotonic() + 2.0 * _PATIENCE
-    executor = SingleThreadedExecutor(context=node.context)
-    executor.add_node(node)
-    while not gear.arm and time.monotonic() < end and name in (graph := Graph(node)).gears:
-        gear.look(graph, shown=False)
-        gear.poll()
-        executor.spin_once(timeout_sec=0.1)
-    executor.shutdown()
+    with SingleThreadedExecutor(context=node.context) as executor:
+        executor.add_node(node)
+        while not gear.arm and time.monotonic() < end and name in (graph := Graph(node)).gears:
+            gear.look(graph, shown=False)
+            gear.poll()
+            executor.spin_once(timeout_sec=0.1)
     return gear.arm
 
 

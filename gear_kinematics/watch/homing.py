@@ -47,10 +47,9 @@ def home(wanted: str, actuator: str) -> Answer:
             homes = sorted(each for each in known if each.startswith(name) and 'home' in each)
             raise ValueError(f'there is no service {service}{among(service, homes)}')
         asked = client.call_async(Trigger.Request())
-        executor = SingleThreadedExecutor(context=node.context)
-        executor.add_node(node)
-        executor.spin_until_future_complete(asked, _PATIENCE)
-        executor.shutdown()
+        with SingleThreadedExecutor(context=node.context) as executor:
+            executor.add_node(node)
+            executor.spin_until_future_complete(asked, _PATIENCE)
         if not asked.done():
             raise RuntimeError(f'{name}: {UNANSWERED}')
         text, done = Answer.of(asked.result())

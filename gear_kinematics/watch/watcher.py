@@ -45,8 +45,7 @@ class Watcher:
         """Connect to ROS; raises the error that prevents it."""
         with ExitStack() as resources:
             self._node = resources.enter_context(replay_node(''))
-            executor = SingleThreadedExecutor(context=self._node.context)
-            resources.callback(executor.shutdown)
+            executor = resources.enter_context(SingleThreadedExecutor(context=self._node.context))
             executor.add_node(self._node)
             self._drivers = Listener(self._node)
             self._running = ThreadPoolExecutor(1).submit(self._watch, executor)
