@@ -68,7 +68,7 @@ def show(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> Non
         if not console.is_terminal:
             return rows, True
         if view.state == 'no node':
-            rows += [Entry(d.topic, ', '.join(d.joints), hertz(d.rate)) for d in view.drivers]
+            rows += view.drivers
         if asked:
             text, done = asked.result() if asked.done() else (UNANSWERED, True)
             rows.append(Entry('', text, '', '' if done else 'bad'))

@@ -61,7 +61,8 @@ class View:
     message: str = ''  # on the state, in sentences
     values: tuple[Entry, ...] = ()
     diagnostics: tuple[Entry, ...] = ()
-    drivers: tuple[DriverTopic, ...] = ()
+    drivers: tuple[Entry, ...] = ()  # topics of drivers, with joints and rate
+    joints: tuple[tuple[str, str], ...] = ()  # topic and name of each joint of a driver
     rotor: float | None = None  # angle, degrees; None while it is unknown or out of date
     output: float | None = None
     margin: float | None = None  # what is left of the preload, as a share of it
@@ -101,6 +102,11 @@ def view_of(
         question=f'The output is at {angle}. Set it to {home}?',
         undo=', '.join(f'{name} {shown(value)}' for name, value in earlier.items()),
     )
+
+
+def driver_entry(driver: DriverTopic) -> Entry:
+    """Describe the topic of a driver."""
+    return Entry(driver.topic, ', '.join(driver.joints), hertz(driver.rate))
 
 
 def _choice(gear: GearNode) -> Entry:

@@ -48,8 +48,7 @@
       `output angle, ${SPAN} s: ${low.toFixed(1)} to ${high.toFixed(1)}°`);
   }
 
-  function showJoints(found) {
-    const joints = found.flatMap(({topic, joints}) => joints.map(joint => [topic, joint]));
+  function showJoints(joints) {
     const keys = joints.map(channel => JSON.stringify(channel));
     if (guide.hidden) commission.hidden = keys.length < 2;
     [form.rotor, form.output].forEach((select, k) => {
@@ -105,11 +104,8 @@
     showEntries(find('values'), now.values);
     showEntries(find('diagnostics'), now.diagnostics);
     showCurve(now.output);
-    showEntries(find('drivers').lastElementChild, now.drivers.map(({topic, joints, rate}) => {
-      const often = rate < 9.5 ? +rate.toPrecision(2) : Math.round(rate);
-      return {name: topic, value: joints.join(', '), detail: `${often} Hz`, tone: ''};
-    }));
-    showJoints(now.drivers);
+    showEntries(find('drivers').lastElementChild, now.drivers);
+    showJoints(now.joints);
     showGuide(now.guide);
   }
 

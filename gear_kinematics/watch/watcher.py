@@ -19,7 +19,7 @@ from gear_kinematics.ros.live import replay_node
 from gear_kinematics.watch.commissioning import LiveCommissioning
 from gear_kinematics.watch.drivers import Listener
 from gear_kinematics.watch.gear import Answer, GearNode
-from gear_kinematics.watch.view import View, view_of
+from gear_kinematics.watch.view import View, driver_entry, view_of
 
 PERIOD = 1.0 / 30.0  # period at which messages are taken, s
 _LOOK = 0.5  # s between two looks at the graph
@@ -103,7 +103,13 @@ class Watcher:
                 ring = parameters.gear
                 self.drawn = ring if isinstance(ring, Mechanism) else None, parameters.module
             guide = self._live.shown if self._live else None
-            self.view = replace(view, drivers=tuple(self._drivers.drivers()), guide=guide)
+            drivers = self._drivers.drivers()
+            self.view = replace(
+                view,
+                drivers=tuple(map(driver_entry, drivers)),
+                joints=tuple((each.topic, joint) for each in drivers for joint in each.joints),
+                guide=guide,
+            )
 
     def _look(self, graph: Graph) -> None:
         self._drivers.look(graph.drivers())

@@ -23,7 +23,6 @@ from watching import (
     parameters,
 )
 
-from gear_kinematics.watch.drivers import DriverTopic
 from gear_kinematics.watch.view import Entry, Guide, View
 
 pytestmark = [pytest.mark.live, pytest.mark.slow, pytest.mark.usefixtures('driver')]
@@ -254,12 +253,13 @@ def test_names_are_text_on_the_page(browser):
         message=hostile,
         values=(Entry(hostile, hostile, hostile),),
         diagnostics=(Entry(hostile, hostile),),
-        drivers=(DriverTopic(hostile, (hostile, 'b'), 1.0),),
+        drivers=(Entry(hostile, hostile, hostile),),
+        joints=((hostile, hostile), (hostile, 'b')),
         guide=Guide(hostile, 0.5, (Entry(hostile, hostile, hostile),)),
     )
     with shown(browser, view) as (page, _):
         parts = '#node', '#message', '#values dt', '#values dd', '#diagnostics dd', '#drivers dt'
-        for part in (*parts, '#guide p', '#guide .detail', '#guide dd'):
+        for part in (*parts, '#drivers dd', '#guide p', '#guide .detail', '#guide dd'):
             expect(page.locator(part).first).to_have_text(hostile)
         option = page.locator('#commission option').first
         expect(option).to_have_text(f'{hostile} on {hostile}')

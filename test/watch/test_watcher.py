@@ -38,7 +38,15 @@ from gear_kinematics.watch.drivers import DriverTopic
 from gear_kinematics.watch.gear import Answer, GearNode, JointValue, Status
 from gear_kinematics.watch.page import drawing
 from gear_kinematics.watch.text import line, list_drivers, rows_of, show, table
-from gear_kinematics.watch.view import UNANSWERED, Entry, View, status_entry, values_of, view_of
+from gear_kinematics.watch.view import (
+    UNANSWERED,
+    Entry,
+    View,
+    driver_entry,
+    status_entry,
+    values_of,
+    view_of,
+)
 from gear_kinematics.watch.watcher import Watcher
 from gear_kinematics.wire import topics
 
@@ -441,7 +449,8 @@ FULL = View(
     values=(Entry('output angle', '12.5°', '0.2 rad'), Entry('input', '0 Hz', '', 'bad')),
     diagnostics=(Entry('rotor input', f'error: {HOSTILE}', HOSTILE, 'bad'),),
     message='All is well.',
-    drivers=DRIVERS,
+    drivers=tuple(map(driver_entry, DRIVERS)),
+    joints=(('/motor/joint_states', 'brake'), ('/motor/joint_states', 'm1')),
 )
 
 
@@ -953,7 +962,7 @@ async def test_views_come_at_most_thirty_times_a_second_after_the_drawing(addres
         assert view['values'][0] == {
             'name': 'output angle', 'value': '12.5°', 'detail': '0.2 rad', 'tone': '',
         }  # fmt: skip
-        assert view['drivers'][0]['joints'] == ['brake', 'm1']
+        assert view['joints'] == [['/motor/joint_states', 'brake'], ['/motor/joint_states', 'm1']]
         begin, count = time.monotonic(), 0
         while count < 10:
             count += 'view' in json.loads(await connection.read_message())
