@@ -174,7 +174,8 @@ def _role(
     if not keys or others or unclear or unsaid or '/' in unit or unit in _SPEEDS:
         return none
     # A count of turns comes after the angle within a turn, and the state of a motor after both.
-    unsure = unit in FOREIGN, not quantity and unit in {'', 'rev'}
+    # A torque at the output needs no ratio, and comes before that of the motor.
+    unsure = unit in FOREIGN, not quantity and unit in {'', 'rev'}, torque and rotor
     rank = (*unsure, len(words), *(_RANKS[word] for word in keys))
     return 'torque' if torque else 'rotor' if rotor else 'output' if output else 'angle', rank
 
@@ -186,6 +187,7 @@ def usual_unit(text: str) -> str:
     plain = re.sub(r'n(ewton)?[-_.*·⋅]?([cm]?)m(et(er|re)s?)?(?!\w)', r'n\2m', plain)
     outer, _, inner = plain.partition('(')  # as in "° (Degree)" and "(deg)"
     plain = (outer or inner).strip('()[].')
+    plain = 'rev' if plain == 'rotation' else plain  # otherwise a word for an angle
     return '' if plain in _NO_UNIT else _UNITS.get(plain, plain)
 
 

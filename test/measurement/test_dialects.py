@@ -318,6 +318,9 @@ ENCODERS = {
     'rotations': lambda t, r, o: written(
         [t, r * REV, o * REV], 'Timestamp,/Motor/PositionRotations,/Output/PositionRotations',
         3 * ['{:.7f}']),
+    'rotation as a unit': lambda t, r, o: written(
+        [t, r * REV, o * REV], 'Time,MotorPosition(Rotation),LoadPosition(Rotation)',
+        3 * ['{:.7f}']),
     'times and temperatures in French and English': lambda t, r, o: written(
         [t, r, o, 40.0 + np.sin(t)], 'Temps;Angle moteur;Angle sortie;motor_temps', '{:.5f}', ';'),
     'negative numbers in brackets': lambda t, r, o: written(
@@ -361,6 +364,8 @@ RAMPS = {
         [t, a * -30 * DEG, q / -30 * 1e3], 'time,MotorPosition (deg),MotorTorque (mNm)'),
     'torques in two units': lambda t, a, q: written(
         [t, a, 20.0 * q, q, q], 'time,angle,Torque [%],Torque [Nm],motor [A]', 5 * ['{:.6f}']),
+    'torques of motor and output': lambda t, a, q: written(
+        [t, a, 0.01 * t, q], 'time,angle,motor_torque,output_torque', 4 * ['{:.6f}']),
     'units of which few are known': lambda t, a, q: written(
         [t, a * DEG, q / 0.00706155, t, t, t, t, t],
         'Time,Angle,Torque,Temp,U,I,P,n\ns,deg,ozf·in,°C,V,A,W,rpm', 8 * ['{:.6f}']),
