@@ -16,12 +16,12 @@ from gear_kinematics.measurement.rotor_fields import kind_of_encoder, questions
 from gear_kinematics.measurement.wording import shown
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.arm_file import add_actuators, check_new
+from gear_kinematics.parameters.files import write_config
 from gear_kinematics.parameters.new_config import (
     arm_head,
     new_actuator,
     new_config,
     start_command,
-    write_new,
 )
 from gear_kinematics.report.document import printable
 from gear_kinematics.wire.batches import JointStateBatch
@@ -88,7 +88,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         print(f'{path}: added {", ".join(map(printable, blocks))}. Start the node:')
     else:
         [(joint, ratio)] = ratios.items()
-        write_new(path, new_config(topic, joint, str(path), *found[joint]))
+        write_config(path, new_config(topic, joint, str(path), *found[joint]))
         print(
             f'{path} is for the joint {printable(joint)} on {topic}, with the gear ratio {ratio}. '
             'Start the node:'

@@ -11,8 +11,7 @@ from typing import Any
 import yaml
 
 from gear_kinematics.parameters.arm import faults_in, full_name
-from gear_kinematics.parameters.atomic_file import replace_file
-from gear_kinematics.parameters.files import ConfigError, parameter_blocks
+from gear_kinematics.parameters.files import ConfigError, parameter_blocks, write_config
 from gear_kinematics.parameters.yaml_file import Loader, load_yaml, read_yaml
 
 _NEW = '/**:\n  ros__parameters:\n    actuators: []'
@@ -26,11 +25,8 @@ def add_actuators(path: Path, blocks: Mapping[str, Sequence[str]], head: Sequenc
     head; everything in an existing one is kept. Raises ConfigError if that is impossible, or the
     node would refuse the result.
     """
-    new, text = not os.path.lexists(path), _extended(path, blocks, head)
-    try:
-        replace_file(path, text.encode(), new=new)
-    except OSError as error:
-        raise ConfigError(f'{path}: {error.strerror}') from error
+    new = not os.path.lexists(path)
+    write_config(path, _extended(path, blocks, head), new=new)
 
 
 def check_new(path: Path, actuator: str, joint: str = '') -> None:

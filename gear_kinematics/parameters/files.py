@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from gear_kinematics.parameters.atomic_file import replace_file
 from gear_kinematics.parameters.yaml_file import Loader, load_yaml, read_yaml
 from gear_kinematics.wire.nearest import nearest
 
@@ -74,6 +75,14 @@ def given_parameters(path: Path, node: str) -> dict[str, Any]:
 
 
 default_values = cache(given_parameters)  # of an installed file, which does not change
+
+
+def write_config(path: Path, text: str, *, new: bool = True) -> None:
+    """Write a file, by default a new one, completely or not at all; raises ConfigError."""
+    try:
+        replace_file(path, text.encode(), new=new)
+    except OSError as error:
+        raise ConfigError(f'{path}: {error.strerror}') from error
 
 
 def _check_strays(path: Path, name: str, blocks: Sequence[tuple[str, dict[str, Any]]]) -> None:

@@ -13,8 +13,6 @@ from types import MappingProxyType
 import yaml
 
 from gear_kinematics.kinematics import GearRatio
-from gear_kinematics.parameters.atomic_file import replace_file
-from gear_kinematics.parameters.files import ConfigError
 from gear_kinematics.parameters.node_parameters import NODE, default_config
 from gear_kinematics.share import PACKAGE
 from gear_kinematics.wire.topics import OUTPUT_ENCODER, ROTOR_STATE
@@ -109,14 +107,6 @@ def start_command(topic: str, name: str, encoder: str = '') -> str:
         if theirs:
             arguments += ['-r', f'{own}:={theirs}']
     return shlex.join([*program, *arguments])
-
-
-def write_new(path: Path, text: str) -> None:
-    """Write a new file completely or not at all; raises ConfigError if that is impossible."""
-    try:
-        replace_file(path, text.encode(), new=True)
-    except OSError as error:
-        raise ConfigError(f'{path}: {error.strerror}') from error
 
 
 def _one_line(text: str) -> str:

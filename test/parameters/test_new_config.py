@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.parameters import ConfigError, NodeParameters, default_config
-from gear_kinematics.parameters.new_config import new_config, start_command, write_new
+from gear_kinematics.parameters.files import write_config
+from gear_kinematics.parameters.new_config import new_config, start_command
 
 HALF = GearRatio.parse('-50.5')
 
@@ -27,7 +28,7 @@ HALF = GearRatio.parse('-50.5')
 )
 def test_file_is_the_default_one_with_the_joint_of_the_driver_and_the_gear(tmp_path, gear, values):
     path = tmp_path / 'actuator.yaml'
-    write_new(path, new_config('/motor/joint_states', 'm1', path.name, *gear))
+    write_config(path, new_config('/motor/joint_states', 'm1', path.name, *gear))
     assert NodeParameters.load(path) == replace(NodeParameters.load(), rotor_joint='m1', **values)
     text = path.read_text('utf-8')
     assert text.count("rotor_joint: 'm1'\n") == 1
@@ -72,14 +73,14 @@ def test_nothing_is_replaced(tmp_path):
     path = tmp_path / 'actuator.yaml'
     path.write_text('mine')
     with pytest.raises(ConfigError, match=r'actuator\.yaml: exists already'):
-        write_new(path, 'theirs')
+        write_config(path, 'theirs')
     assert path.read_text() == 'mine'
     with pytest.raises(ConfigError, match='No such file or directory'):
-        write_new(tmp_path / 'nowhere/actuator.yaml', 'theirs')
+        write_config(tmp_path / 'nowhere/actuator.yaml', 'theirs')
 
 
 def test_nothing_is_left_of_a_file_that_does_not_fit(tmp_path):
     path = tmp_path / 'full'
     with pytest.raises(UnicodeEncodeError):
-        write_new(path, 'half \ud800')
+        write_config(path, 'half \ud800')
     assert not path.exists()

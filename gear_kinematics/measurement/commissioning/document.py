@@ -13,7 +13,8 @@ from gear_kinematics.measurement.json_values import plain
 from gear_kinematics.measurement.sentences import Observation
 from gear_kinematics.measurement.wording import plus_minus, shown
 from gear_kinematics.parameters.arm_file import add_actuators
-from gear_kinematics.parameters.new_config import arm_head, quoted, start_command, write_new
+from gear_kinematics.parameters.files import write_config
+from gear_kinematics.parameters.new_config import arm_head, quoted, start_command
 from gear_kinematics.parameters.node_parameters import default_config
 from gear_kinematics.report import document as doc
 from gear_kinematics.report.document import printable
@@ -51,7 +52,7 @@ def write_file(result: Commissioning, path: Path, actuator: str = '') -> str:
         lines = [*_comment(_found(result)), *_values(result)]
         add_actuators(path, {actuator: lines}, arm_head(command))
     else:
-        write_new(path, actuator_file(result, path.name))
+        write_config(path, actuator_file(result, path.name))
     return command
 
 
