@@ -16,7 +16,6 @@ import json
 import math
 import multiprocessing
 import os
-import struct
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -37,7 +36,7 @@ from gear_kinematics.validation.findings import sentence
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validator import Validator
 from gear_kinematics.wire.batches import decode_joint_states
-from gear_kinematics.wire.cdr import JointStateTemplate
+from gear_kinematics.wire.cdr import JointStateTemplate, Template
 from gear_kinematics.wire.joint_reader import RejectedInputError, joints_of
 from gear_kinematics.wire.topics import OUTPUT_STATE, ROTOR_STATE
 
@@ -208,10 +207,8 @@ def message(recording: Recording, stamp: int, position: float, velocity: float) 
 
 def of_wrong_length(stamp: int, values: Sequence[float]) -> bytes:
     """Encode a message of one joint with other than one position."""
-    head = struct.pack('<iiIxx', *divmod(stamp, SECOND), 1) + bytes(2)
-    names = struct.pack('<II6sxx', 1, 6, b'rotor\0')
-    arrays = struct.pack(f'<I{"4x" * bool(values)}{len(values)}d', len(values), *values)
-    return bytes((0, 1, 0, 0)) + head[:16] + names + arrays + bytes(8)
+    position, nothing = (len(values), 1, (0,)), (0, 1, ())
+    return Template('', ['rotor'], position, nothing, nothing).encode(stamp, values)
 
 
 _POSITION = JointStateTemplate(['rotor'], velocity=False, effort=False)
