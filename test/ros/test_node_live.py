@@ -304,13 +304,9 @@ def test_signal_ends_the_node_cleanly(start, number, executor):
     assert live.text() == before
 
 
-FILES = {'others.yaml': '/left/gear_state:\n  ros__parameters: {ring_teeth: 90}\n'}
-
-
 @pytest.mark.parametrize(
     ('arguments', 'words'),
     [
-        (['-p', 'ring_teeth:=1'], ['ring_teeth', '2', '100000']),
         (
             ['--params-file', 'others.yaml', '-r', '__ns:=/left'],
             ['others.yaml: no parameters of /left/gear_state_publisher in it',
@@ -318,11 +314,11 @@ FILES = {'others.yaml': '/left/gear_state:\n  ros__parameters: {ring_teeth: 90}\
         ),
         (['--no-such-option'], ['unknown arguments', '--no-such-option']),
     ],
-    ids=lambda x: ' '.join(x) if x[0].startswith('-') else '',
+    ids=['parameters of another node', 'unknown option'],
 )  # fmt: skip
 def test_unusable_arguments_end_the_start_with_2_and_one_line(tmp_path, arguments, words):
-    for name, text in FILES.items():
-        (tmp_path / name).write_text(text)
+    file = '/left/gear_state:\n  ros__parameters: {ring_teeth: 90}\n'
+    (tmp_path / 'others.yaml').write_text(file)
     command = [sys.executable, '-m', 'gear_kinematics.ros', '--ros-args', *arguments]
     done = finished(command, cwd=tmp_path, env={**os.environ, 'ROS_LOG_DIR': str(tmp_path)})
     assert (done.returncode, done.stdout) == (2, ''), done.stderr

@@ -207,7 +207,6 @@ class Scripted:
 @pytest.mark.parametrize(
     ('topic', 'name', 'rate', 'error', 'words'),
     [
-        ('/motor', '/x', 1.0, BagError, ['scripted', '/motor', '/rotor_state']),
         (OUTPUT, '/x', 1.0, BagError, ['scripted', 'nothing to play', OUTPUT]),
         (POSES, '/x', 1.0, BagError, [POSES, 'PoseArray', 'JointState']),
         (ROTOR, '/x y', 1.0, ReplayError, ['/x y']),
@@ -356,14 +355,9 @@ def test_a_node_that_does_not_start_gives_the_cause():
         next(live_messages(Scripted(rotor_states([SECOND])), config(ring_teeth=10**6)))
 
 
-@pytest.mark.parametrize(
-    ('topic', 'words'),
-    [('/motor', ['/motor', ROTOR]), (POSES, [POSES, 'PoseArray', 'JointState'])],
-)
-def test_live_messages_name_an_unusable_topic(topic, words):
-    with pytest.raises(BagError) as caught:
-        next(live_messages(Scripted([]), config(), rotor_topic=topic))
-    assert all(word in str(caught.value) for word in words)
+def test_live_messages_name_an_unusable_topic():
+    with pytest.raises(BagError, match=f'{POSES} .*JointState in it, it is of .*PoseArray'):
+        next(live_messages(Scripted([]), config(), rotor_topic=POSES))
 
 
 def test_environment_is_as_before_after_a_validation_of_a_live_node(monkeypatch):
