@@ -28,6 +28,10 @@ class ErrorSample(NamedTuple):
     deviation: float = 0.0  #: deviation of the calibrated from the ideal output angle, rad
     half_width: float = math.nan  #: of the calibration's interval, rad; NaN without one
 
+    def since(self, before: 'ErrorSample') -> float:
+        """Travel of the ideal output from another sample, rad."""
+        return TURN * (self.turns - before.turns) + self.ideal - before.ideal
+
 
 class Direction:
     """Direction of a motion, once it has travelled far enough after a reversal.

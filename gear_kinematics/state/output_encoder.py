@@ -95,7 +95,7 @@ class OutputEncoder:
         """Check that the error does not grow by twice the travel, as with opposed directions."""
         first, parameters = self._first or sample, self.parameters
         self._first = first
-        travel = abs(TURN * (sample.turns - first.turns) + sample.ideal - first.ideal)
+        travel = abs(sample.since(first))
         least = parameters.transmission_error_travel, 4.0 * parameters.transmission_error_limit
         change = abs(math.remainder(sample.error - first.error, TURN))
         self.direction_checked = travel > max(least) and change < 0.5 * travel

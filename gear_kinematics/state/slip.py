@@ -2,12 +2,14 @@
 """Finds that the output has slipped against the rotor, and remembers it."""
 
 import statistics
+from itertools import pairwise
 from typing import NamedTuple
 
 from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.wire.cdr import SECOND
 
-_BLOCK = 20  # errors whose median counts, so that single wrong readings of an encoder do not
+_SAMPLES = 60  # of a block; the median of the middle third ignores single wrong readings
 
 
 class Slip(NamedTuple):
@@ -18,18 +20,25 @@ class Slip(NamedTuple):
 
 
 class _Block(NamedTuple):
-    """Medians of successive errors."""
+    """The median error in the middle of a block, and the range of the speeds in all of it."""
 
     error: float  # rad
-    speed: float  # rad/s
+    slowest: float  # rad/s
+    fastest: float
+
+    @property
+    def speed(self) -> float:
+        """The greatest speed in either direction, rad/s."""
+        return max(self.fastest, -self.slowest)
 
     def tolerance(self, other: '_Block', parameters: NodeParameters) -> float:
         """Greatest difference between the errors of two blocks without a slip, rad.
 
         A delay between the encoders, which is unknown, adds an error in proportion to the speed.
         """
-        delay = parameters.transmission_error_max_gap
-        return parameters.transmission_error_limit + delay * abs(self.speed - other.speed)
+        apart = max(self.fastest - other.slowest, other.fastest - self.slowest)
+        limit, delay = parameters.transmission_error_limit, parameters.transmission_error_max_gap
+        return limit + delay * apart
 
 
 class SlipWatch:
@@ -41,6 +50,7 @@ class SlipWatch:
 
     def __init__(self, parameters: NodeParameters) -> None:
         self._parameters = parameters
+        self._longest = parameters.transmission_error_max_gap * SECOND  # delay, ns
         self.restart()
 
     def restart(self) -> None:
@@ -54,14 +64,22 @@ class SlipWatch:
 
     def add(self, sample: ErrorSample) -> None:
         """Take the next error of known turns."""
-        self._errors.append(sample)
-        if len(self._errors) < _BLOCK:
+        errors = self._errors
+        errors.append(sample)
+        # Each third lasts as long as the longest delay, so that all speeds are known that a
+        # delayed error in the middle can be of.
+        if len(errors) < _SAMPLES or sample.stamp - errors[0].stamp < 3.0 * self._longest:
             return
-        errors, self._errors = self._errors, []
-        block = _Block(
-            statistics.median(each.error for each in errors),
-            statistics.median(each.speed for each in errors),
-        )
+        third = len(errors) // 3
+        # Of single intervals, the steps of an encoder would be changes of the speed.
+        speeds = [
+            b.since(a) / (b.stamp - a.stamp) * SECOND
+            for a, b in pairwise(errors[:: third // 4])
+            if b.stamp > a.stamp
+        ]
+        middle = statistics.median(each.error for each in errors[third:-third])
+        block = _Block(middle, min(speeds, default=0.0), max(speeds, default=0.0))
+        self._errors = errors[third:]
         reference, steady, last = self._reference, self._steady, self._last
         self._last = block
         if not reference or not last or not steady:
@@ -74,7 +92,7 @@ class SlipWatch:
             before = block.error - moved
             first = next(each for each in errors if abs(each.error - before) >= 0.5 * abs(moved))
             self.slip = Slip(first.stamp, moved)
-        elif abs(block.speed) < abs(reference.speed):
+        elif block.speed < reference.speed:
             self._reference = block  # in slow motion a delay hides less
         limit = self._parameters.transmission_error_limit
         if steady and steady.tolerance(block, self._parameters) > 2.0 * limit:

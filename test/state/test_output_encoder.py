@@ -234,6 +234,18 @@ def test_slow_drift_in_steady_motion_is_a_slip(drift, bench):
         assert 15.0 < (slip.stamp - START) / SECOND - 2.0 < 20.0
 
 
+@pytest.mark.parametrize('late', [20, -20, 90])
+def test_encoder_that_is_late_is_no_slip_where_the_speed_changes(late, bench):
+    """Each change of the speed appears in the error before or after the rotor's speed changes."""
+    rates = np.repeat([0.0, 4.0, 10.0, -6.0, 0.0, 8.0, 1.0, 0.0], 437)  # rad/s of the output
+    ramps = np.convolve(rates, np.full(61, 1.0 / 61), 'same')
+    angles = 1e-3 * np.cumsum(ramps)
+    for k in range(100, len(angles) - 100):
+        bench.measure(START + k * MS, float(angles[k - late]))
+        bench.turn(START + k * MS, -19.0 * float(angles[k]))
+    assert bench.encoder.slip_watch.slip is None
+
+
 @pytest.mark.parametrize('sense', [1, -1])
 def test_direction_is_checked_by_a_motion_alone(sense):
     """The wrong way round, the error grows by twice the travel."""
