@@ -109,7 +109,7 @@ def _position_table(pins: Pins) -> Table:
             str(choice.settings[0].ring_hole),
             ' or '.join(str(setting.chassis_hole) for setting in choice.settings),
             arc(choice.ring_turn),
-            f'{arc_seconds(choice.error):+.3f}',
+            f'{arc_seconds(choice.error):+z.3f}',
         )
         rows.append(tuple(map(Cell, cells)))
     columns = ('steps', 'tooth', 'ring hole', 'chassis hole', 'turn', 'error [″]')

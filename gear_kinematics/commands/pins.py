@@ -40,7 +40,7 @@ class Pins(NamedTuple):
         for other in others:
             yield 'or', f'{other}: the same position'
         yield 'ring body', arc(vernier.angle_between(_ZERO, first.body_turn))
-        error = f'{arc_seconds(self.nearest.error):+.3f}″'
+        error = f'{arc_seconds(self.nearest.error):+z.3f}″'
         yield 'turn', f'{arc(self.nearest.ring_turn)} for a wanted {arc(self.ring_turn)} ({error})'
         if self.phase is not None:
             yield 'phase', f'{arc(self.phase)} of it'

@@ -58,6 +58,12 @@ def test_index_says_which_holes_to_pin_in_words(capsys):
     assert row in out
 
 
+def test_an_error_that_rounds_to_nothing_has_no_minus(capsys):
+    out = printed(capsys, 'index', '--degrees', '-0.5')
+    assert '30′ 00.000″ (+0.000″)' in out
+    assert ' -0.000' not in out
+
+
 def test_index_lists_the_positions_around(capsys):
     found = answer(capsys, 'index', '--degrees', '-0.01')
     assert (found['ring_holes'], found['chassis_holes'], found['positions']) == (81, 82, 265_680)
