@@ -2,6 +2,7 @@
 """Common parts of `index` and `preload`: the turn of a ring gear, and the pins for it."""
 
 import argparse
+import math
 from collections.abc import Iterator
 from dataclasses import asdict
 from fractions import Fraction
@@ -67,7 +68,8 @@ def find(
     phase = ring_phase(mechanism) if options.phase_b else None
     wanted = turn + (phase or 0.0)
     if not abs(wanted) <= TURN:
-        raise ValueError(f'a ring gear is turned by at most a whole turn, not by {wanted:g} rad')
+        degrees = math.degrees(wanted)
+        raise ValueError(f'a ring gear is turned by at most a whole turn, not by {degrees:g}°')
     choices = vernier.choices(mechanism.ring_teeth, wanted, neighbours=neighbours)
     return Pins(phase, wanted, choices)
 

@@ -181,8 +181,8 @@ TURN = ('preload', '--degrees', '1')
     ('arguments', 'cause'),
     [
         (['index'], 'give --degrees or --phase-b'),
-        (['index', '--degrees', 'nan'], 'at most a whole turn, not by nan rad'),
-        (['index', '--degrees', '361'], 'at most a whole turn, not by 6.30064 rad'),
+        (['index', '--degrees', 'nan'], 'at most a whole turn, not by nan°'),
+        (['index', '--degrees', '361'], 'at most a whole turn, not by 361°'),
         (['index', '--degrees', '1', '--ring-teeth', '0'], 'must be between 2 and 100000, not 0'),
         (['preload', '--setting', '80', '0', '0', *SOFT], 'tooth 80 is not one of 0 to 79'),
         (['preload', *SOFT], 'one of the arguments --degrees --setting'),
