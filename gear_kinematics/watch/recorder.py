@@ -48,7 +48,7 @@ class Recorder:
         self.heard: dict[str, Polled] = {}  # the topics on which messages have come
         self.gears: set[str] = set()  # full names of the gear nodes
         self.absent = ''  # that the wanted node is not running, if others are
-        self.inputs: set[str] = set()  # the topics to which the gear nodes subscribe
+        self.inputs: set[str] = set()  # on which messages should come; an output needs no encoder
         self._node, self._bag = node, bag
         self._wanted = '' if wanted == NODE else f'/{wanted.removeprefix("/")}'
         self._open: dict[str, tuple[str, Polled]] = {}  # with the types
@@ -87,7 +87,15 @@ class Recorder:
             place = name, namespace or '/'
             inputs = self._node.get_subscriber_names_and_types_by_node(*place)
             outputs = self._node.get_publisher_names_and_types_by_node(*place)
-            self.inputs |= {topic for topic, types in inputs if topics.JOINT_STATE in types}
+            self.inputs |= {
+                topic
+                for topic, types in inputs
+                if topics.JOINT_STATE in types
+                and (
+                    topics.base_name(topic) != topics.OUTPUT_ENCODER
+                    or self._node.get_publishers_info_by_topic(topic)
+                )
+            }
             for topic, [kind, *_] in inputs + outputs:
                 if kind not in _TYPES or topics.base_name(topic) in self._left_out:
                     continue

@@ -97,6 +97,24 @@ def test_driver_that_starts_later_finds_a_subscription_of_its_reliability(offere
     assert [polled._subscription] == opened
 
 
+def test_an_encoder_at_the_output_is_missed_only_where_one_is_connected(monkeypatch):
+    monkeypatch.setattr(module, 'Graph', lambda _: SimpleNamespace(gears=['/left/gear']))
+    monkeypatch.setattr(module, 'Polled', MagicMock())
+    own = ['/left/rotor_state', '/left/output_encoder']
+    drivers = []
+    node = SimpleNamespace(
+        get_subscriber_names_and_types_by_node=lambda *_: [(t, [JOINT_STATE]) for t in own],
+        get_publisher_names_and_types_by_node=lambda *_: [],
+        get_publishers_info_by_topic=lambda _: drivers,
+    )
+    recorder = Recorder(node, MagicMock())
+    recorder.poll()
+    assert recorder.inputs == {'/left/rotor_state'}
+    drivers.append(MagicMock())
+    recorder.poll()
+    assert recorder.inputs == {*own}
+
+
 def test_a_mistyped_node_is_named_beside_those_that_run(monkeypatch):
     running = []
     monkeypatch.setattr(module, 'Graph', lambda _: SimpleNamespace(gears=[*running]))
