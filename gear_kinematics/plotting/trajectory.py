@@ -52,8 +52,9 @@ class Trajectory(NamedTuple):
         """Select the samples between two times, s; ValueError if there are none."""
         inside = (self.time >= start) & (self.time <= end)
         if not inside.any():
+            until = 'on' if end == np.inf else f'to {end:g} s'
             there = f'they are from 0 s to {self.time[-1]:g} s'
-            raise ValueError(f'no rotor states from {start:g} s to {end:g} s; {there}')
+            raise ValueError(f'no rotor states from {start:g} s {until}; {there}')
         return type(self)(*(column[inside] for column in self))
 
     def every(self, interval: float, *, closed: bool = False) -> Self:

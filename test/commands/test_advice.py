@@ -167,5 +167,5 @@ def test_files_beside_a_bag_that_cannot_be_used_do_not_stop_the_others(
 
 def test_the_error_about_a_part_of_a_bag_names_it(motor):
     words = ['plot', 'output', 'a.png', '--bag', motor, '--joint', 'wheel_1']
-    error = 'motor: no rotor states from 9 s to inf s; they are from 0 s to 0.99 s'
+    error = 'motor: no rotor states from 9 s on; they are from 0 s to 0.99 s'
     assert refusal(*words, '--start-offset', '9') == error
