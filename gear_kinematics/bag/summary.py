@@ -90,7 +90,7 @@ def summarise(
             ends = [*ends[:1], batch[0][1], batch[-1][1]]
     except DamagedBagError as error:
         damage = str(error)
-    states = [t for t in stamped if times[t] and bag.topics[t] == JOINT_STATE]
+    states = [t for t in stamped if (times[t] or t == rotor) and bag.topics[t] == JOINT_STATE]
     there = joints_on(bag, states)
     topics = [
         _summary(

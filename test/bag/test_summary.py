@@ -111,3 +111,9 @@ def test_rate_and_gaps_are_those_of_the_joint_on_a_shared_topic(shared_path):
     # As the file is described: 200 Hz for 1.5 s, and two grippers beside it.
     assert (topic.part, topic.messages, topic.of_others) == ('rotor', 900, 600)
     assert (topic.rate, topic.gaps) == (pytest.approx(200.0, rel=1e-3), 0)
+
+
+def test_joints_of_the_rotor_topic_are_known_where_none_is_the_wanted_one():
+    found = summary(BAGS / 'constant_speed_3000rpm', None, ['m1'])
+    rotor = found.topics[0]
+    assert (rotor.part, rotor.joints, rotor.of_others) == ('rotor', ('rotor',), 3000)
