@@ -301,8 +301,9 @@ def printable(text: str) -> str:
 
 
 def number(value: float, digits: int = 3) -> str:
-    """Write a measured value to significant digits, with the shortest exponent."""
-    mantissa, e, exponent = f'{value:.{digits}g}'.partition('e')
+    """Write a measured value to significant digits; from a million on, with an exponent."""
+    rounded = float(f'{value:.{digits}g}')
+    mantissa, e, exponent = f'{rounded:.{max(digits, 6)}g}'.partition('e')
     return f'{mantissa}{e}{int(exponent)}' if e else mantissa
 
 

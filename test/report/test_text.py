@@ -182,7 +182,16 @@ def test_colours_tell_what_is_bad():
 
 @pytest.mark.parametrize(
     ('value', 'written'),
-    [(0.0, '0'), (3.21e-15, '3.21e-15'), (1e-9, '1e-9'), (2e8, '2e8'), (float('inf'), 'inf')],
+    [
+        (0.0, '0'),
+        (3.21e-15, '3.21e-15'),
+        (1e-9, '1e-9'),
+        (2e8, '2e8'),
+        (float('inf'), 'inf'),
+        (2914.0, '2910'),
+        (9000.0, '9000'),
+        (-123456.0, '-123000'),
+    ],
 )
 def test_numbers_are_short(value, written):
     assert number(value) == written
