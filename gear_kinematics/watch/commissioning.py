@@ -101,12 +101,12 @@ class LiveCommissioning:
         if not result.between:
             raise ValueError(str(result.answer))
         if not parameters or not all(map(gear.hears, self._topics)):
-            topics = ' and '.join(self._topics)
-            raise ValueError(f'{gear.name} does not hear {topics}: write the file, and start it.')
+            unheard = f'{gear.name} does not listen to {" and ".join(self._topics)}'
+            raise ValueError(f'{unheard}: write the file, and start a node with it.')
         changed = {name: new for name, (_, new) in result.changes(parameters).items()}
         if fixed := [f'{name} {changed[name]}' for name in changed if PARAMETERS[name].read_only]:
-            needed = f'{", ".join(fixed)} needs a restart'
-            raise ValueError(f'Nothing is changed: {needed}; write the file, and start it.')
+            needed = f'a restart is needed for {", ".join(fixed)}'
+            raise ValueError(f'Nothing was changed: {needed}. Write the file and restart.')
         return changed
 
     def _guide(self) -> tuple[Guide, Commissioning | None]:

@@ -33,14 +33,14 @@ _BODY = """\
 <form><label>rotor <select name="rotor"></select></label>
 <label>output <select name="output"></select></label>
 <label>ratio, if known <input name="ratio" maxlength="40" size="8" placeholder="121"></label>
-<label>output is at 0 <select name="zero"><option value="">as its encoder</option>
-<option value="END">where it stands</option></select></label>
+<label>output is at 0 <select name="zero"><option value="">where its encoder reads 0</option>
+<option value="END">where it stands at the end</option></select></label>
 <label>actuator, if it is of an arm <input name="actuator" maxlength="64" size="12"
 placeholder="shoulder"></label>
 <button>Start</button></form>
 <div id="guide" hidden><p role="status"></p><progress></progress><dl></dl><div class="steps">
 <button type="button" value="write">Write actuator.yaml</button>
-<button type="button" value="take">Take into the running node</button>
+<button type="button" value="apply">Apply to the running node</button>
 <button type="button" value="end">End</button></div></div></details></section>
 </main><dialog id="question" aria-label="home"><form method="dialog"><p></p>
 <button value="">Cancel</button> <button value="home">Set it</button></form></dialog>

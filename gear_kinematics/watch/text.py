@@ -74,7 +74,7 @@ def show(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> Non
             rows.append(Entry('', text, '', '' if done else 'bad'))
         if asking:
             rows.append(Entry('', f'{view.question}   y yes   n no'))
-        undo = f'   u undo: {view.undo} again' if view.undo else ''
+        undo = f'   u undo: back to {view.undo}' if view.undo else ''
         more = f'   n next {"actuator" if view.arm else "node"}' * bool(others)
         rows.append(Entry('', '', f'h home{undo}{more}   q end'))
         return rows, pressed != 'q'

@@ -112,7 +112,7 @@
   function allow(homing, undoing) {
     home.disabled = !homing;
     undo.hidden = !undoing;
-    set(undo.lastElementChild, `sets ${undoing} again`);
+    set(undo.lastElementChild, `back to ${undoing}`);
     if (homing) set(question.querySelector('p'), homing);
     else question.close();
   }

@@ -64,7 +64,7 @@ class Watcher:
         return self._running.done()
 
     def ask(self, command: Any) -> 'Future[Answer]':
-        """Execute the action `do` of a command: home, undo, commission, write, take or end."""
+        """Execute the action `do` of a command: home, undo, commission, write, apply or end."""
         answer: Future[Answer] = Future()
         answer.set_running_or_notify_cancel()  # whoever waits cannot cancel it
         self._asked.put((command, answer))
@@ -136,7 +136,7 @@ class Watcher:
         if not (gear and gear.running and gear.homing.service_is_ready()):
             raise ValueError('No node is ready.')
         if command.get('revision') != gear.revision:
-            new = f'{gear.name} or its parameters are new here, or there is no output'
+            new = f'{gear.name} or its parameters have changed, or it has no output'
             raise ValueError(f'Nothing was done: {new}.')
         return gear
 
@@ -148,7 +148,7 @@ class Watcher:
                 self._ready_gear(command).home(answer)
             case {'do': 'undo'} if undo:
                 gear = self._ready_gear(command)
-                gear.set(gear.earlier, f'Undone: {undo} again.', answer)
+                gear.set(gear.earlier, f'Undone: back to {undo}.', answer)
             case {'do': 'undo'}:
                 raise ValueError('There is nothing to undo.')
             case {'do': 'commission', 'rotor': [_, _] as rotor, 'output': [_, _] as output}:
@@ -157,11 +157,11 @@ class Watcher:
             case {'do': 'write'} if live:
                 start = live.write(str(command.get('actuator', '')) or self._actuator_of(live))
                 answer.set_result(Answer(f'Written. Start:\n{start}', done=True))
-            case {'do': 'take'} if live:
+            case {'do': 'apply'} if live:
                 gear = self._ready_gear(command)
                 values = live.changes(gear)
-                done = f'{gear.name} has taken {", ".join(values) or "nothing new"}, until it ends'
-                gear.set(values, f'{done}; the file keeps them.', answer)
+                done = f'Changed in {gear.name}: {", ".join(values) or "nothing"}'
+                gear.set(values, f'{done}. Write the file to keep it after a restart.', answer)
             case {'do': 'show', 'node': str(node)} if node in {g.label for g in self._gears}:
                 self._wanted = node
                 self._look(Graph(self._node))

@@ -153,7 +153,7 @@ def test_gear_is_added_to_the_file_of_an_arm(monkeypatch, tmp_path):
 def test_node_of_another_gear_is_not_changed(monkeypatch):
     live = hear(monkeypatch, 90.0, '121')
     other = SimpleNamespace(name='/g', parameters=NodeParameters.load(), hears=lambda _: False)
-    with pytest.raises(ValueError, match='/g does not hear /j and /j: write the file'):
+    with pytest.raises(ValueError, match='/g does not listen to /j and /j: write the file'):
         live.changes(other)
 
 
@@ -217,18 +217,18 @@ def test_in_a_terminal_it_asks_and_interrupted_leaves_nothing(tmp_path):
 
 
 def within_its_errors(page, expect) -> bool:
-    """Take what is found into the node and undo it; tells whether both zeros agree."""
+    """Apply what is found to the node and undo it; tells whether both zeros agree."""
     answer, undo = page.locator('#answer'), page.locator('#undo')
-    page.get_by_role('button', name='Take into the running node').click()
+    page.get_by_role('button', name='Apply to the running node').click()
     expect(answer).to_have_text(
-        f'{NODE} has taken output_encoder_joint, output_encoder_zero, rotor_zero, '
-        'until it ends; the file keeps them.'
+        f'Changed in {NODE}: output_encoder_joint, output_encoder_zero, rotor_zero. '
+        'Write the file to keep it after a restart.'
     )
     names = 'output_encoder_joint', 'output_encoder_zero', 'rotor_zero'
     joint, zero, rotor_zero = parameters(*names)
     assert joint == 'shaft'
     expect(undo).to_have_text(
-        "Undo sets rotor_zero 0, output_encoder_joint '', output_encoder_zero 0 again"
+        "Undo back to rotor_zero 0, output_encoder_joint '', output_encoder_zero 0"
     )
     undo.get_by_role('button').click()
     expect(answer).to_contain_text('Undone: ')
@@ -240,7 +240,7 @@ def within_its_errors(page, expect) -> bool:
 @pytest.mark.live
 @pytest.mark.slow
 @beside_driver
-def test_page_guides_writes_and_takes_into_the_node(tmp_path):
+def test_page_guides_writes_and_applies_to_the_node(tmp_path):
     sync_api = pytest.importorskip('playwright.sync_api', reason='no playwright is installed')
     pytest.importorskip('tornado', reason='no tornado is installed')
     with (
@@ -265,9 +265,10 @@ def test_page_guides_writes_and_takes_into_the_node(tmp_path):
         assert page.locator('#guide progress').evaluate('bar => bar.value') == 1.0
         page.get_by_role('button', name='Write actuator.yaml').click()
         sync_api.expect(answer).to_contain_text(f'actuator.yaml -r rotor_state:={MOTOR}')
-        page.get_by_role('button', name='Take into the running node').click()
+        page.get_by_role('button', name='Apply to the running node').click()
         sync_api.expect(answer).to_have_text(
-            'Nothing is changed: gear_ratio 19 needs a restart; write the file, and start it.'
+            'Nothing was changed: a restart is needed for gear_ratio 19. '
+            'Write the file and restart.'
         )
         assert parameters('rotor_direction', 'output_encoder_joint') == [1, '']
         page.locator('input[name=ratio]').fill('-19')

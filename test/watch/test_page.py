@@ -166,8 +166,8 @@ def test_home_is_asked_called_and_undone_with_the_keyboard(connected):
     )
     connected.get_by_role('button', name='Undo').focus()
     connected.keyboard.press('Enter')
-    expect(answer).to_have_text('Undone: rotor_zero 0 again.')
-    expect(connected.locator('#undo')).not_to_have_text('Undo sets rotor_zero 0 again')
+    expect(answer).to_have_text('Undone: back to rotor_zero 0.')
+    expect(connected.locator('#undo')).not_to_have_text('Undo back to rotor_zero 0')
     assert parameters('rotor_zero') == [0.0]
 
 
@@ -284,7 +284,7 @@ def test_a_question_that_was_cancelled_just_before_does_not_home_as_well(browser
 def test_page_connects_again_after_the_node_was_restarted(connected, folder):
     connected.locator('#home').click()
     connected.get_by_role('button', name='Set it').click()
-    expect(connected.locator('#undo')).to_have_text('Undo sets rotor_zero 0 again')
+    expect(connected.locator('#undo')).to_have_text('Undo back to rotor_zero 0')
     connected.node.terminate()
     expect(connected.locator('#state')).to_have_text('ended')
     expect(connected.locator('#message')).to_contain_text('Waiting for it to start again.')

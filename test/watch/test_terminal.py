@@ -32,8 +32,8 @@ def test_table_in_a_terminal_homes_with_keys(tmp_path):
         terminal.wait_for(question, keys='h')
         terminal.type('ny')  # which no question precedes
         terminal.wait_for(r'the shaft was at -?\d+\.\d° and is now 0\.0° \(rotor_zero ', keys='hy')
-        terminal.wait_for(r'u undo: rotor_zero \S+ again')
-        terminal.wait_for(r'Undone: rotor_zero \S+ again\.', keys='u')
+        terminal.wait_for(r'u undo: back to rotor_zero \S+')
+        terminal.wait_for(r'Undone: back to rotor_zero \S+\.', keys='u')
         terminal.type('q')
         assert terminal.end() == 0
 

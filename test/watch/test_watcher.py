@@ -556,7 +556,7 @@ def test_keys_home_nothing_without_a_question(monkeypatch, question, keys, revis
 
 
 @pytest.mark.parametrize('revision', [None, 6, 7])
-@pytest.mark.parametrize('do', ['home', 'undo', 'take'])
+@pytest.mark.parametrize('do', ['home', 'undo', 'apply'])
 def test_command_to_another_gear_or_zero_than_its_page_shows_is_refused(do, revision):
     done = []
     watcher = Watcher()
@@ -567,7 +567,7 @@ def test_command_to_another_gear_or_zero_than_its_page_shows_is_refused(do, revi
     )
     watcher.view = View(undo='rotor_zero 0')
     watcher._gear.earlier = {'undo': 0.0}
-    watcher._live = SimpleNamespace(changes=lambda _: {'take': 1.0})
+    watcher._live = SimpleNamespace(changes=lambda _: {'apply': 1.0})
     command = {'do': do} | ({'revision': revision} if revision else {})
     if revision == watcher._gear.revision:
         watcher._do(command, Future())
