@@ -18,7 +18,7 @@ _STORAGE_NAME = re.compile(
     r'\.(?P<kind>mcap|db3)(\.(zstd|zst|lz4))?$'
 )
 """Name of a file of a recording; since Lyrical, of a split one, a counter and the date."""
-_METADATA = 'metadata.yaml'
+METADATA = 'metadata.yaml'
 _TEXTS = '.csv', '.tsv', '.txt', '.dat', '.asc', '.lvm', '.log'
 _COMMON = {'.txt', '.dat', '.log'}  # which often are no recordings
 COMPRESSED = '.gz', '.zst', '.zip', '.bz2', '.xz'  # of compressed texts, behind those of `TABLES`
@@ -60,14 +60,14 @@ def find_bags(patterns: Iterable[str]) -> Found:
 
 def _recording(path: Path) -> Path:
     """Return the folder of a metadata.yaml, or else the path itself."""
-    return path.parent if path.name == _METADATA and path.is_file() else path
+    return path.parent if path.name == METADATA and path.is_file() else path
 
 
 def is_recording(path: Path) -> bool:
     """Return whether a file has the name of a recording or its metadata."""
     name = path.name
     table = bool(table_format(path)) and path.suffix.lower() not in _COMMON
-    return bool(BAG_NAME.search(name)) or table or name == _METADATA
+    return bool(BAG_NAME.search(name)) or table or name == METADATA
 
 
 def table_format(path: Path) -> str:
@@ -89,7 +89,7 @@ def _glob(pattern: str, faults: dict[Path, str]) -> Iterator[Path]:
 def _bags_below(path: Path, faults: dict[Path, str]) -> Iterator[Path]:
     """Yield the bags; a folder that cannot be read is a fault, and does not stop the others."""
     try:
-        if not path.is_dir() or (path / _METADATA).exists():
+        if not path.is_dir() or (path / METADATA).exists():
             yield path
             return
         children = sorted(
@@ -118,7 +118,7 @@ def _in_order(files: list[Path]) -> list[Path]:
 
 def _leads_astray(path: Path) -> bool:
     """Return whether a path is a link to a folder that is no bag: such links can form cycles."""
-    return path.is_symlink() and path.is_dir() and not (path / _METADATA).exists()
+    return path.is_symlink() and path.is_dir() and not (path / METADATA).exists()
 
 
 def _may_hold(path: Path) -> bool:
@@ -140,7 +140,7 @@ def find_contents(path: Path) -> Contents:
         return Contents([path], {}, None)
     if not path.is_dir():
         raise ValueError('no such file or folder')
-    metadata = path / 'metadata.yaml'
+    metadata = path / METADATA
     if metadata.exists():
         with bag_errors(metadata):
             return _listed_contents(path, read_yaml(metadata, BagError, _Loader))

@@ -13,7 +13,7 @@ from typing import IO, Any, Self
 
 from gear_kinematics.bag.codecs import ReadLimits, codec_of, decompress_file, decompressed
 from gear_kinematics.bag.errors import BagError, DamagedBagError, bag_errors, cause
-from gear_kinematics.bag.finding import find_contents, table_format
+from gear_kinematics.bag.finding import METADATA, find_contents, table_format
 from gear_kinematics.bag.mcap import MCAP_MAGIC, Mcap
 from gear_kinematics.bag.sqlite import Sqlite
 from gear_kinematics.bag.storage import (
@@ -249,8 +249,8 @@ def _opened(file: Path, limits: ReadLimits, read: int = 0) -> Iterator[Storage]:
     except Exception as error:
         where, here = (storage.position(), storage.read) if storage else ('', 0)
         text = f'{file}: {where}{broken or cause(error)}'
-        if isinstance(error, FileNotFoundError) and (file.parent / 'metadata.yaml').exists():
-            text += '; metadata.yaml lists it: without that, the other files are read'
+        if isinstance(error, FileNotFoundError) and (file.parent / METADATA).exists():
+            text += f'; {METADATA} lists it; without {METADATA}, the other files are read'
         damaged = read + here and not isinstance(error, UnsortedError)
         raise (DamagedBagError if damaged else BagError)(text) from error
 

@@ -142,12 +142,13 @@ def missing_topic(
     It lists the topics, and may suggest the one with the nearest name.
     """
     of_type = {topic for topic, kind in topics.items() if kind == wanted}
-    text = f'{path}: no topic {name}' + (f' of type {wanted}' if wanted else '') + ' in it'
     if name in topics:
-        text += f', it is of {f"type {topics[name]}" if topics[name] else "no known type"}'
-    elif suggest:
-        text += nearest(name, sorted(of_type or topics))
+        kind = f'type {topics[name]}' if topics[name] else 'unknown type'
+        text = f'topic {name} is of {kind}, not {wanted}'
+    else:
+        text = f'no topic {name}' + (f' of type {wanted}' if wanted else '') + ' in it'
+        text += nearest(name, sorted(of_type or topics)) if suggest else ''
     there = f'there are: {listed(topics, of_type)}' if topics else 'there are no topics'
     if '' in topics.values():
-        there += '; the types of some are not recorded, as those of channels without a schema'
-    return BagError(f'{text}{"" if text.endswith("?") else ";"} {there}')
+        there += '; some have no recorded type, as channels without a schema'
+    return BagError(f'{path}: {text}{"" if text.endswith("?") else ";"} {there}')

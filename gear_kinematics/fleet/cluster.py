@@ -48,7 +48,7 @@ def on_cluster(
         try:
             client.wait_for_workers(1, _PATIENCE)
         except TimeoutError as error:
-            cause = f'the Dask scheduler {scheduler} has no workers: start some by `dask worker`'
+            cause = f'the Dask scheduler {scheduler} has no workers: start some with `dask worker`'
             raise RuntimeError(cause) from error
         for future in as_completed(futures):
             task = futures.pop(future)

@@ -35,7 +35,7 @@ from gear_kinematics.bag.codecs import ReadLimits
 CORPUS = BAGS.parent / 'test' / 'corpus' / 'bags'
 
 
-CUT_OFF = 'cut off within a record; mcap recover makes a sound file of what is before'
+CUT_OFF = 'cut off within a record; mcap recover saves what is before it'
 
 
 def read_up_to_damage(path: Path) -> tuple[list[Message], BagError | None]:

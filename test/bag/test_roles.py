@@ -1,7 +1,6 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Finding the topics of a recording by their names and types."""
 
-import re
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
@@ -86,7 +85,7 @@ NO_ROTOR = f'no topic rotor_state of type {JOINT_STATE} in it; there are: '
 NO_MOTOR = f'no topic /motor of type {JOINT_STATE} in it; there are: '
 NEARLY = f'no topic /rotor_stat of type {JOINT_STATE} in it; did you mean `/rotor_state`? '
 NEARLY += 'there are: '
-NO_POSES = f'no topic /output_state of type {POSE_ARRAY} in it, it is of type {JOINT_STATE}; '
+NO_POSES = f'topic /output_state is of type {JOINT_STATE}, not {POSE_ARRAY}; '
 NO_POSES += 'there are: '
 WHICH_OUTPUT = 'which topic is output_state? /left/output_state, /output_state; name it with '
 WHICH_OUTPUT += '--output-topic, or its node with --node'
@@ -132,11 +131,11 @@ def test_poses_are_not_looked_for_where_there_are_none():
 
 
 @pytest.mark.parametrize(
-    ('name', 'cause'), [('/b', 'in it;'), ('/motor', 'in it, it is of no known type;')]
+    ('name', 'cause'), [('/b', ' in it;'), ('/motor', f'of unknown type, not {JOINT_STATE};')]
 )
 def test_topics_without_a_type_are_said_to_have_none(name, cause):
     bag = described({'/motor': '', '/a': JOINT_STATE})
-    missing = f'{re.escape(cause)} there are: /a, /motor; the types of some are not recorded, .*$'
+    missing = f'{cause} there are: /a, /motor; some have no recorded type, as channels .*$'
     with pytest.raises(BagError, match=missing):
         bag.type_of(name, JOINT_STATE)
 
@@ -145,7 +144,7 @@ def test_topics_without_a_type_are_said_to_have_none(name, cause):
     ('given', 'error'),
     [
         ({}, f'{NO_ROTOR}/rotor_state (not CDR), /rosout'),
-        ({'rotor': '/rotor_state'}, f'in it, it is of type {JOINT_STATE} (not CDR); there are: '),
+        ({'rotor': '/rotor_state'}, f'of type {JOINT_STATE} (not CDR), not {JOINT_STATE};'),
     ],
 )
 def test_that_the_messages_of_a_topic_are_json_is_the_cause(given, error):

@@ -159,7 +159,7 @@ def test_options_decide(name, options, code, bags, capsys):
     (['--tolerance-effort=-1e-9'], '--tolerance-effort: must be at least 0, not -1e-9'),
     (['--tolerance-position', 'nan'], '--tolerance-position: must be at least 0, not nan'),
     (['--tolerance-angle', 'small'], "must be a number, not 'small'; see gearkin validate"),
-    (['--poses-topic', '/output_state'], 'good: no topic /output_state of type geometry_msgs'),
+    (['--poses-topic', '/output_state'], 'good: topic /output_state is of type sensor_msgs'),
     (['--output-topic', '/nope'], 'good: no topic /nope of type sensor_msgs'),
     (['--json', '-', '--junit', '-'], 'only one report can go to stdout'),
     (['--config', 'missing.yaml'], 'No such file'), (['--config', 'broken.yaml'], 'not YAML'),

@@ -356,7 +356,7 @@ def test_a_node_that_does_not_start_gives_the_cause():
 
 
 def test_live_messages_name_an_unusable_topic():
-    with pytest.raises(BagError, match=f'{POSES} .*JointState in it, it is of .*PoseArray'):
+    with pytest.raises(BagError, match=f'{POSES} is of type .*PoseArray, not .*JointState'):
         next(live_messages(Scripted([]), config(), rotor_topic=POSES))
 
 
