@@ -14,7 +14,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.state.motion import (
     COARSEST,
     EQUAL,
@@ -23,7 +22,14 @@ from gear_kinematics.state.motion import (
     Motion,
     all_in_reach,
 )
-from gear_kinematics.state.reach import FLOOR, REGULAR, STALEST, Reading, RotorLimits
+from gear_kinematics.state.reach import (
+    FLOOR,
+    REGULAR,
+    STALEST,
+    Reading,
+    RotorLimits,
+    single_precision_step,
+)
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.state.wraps import LEAST_STEP, Wraps
 
@@ -34,7 +40,6 @@ _MOST_BEYOND = 2.0  # times the limit: speeds at which a driver may repeat readi
 _LONGEST_REPEAT = 1.0  # s, for which a driver repeats a reading while the rotor turns on
 _REPEATED = 0.05  # of the way meanwhile: what it may differ by from that at a steady speed
 _STEADY = 0.25  # of the speed: what it may change by meanwhile
-_ROUNDING = 1e-6  # of a step of single precision, by a conversion of units in double precision
 _LEAST_MOTION = 0.01  # rad between two readings of a rotor that moves
 
 
@@ -106,7 +111,7 @@ class Plausibility:
             which.append(Condition.BEYOND_SPEED(speed=self.seen_speed))
         if self.seen_acceleration:
             which.append(Condition.BEYOND_ACCELERATION(acceleration=self.seen_acceleration))
-        if (step := _single_precision(self._former[0], self._last[0])) > FLOOR:
+        if step := single_precision_step(self._former[0], self._last[0]):
             which.append(Condition.BEYOND_PRECISION(angle=step))
         return Condition.BEYOND_LIMITS(which=which) if which else None
 
@@ -333,18 +338,3 @@ class Plausibility:
 
     def _wrapped(self, step: float) -> float:
         return math.remainder(step, self.period) if self.period else step
-
-
-def _single_precision(*positions: float) -> float:
-    """Return the step of numbers of 24 bits, rad, if positions are such in some unit; else 0.
-
-    Many drivers convert them from such numbers of rad, turns or degrees.
-    """
-    for unit in (1.0, TURN, math.radians(1.0)):
-        steps = [math.ldexp(unit, math.frexp(each / unit)[1] - 24) for each in positions]
-        if all(
-            abs(math.remainder(each, step)) < _ROUNDING * step
-            for each, step in zip(positions, steps, strict=True)
-        ):
-            return steps[-1]
-    return 0.0

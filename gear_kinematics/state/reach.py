@@ -5,11 +5,15 @@ A reading may be up to an interval, at most `STALEST`, older than its stamp says
 or early, and drivers repeat a reading until the next.
 """
 
+import math
 from typing import Any, NamedTuple
+
+from gear_kinematics.kinematics.rotor_turns import TURN
 
 STALEST = 0.01  # s; a reading is so much, or an interval, older than its stamp says, at most
 FLOOR = 0.05  # rad: noise of any encoder, and what two successive steps may always differ by
 REGULAR = 1.0 / 3.0  # share of the usual time by which one may vary in `RotorLimits.even_step`
+_ROUNDING = 1e-6  # of a step of single precision, by a conversion of units in double precision
 _UNEVEN = 0.25  # of a speed: what it may differ by, as readings are older than their stamps
 
 Reading = tuple[float, int, float, int]
@@ -77,3 +81,19 @@ class RotorLimits(NamedTuple):
         high = min(way, max(0.0, min(self.speed, fast) * time + gained))
         low = max(-way, min(0.0, max(-self.speed, slow) * time - gained))
         return low - noise, high + noise
+
+
+def single_precision_step(*positions: float) -> float:
+    """Return the step of numbers of 24 bits, rad, if positions are such in some unit; else 0.
+
+    Many drivers convert them from such numbers of rad, turns or degrees. Steps up to `FLOOR` do
+    not count.
+    """
+    for unit in (1.0, TURN, math.radians(1.0)):
+        steps = [math.ldexp(unit, math.frexp(each / unit)[1] - 24) for each in positions]
+        if all(
+            step > FLOOR and abs(math.remainder(each, step)) < _ROUNDING * step
+            for each, step in zip(positions, steps, strict=True)
+        ):
+            return steps[-1]
+    return 0.0

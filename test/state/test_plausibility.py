@@ -248,6 +248,12 @@ def test_positions_that_wrap_at_another_range_than_the_configured_one_are_named(
     assert rotor.referenced != other
 
 
+def test_positions_next_to_zero_are_no_numbers_of_single_precision():
+    """rclpy publishes a whole number in a field of float64 as 5e-324."""
+    rotor, _ = fed(MULTI, messages([0.0, 0.01, 0.02], [0.0, 5e-324, 1e-323]))
+    assert rotor.plausibility.beyond_limits is None
+
+
 @pytest.mark.parametrize('rate', [10, 20, 50, 1000])
 def test_machine_with_a_quick_return_or_a_drive_that_restarts_does_not_wrap(rate):
     times = np.arange(40 * rate) / rate
