@@ -83,6 +83,11 @@ class Condition(Enum):
         'the velocities are {delay:.3f} s late',
         'Let the driver filter them less, or send them with the position of the same time.',
     )
+    POSITIONS_LATE = (
+        WARN,
+        'the positions are {delay:.3f} s behind the velocities',
+        'Let the driver filter the positions less, or send measured velocities of the same time.',
+    )
     POSITIONS_STAND = (
         WARN,
         'the velocities contradict the positions, which stand',

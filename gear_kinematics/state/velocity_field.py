@@ -76,8 +76,8 @@ class VelocityField:
         self.finding = VelocityMeaning.UNDECIDED
         self.factor = math.nan  # ratio of velocities in messages to the slope of positions
         self.contradicts = False  # whether the velocities contradict the positions
-        self.delay = 0.0  # s, by which the velocities are late, if it is too long
-        self._may_be_late = False
+        self.delay = 0.0  # s, by which velocities are late, or, below 0, positions, if too long
+        self._late = 0  # 1 if the velocities may be late, -1 if the positions may
         self._past: Fact | None = None  # the last contradiction that ended
         self.decided: int | None = None  # ns, the stamp of the reading that decided first
         self._candidate = VelocityMeaning.UNDECIDED
@@ -97,8 +97,10 @@ class VelocityField:
         self._turns = 0  # between readings, and what is known of them
         self._path = self._squares = self._velocity_squares = self._products = 0.0
         self._sparse = False  # whether a reading had too few velocities for their mean
-        # Products of what the velocities differ by and what the speed changed by, as travels.
-        self._late = self._off_squares = self._change_squares = 0.0
+        # Products of what the velocities differ by and what the speed changed by, as travels, by
+        # the positions and by the velocities.
+        self._products_of_changes, self._change_squares = [0.0, 0.0], [0.0, 0.0]
+        self._off_squares = 0.0
 
     @property
     def positions_stand(self) -> bool:
@@ -109,7 +111,8 @@ class VelocityField:
     def meaning(self) -> Fact | None:
         """What the velocities seem to be, if they contradict the positions."""
         if not self.contradicts:
-            return Condition.VELOCITIES_LATE(delay=self.delay) if self.delay else None
+            late = Condition.POSITIONS_LATE if self.delay < 0.0 else Condition.VELOCITIES_LATE
+            return late(delay=abs(self.delay)) if self.delay else None
         if self.positions_stand:
             return Condition.POSITIONS_STAND()
         if self.finding is VelocityMeaning.UNKNOWN and not math.isnan(self.factor):
@@ -194,12 +197,18 @@ class VelocityField:
         self._velocity_squares += expected * expected
         self._products += turn * expected
         if len(self._readings) > 2:  # noqa: PLR2004, two travels
-            earlier, origin, _ = self._readings[-3]
+            (earlier, origin, _), (_, _, former), _ = self._readings[-3:]
             off = expected - turn
-            change = (start - origin) * (stamp - before) / (before - earlier) - turn
-            self._late += off * change
             self._off_squares += off * off
-            self._change_squares += change * change
+            turned = (start - origin) * (stamp - before) / (before - earlier)
+            for k, change in enumerate(
+                (
+                    turned - turn,
+                    expected - former * (stamp - before) * 1e-9,
+                )
+            ):
+                self._products_of_changes[k] += off * change
+                self._change_squares[k] += change * change
         if self._turns >= _FEWEST and self._path >= travel:
             self._note_delay()
             least = _ALIGNED * self._squares * self._velocity_squares
@@ -207,7 +216,7 @@ class VelocityField:
                 factor = self._products / self._squares
                 if self._meaning_of(factor) is not VelocityMeaning.UNKNOWN:
                     self._decide(factor)
-            elif not (self._sparse or self._may_be_late) and self._unrelated():
+            elif not (self._sparse or self._late) and self._unrelated():
                 self._decide(math.nan)
             self._begin_block()
         elif self._turns > _READINGS * _STRIDES[-1]:
@@ -233,19 +242,22 @@ class VelocityField:
         return not filtered
 
     def _note_delay(self) -> None:
-        """Say that velocities are late if two blocks in a row show it, until one shows that not.
+        """Say that velocities or positions are late if two blocks in a row show it.
 
-        By a delay, a velocity is between those of the last two travels, or before.
+        One block that does not ends it. By a delay of the velocities, each is between those of
+        the last two travels, or before; by one of the positions, the travel is that of an earlier
+        velocity. A few velocities between two readings are those of a later time than the travel.
         """
-        late, squares = self._late, self._change_squares
-        delay = late / squares * SPAN * 1e-9 if squares else 0.0
-        if delay >= _LATE and late * late >= _EXPLAINED * self._off_squares * squares:
-            if self._may_be_late:
-                self.delay = delay
-            self._may_be_late = True
-            return
-        self._may_be_late = False
-        if self._off_squares < (0.5e9 * _LATE / SPAN) ** 2 * squares:
+        for k, late in enumerate((1, -1)[: 2 - self._sparse]):
+            product, squares = self._products_of_changes[k], self._change_squares[k]
+            delay = product / squares * SPAN * 1e-9 if squares else 0.0
+            if delay >= _LATE and product * product >= _EXPLAINED * self._off_squares * squares:
+                if self._late == late:
+                    self.delay = late * delay
+                self._late = late
+                return
+        self._late = 0
+        if self._off_squares < (0.5e9 * _LATE / SPAN) ** 2 * self._change_squares[0]:
             self.delay = 0.0
 
     def _compare(self, travel: float, stride: int) -> bool:

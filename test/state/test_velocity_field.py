@@ -163,8 +163,11 @@ def test_velocities_that_are_noise_around_zero_are_not_used():
 
 
 @pytest.mark.parametrize('step', [0.0, TURN / 60.0])
-@pytest.mark.parametrize(('delay', 'named'), [(0.0, False), (0.02, False), (0.06, True)])
-def test_velocities_that_are_late_in_unsteady_motion_are_named(delay, named, step):
+@pytest.mark.parametrize(('delay', 'named'), [
+    (0.0, None), (0.02, None), (0.06, Condition.VELOCITIES_LATE),
+    (-0.02, None), (-0.06, Condition.POSITIONS_LATE), (-0.15, Condition.POSITIONS_LATE),
+])  # fmt: skip
+def test_fields_that_are_late_in_unsteady_motion_are_named(delay, named, step):
     rotor = RotorInput(SETTINGS)
     for k in range(5000):
         time = k / 500
@@ -174,9 +177,21 @@ def test_velocities_that_are_late_in_unsteady_motion_are_named(delay, named, ste
         rotor.accept(rotor_bytes(stamp, position=[position], velocity=[speed]), int)
     meaning = rotor.velocity_field.meaning
     assert rotor.last.velocity == pytest.approx(speed)
-    assert (meaning is not None) == named
-    if named:
-        assert meaning == Condition.VELOCITIES_LATE(delay=pytest.approx(delay, abs=3e-3))
+    assert (meaning and meaning.condition) is named
+    if meaning:
+        assert meaning.values == {'delay': pytest.approx(abs(delay), rel=0.05)}
+
+
+@pytest.mark.parametrize('rate', [10, 20, 30, 100])
+def test_velocities_of_a_slow_driver_are_no_sign_of_late_positions(rate):
+    """They are those of the end of the travel."""
+    rotor = RotorInput(SETTINGS)
+    for k in range(20 * rate):
+        time = k / rate
+        position, speed = 40.0 * math.sin(3.0 * time), 120.0 * math.cos(3.0 * time)
+        stamp = SECOND + round(time * SECOND)
+        rotor.accept(rotor_bytes(stamp, position=[position], velocity=[speed]), int)
+    assert rotor.velocity_field.meaning is None
 
 
 @pytest.mark.parametrize('settings', [SETTINGS, replace(SETTINGS, rotor_encoder='single_turn')])
