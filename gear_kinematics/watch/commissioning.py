@@ -120,7 +120,8 @@ class LiveCommissioning:
         forward = float((angle - np.minimum.accumulate(angle)).max())
         backward = float((np.maximum.accumulate(angle) - angle).max())
         strokes = math.degrees(forward), math.degrees(backward)
-        heard = 'the output turned {:.0f}° forward and {:.0f}° backward'.format(*strokes)
+        turned = 'the output turned {:.0f}° forward and {:.0f}° backward'.format(*strokes)
+        heard = '; '.join([turned, *map(str, result.longest.recording.faults)])
         moved = [min(stroke / _STROKE, 1.0) for stroke in (forward, backward)]
         moved.append(any(v.name == 'rotor_encoder' and v.value is not None for v in result.values))
         entries = [Entry('heard', f'{self._count} messages', heard)]

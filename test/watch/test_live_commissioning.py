@@ -97,12 +97,10 @@ def test_parameters_are_those_of_the_gear(monkeypatch):
     assert abs(zero) < 121 * 1e-4  # both start at 0, within the play
 
 
-@pytest.mark.parametrize(('rate', 'known'), [(100, True), (40, False)])
-def test_wraps_are_counted_at_any_speed_or_named_as_too_fast(monkeypatch, rate, known):
+def shown_of(monkeypatch, times, rotor, output):
+    """Give what is shown of angles, rad, at times, s, that come all at once."""
     monkeypatch.setattr(commissioning, '_PAUSE', 0.0)
-    times = np.arange(0.0, 8.0, 1.0 / rate)
-    rotor = 25.0 * math.tau * (1.0 - np.cos(times * math.tau / 8.0))  # up to 123 rad/s
-    stamped = zip(map(int, stamps(times)), np.mod(rotor, math.tau), rotor / -19.0, strict=True)
+    stamped = zip(map(int, stamps(times)), rotor, output, strict=True)
     live = LiveCommissioning(Request(rotor=Channel('/j', 'm'), output=Channel('/j', 'o')))
     live.take([('/j', s, rotor_bytes(s, ('m', 'o'), both)) for s, *both in stamped])
 
@@ -111,9 +109,26 @@ def test_wraps_are_counted_at_any_speed_or_named_as_too_fast(monkeypatch, rate, 
         return live.shown.known > 0.0
 
     wait_until(analysed, 'the analysis')
-    assert (live.shown.known == 1.0) is known
+    return live.shown
+
+
+@pytest.mark.parametrize(('rate', 'known'), [(100, True), (40, False)])
+def test_wraps_are_counted_at_any_speed_or_named_as_too_fast(monkeypatch, rate, known):
+    times = np.arange(0.0, 8.0, 1.0 / rate)
+    rotor = 25.0 * math.tau * (1.0 - np.cos(times * math.tau / 8.0))  # up to 123 rad/s
+    shown = shown_of(monkeypatch, times, np.mod(rotor, math.tau), rotor / -19.0)
+    assert (shown.known == 1.0) is known
     said = 'The gear has the ratio -19' if known else 'the position wraps too fast'
-    assert live.shown.advice.startswith(said)
+    assert shown.advice.startswith(said)
+
+
+def test_what_to_avoid_in_another_recording_is_named(monkeypatch):
+    """The angle of the output is computed, as in messages of a node."""
+    times = np.arange(0.0, 12.0, 0.004)
+    rotor = 80.0 * np.sin(0.7 * times)
+    shown = shown_of(monkeypatch, times, rotor, rotor / 101.0 + 0.3)
+    assert 'record it anew without these faults' in shown.advice
+    assert 'as if it were computed from it' in shown.entries[0].detail
 
 
 def test_ratio_that_was_shown_is_not_lost_with_later_messages(monkeypatch):
