@@ -50,7 +50,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         ):
 
             def ask(gear: str) -> None:
-                answers[gear] = thread.submit(parameters_of, asking, gear)
+                answers[gear] = thread.submit(parameters_of, asking, gear, runs=True)
 
             loads = any(each.preload for each in configs.values())
             found = (lambda _: None) if files else ask

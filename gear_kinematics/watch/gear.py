@@ -77,12 +77,18 @@ def homing_client(node: Node, name: str, actuator: str) -> Any:
     return node.create_client(Trigger, '/'.join(filter(None, (name, actuator, 'home'))))
 
 
-def parameters_of(node: Node, name: str) -> Mapping[str, NodeParameters]:
-    """Ask a gear's node for the parameters of its actuators; empty if it does not answer."""
+def parameters_of(node: Node, name: str, *, runs: bool = False) -> Mapping[str, NodeParameters]:
+    """Ask a gear's node for the parameters of its actuators; empty if it does not answer.
+
+    One that `runs` is waited for until `node` has found it as well.
+    """
     gear, end = GearNode(node, name), time.monotonic() + 2.0 * _PATIENCE
     with SingleThreadedExecutor(context=node.context) as executor:
         executor.add_node(node)
-        while not gear.arm and time.monotonic() < end and name in (graph := Graph(node)).gears:
+        while not gear.arm and time.monotonic() < end:
+            graph = Graph(node)
+            if name not in graph.gears and (not runs or gear.seen):
+                break
             gear.look(graph, shown=False)
             gear.poll()
             executor.spin_once(timeout_sec=0.1)

@@ -144,7 +144,7 @@ def test_the_parameters_of_each_node_that_answers_are_kept(tmp_path):
 def test_a_node_that_is_homed_meanwhile_is_recorded_with_its_first_zero(tmp_path, monkeypatch):
     default, zeros, asked = NodeParameters.load(default_config()), [0.0], Event()
 
-    def answer(_node, _name):
+    def answer(_node, _name, **_):
         found = {'': replace(default, rotor_zero=zeros[-1])}
         asked.set()
         return found
@@ -172,6 +172,18 @@ def test_a_node_that_has_ended_is_not_asked_for_its_parameters(monkeypatch):
     monkeypatch.setattr(gear, 'GearNode', lambda *_: SimpleNamespace(arm={}))  # it has no `look`
     monkeypatch.setattr(gear, 'SingleThreadedExecutor', lambda **_: MagicMock())
     assert gear.parameters_of(SimpleNamespace(context=None), '/gear') == {}
+
+
+def test_a_node_that_this_participant_has_yet_to_find_is_waited_for(monkeypatch):
+    """Two participants of a process find a node up to seconds apart."""
+    found = iter([[], [], ['/gear']])
+    asked = SimpleNamespace(arm={}, seen=False, poll=lambda: None)
+    asked.look = lambda graph, **_: asked.arm.update(dict.fromkeys(graph.gears, 'parameters'))
+    monkeypatch.setattr(gear, 'Graph', lambda _: SimpleNamespace(gears=next(found)))
+    monkeypatch.setattr(gear, 'GearNode', lambda *_: asked)
+    monkeypatch.setattr(gear, 'SingleThreadedExecutor', lambda **_: MagicMock())
+    given = gear.parameters_of(SimpleNamespace(context=None), '/gear', runs=True)
+    assert given == {'/gear': 'parameters'}
 
 
 class NoMessage(contextlib.nullcontext):
