@@ -181,14 +181,19 @@ class ArmValidator:
 
     def report(self, task: Task, reports: Sequence[BagReport]) -> BagReport:
         """Return the report on the arm, from those on its actuators."""
-        errors = {report.actuator: report.error for report in reports if report.error}
-        common = len(errors) == len(reports) and len({*errors.values()}) == 1
-        named = [error if common else f'{name}: {error}' for name, error in errors.items()]
+        errors: defaultdict[str, list[str]] = defaultdict(list)
+        for each in reports:
+            if each.error:
+                errors[each.error].append(each.actuator)
+        named = [
+            error if len(of) == len(reports) else f'{", ".join(of)}: {error}'
+            for error, of in errors.items()
+        ]
         report = BagReport(
             str(task.bag),
             max((each.verdict for each in reports), key=list(Verdict).index),
             task.config,
-            error='; '.join(dict.fromkeys(named)) or None,
+            error='; '.join(named) or None,
             messages=self._messages,
             actuators=tuple(reports),
         )

@@ -182,6 +182,15 @@ def test_outputs_of_another_rotor_are_explained(tmp_path):
     assert 'they are those of' not in said['wrist']
 
 
+def test_actuators_with_the_same_error_are_named_in_one_clause(tmp_path):
+    def wrist(_, joints: Joints) -> list[Joints]:  # the last one
+        return [Joints(*(of[-1:] for of in joints))] if 'wrist' in joints.names else []
+
+    why = 'no outputs in it: gearkin compute writes a bag with them'
+    assert judged(tmp_path, recording(edit=wrist)).error == f'shoulder, elbow: {why}'
+    assert judged(tmp_path, recording(edit=lambda *_: [])).error == why
+
+
 def test_the_command_reports_each_actuator_and_narrows_to_one(tmp_path):
     changed = change('position', 'elbow', lambda x: x + 2e-9)
     messages = recording(edit=lambda k, joints: changed(joints) if k == ALL else [joints])
