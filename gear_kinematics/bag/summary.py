@@ -1,7 +1,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The contents of a recording: its topics, with their rates, gaps and roles."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
@@ -9,8 +11,13 @@ import numpy as np
 from gear_kinematics.bag.errors import BagError, DamagedBagError
 from gear_kinematics.bag.reading import Bag, ReportProgress
 from gear_kinematics.bag.roles import find_rotor_topic, joints_on
-from gear_kinematics.wire.cdr import SECOND, header_stamp
-from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError, Rejection
+from gear_kinematics.wire.cdr import SECOND, MalformedMessageError, header_stamp
+from gear_kinematics.wire.joint_reader import (
+    JointReader,
+    RejectedInputError,
+    Rejection,
+    joints_of,
+)
 from gear_kinematics.wire.topics import (
     BODY_POSES,
     JOINT_STATE,
@@ -44,7 +51,9 @@ class TopicSummary(NamedTuple):
     mean_rate: float | None  # mean rate, Hz; it differs from `rate` where messages come in bursts
     gaps: int  # periods longer than five median ones
     longest_gap: float  # longest of these periods, s
-    of_others: int = 0  # messages without the rotor's joint, which rate and gaps leave out
+    of_others: int = 0
+    """Messages without the rotor's joint or, on another topic, that of the first message; rate and
+    gaps leave them out."""
 
 
 class Summary(NamedTuple):
@@ -73,25 +82,29 @@ def summarise(
         if rotor_topic:
             raise
         unclear = str(error).removeprefix(f'{bag.path}: ')
-    others, reader = 0, None
-    if rotor and (named := next(iter(joints or joints_on(bag, [rotor])[rotor]), '')):
-        reader = JointReader(named)
+    others = Counter[str]()
+    readers: dict[str, JointReader | None] = {}
+    if any(joints[:1]):
+        readers[rotor] = JointReader(joints[0])
     times = {topic: list[tuple[int, int]]() for topic in bag.topics}
     ends: list[int] = []
     stamped = {topic for topic, kind in bag.topics.items() if kind in _WITH_STAMPS} - bag.not_cdr
+    states = {topic for topic in stamped if bag.topics[topic] == JOINT_STATE}
     try:
         for batch in bag.batches(bag.topics, progress, any_encoding=True):
             for topic, received, data in batch:
-                if topic == rotor and not _has_joint(reader, data):
-                    others += 1
-                    continue
+                if topic in states:
+                    if topic not in readers:
+                        readers[topic] = _reader_of_first_joint(data)
+                    if not _has_joint(readers[topic], data):
+                        others[topic] += 1
+                        continue
                 stamp = header_stamp(data) if topic in stamped else 0
                 times[topic].append((received if stamp in _UNSET else stamp, received))
             ends = [*ends[:1], batch[0][1], batch[-1][1]]
     except DamagedBagError as error:
         damage = str(error)
-    states = [t for t in stamped if (times[t] or t == rotor) and bag.topics[t] == JOINT_STATE]
-    there = joints_on(bag, states)
+    there = joints_on(bag, [topic for topic in states if times[topic] or others[topic]])
     topics = [
         _summary(
             name,
@@ -99,7 +112,7 @@ def summarise(
             'rotor' if name == rotor else _PARTS.get(base_name(name), ''),
             there.get(name, []),
             times[name],
-            others if name == rotor else 0,
+            others[name],
         )
         for name, kind in bag.topics.items()
     ]
@@ -107,6 +120,15 @@ def summarise(
     topics.sort(key=lambda topic: (order.index(topic.part), topic.name))
     duration = (max(ends) - min(ends)) / SECOND if ends else 0.0
     return Summary(duration, tuple(topics), unclear, damage)
+
+
+def _reader_of_first_joint(data: bytes) -> JointReader | None:
+    """Return a reader of the first joint in a message, if there is one that can be read."""
+    with suppress(MalformedMessageError, RejectedInputError, IndexError):
+        reader = JointReader(joints_of(data)[0])
+        reader.read(data)
+        return reader
+    return None
 
 
 def _has_joint(reader: JointReader | None, data: bytes) -> bool:
