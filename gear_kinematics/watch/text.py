@@ -85,7 +85,7 @@ def show(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> Non
 def rows_of(view: View) -> list[Entry]:
     """Convert a view to rows."""
     state = Entry(view.node or 'gearkin watch', view.state, view.message, view.tone)
-    arm = '   '.join(f'{each.name} {each.value}' for each in view.arm)
+    arm = '   '.join(line([each]) for each in view.arm)
     return [state, *[Entry('all', arm)] * bool(arm), *view.values, *view.diagnostics]
 
 

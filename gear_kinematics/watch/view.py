@@ -120,9 +120,12 @@ def _choice(gear: GearNode) -> Entry:
 def _angles(gear: GearNode) -> Iterator[Entry]:
     """Give the output angle of each actuator of an arm, as in the latest message of this gear."""
     for name, parameters in gear.arm.items() if len(gear.arm) > 1 else ():
-        output = gear.joint(topics.OUTPUT_STATE, parameters.output_name)
-        angle = _degrees(output.position, 1) if output else 'none'
-        yield Entry(name, angle, tone=_freshness(output, parameters) if output else 'stale')
+        if output := gear.joint(topics.OUTPUT_STATE, parameters.output_name):
+            tone = _freshness(output, parameters)
+            old = f'{output.age:.1f} s ago' if tone else ''
+            yield Entry(name, _degrees(output.position, 1), old, tone)
+        else:
+            yield Entry(name, 'none', tone='stale')
 
 
 def _state_of(gear: GearNode | None, running: Collection[str]) -> tuple[str, str]:

@@ -308,13 +308,14 @@ def test_all_angles_of_an_arm_are_in_a_row():
     view = view_of(gear, [gear])
     assert view.arm == (
         Entry('shoulder', '90.0°'),
-        Entry('elbow', '0.0°', tone='stale'),
+        Entry('elbow', '0.0°', '90.0 s ago', 'stale'),
         Entry('hand', 'none', tone='stale'),
     )
     label = '/left/gear_state_publisher shoulder'
     assert (view.node, [node.name for node in view.nodes]) == (label, [label])
     said = line(rows_of(view))
-    assert said.startswith(f'{label} connected; all shoulder 90.0°   elbow 0.0°   hand none; ')
+    angles = 'shoulder 90.0°   elbow 0.0° (90.0 s ago)   hand none'
+    assert said.startswith(f'{label} connected; all {angles}; ')
     terminal = Console(file=io.StringIO(), force_terminal=True, width=200)
     both = replace(view, nodes=(*view.nodes, Entry('/left/gear_state_publisher elbow', '')))
     show(SimpleNamespace(view=both), terminal, iter((False, True)).__next__)
