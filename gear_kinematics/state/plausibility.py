@@ -91,6 +91,7 @@ class Plausibility:
         self._former: Reading = _UNKNOWN
         self._moving: Reading = _UNKNOWN  # the last one before a standstill
         self._stamp = 0  # ns, of the last believed reading with the last position
+        self._repeated = 0  # ns, the last stamp of several readings
         self.noise = 2.0 * COARSEST
         """rad, of a reading: twice the resolution of the encoder, which is the smallest step of
         all, or difference between two in a row; at least `FLOOR`."""
@@ -194,6 +195,7 @@ class Plausibility:
             span = stamp - self._stamp or span
         if not span:
             self._last = position, changed, last_step + step, last_span
+            self._repeated = stamp
         else:
             self._former, self._last = last, (position, stamp, step, span)
         self._stamp = stamp
@@ -223,6 +225,8 @@ class Plausibility:
         if not (former_span and last_span and span and moves):
             return False
         if self.period:
+            if self._former[1] <= self._repeated:  # a part of the last step may be yet to come
+                return bool(self.wraps.period)
             return self.wraps.check((former_step, last_step, step), (former_span, last_span, span))
         speeds = former_step / (former_span * 1e-9), step / (span * 1e-9)
         return self.wraps.note(last_step, position, last_span * 1e-9, speeds, jump=False)

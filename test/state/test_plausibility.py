@@ -254,6 +254,17 @@ def test_positions_next_to_zero_are_no_numbers_of_single_precision():
     assert rotor.plausibility.beyond_limits is None
 
 
+@pytest.mark.parametrize('count', [1, 2, 3.5, 5])
+def test_readings_of_one_stamp_do_not_make_a_range_look_like_another(count):
+    """As of a clock that steps more seldom than a driver at 1 kHz sends."""
+    rotor = RotorInput(replace(SINGLE, max_rotor_speed=200.0))
+    for k in range(5000):
+        position = math.remainder(0.15 * k, TURN)
+        stamp = START + round(k // count * count * 1_000_000)
+        rotor.accept(rotor_bytes(stamp, position=[position]), int)
+    assert rotor.plausibility.jumped is None
+
+
 @pytest.mark.parametrize('rate', [10, 20, 50, 1000])
 def test_machine_with_a_quick_return_or_a_drive_that_restarts_does_not_wrap(rate):
     times = np.arange(40 * rate) / rate
