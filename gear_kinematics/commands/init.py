@@ -101,7 +101,8 @@ def run(options: argparse.Namespace) -> ExitCode:
             f'{e.name} {f"is {shown(e.value)}" if e.value else _ASSUMED}: {e.evidence}'
             for e in kind
         ]
-        for question in (*told, *questions(data, received, joint, ratio, limits)):
+        asked = questions(data, received, joint, ratio, limits, steps=True)
+        for question in (*told, *asked):
             complain(f'{topic}: {f"{printable(joint)}: " * options.arm}{question}')
     return ExitCode.DONE
 

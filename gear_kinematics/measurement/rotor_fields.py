@@ -2,6 +2,7 @@
 """What seems wrong with a driver's messages: sizes, stamps, and units of velocity and effort."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -11,12 +12,15 @@ from gear_kinematics.measurement.commissioning.analysis import Value, encoder_ki
 from gear_kinematics.measurement.commissioning.encoder_range import find_range
 from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.measurement.sentences import Observation, Observed
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.effort_field import EffortField, questioned
+from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.state.velocity_field import VelocityField, VelocityMeaning
 from gear_kinematics.state.wraps import too_seldom
 from gear_kinematics.wire.batches import Array, JointStates, decode_joint_states
 from gear_kinematics.wire.cdr import SECOND
+from gear_kinematics.wire.joint_reader import Rejection
 
 MOST = 500_000  # messages that are examined; they take about 200 bytes each
 _FEWEST = 10
@@ -31,6 +35,8 @@ def questions(
     joint: str,
     ratio: Fraction | None = None,
     limits: tuple[float, float] | None = None,
+    *,
+    steps: bool = False,
 ) -> Iterator[Observed | Fact]:
     """Yield what seems to be wrong with the fields of n messages.
 
@@ -41,6 +47,8 @@ def questions(
         ratio: gear ratio if known, to recognise velocities of the output.
         limits: of the rotor's speed, rad/s, and acceleration, rad/s², up to which its turns are
             to be counted.
+        steps: whether to name steps of the positions, too, that a rotor cannot make by the default
+            limits.
     """
     states = decode_joint_states(data, joint)
     stamp = _stamps(states, received)
@@ -53,13 +61,16 @@ def questions(
     stamp, values = _in_order(states, stamp)
     if len(stamp) < _FEWEST:
         return
-    if not np.any(values[:, 0] % 1.0) and len(np.unique(values[:, 0])) >= _FEWEST:
+    counts = not np.any(values[:, 0] % 1.0) and len(np.unique(values[:, 0])) >= _FEWEST
+    if counts:
         yield Observation.COUNTS()
     values[:, 0], (period, _) = _unwrapped(stamp, values[:, 0])
-    steps = np.abs(np.diff(values[:, 0]))
+    if steps and not counts:
+        yield from _impossible_steps(data, received, joint, period)
+    sizes = np.abs(np.diff(values[:, 0]))
     given = values[np.isfinite(values[:, 1]), 1]
     velocities = VelocityField(float(1 / ratio) if ratio else np.nan)
-    noise = 2.0 * float(np.min(steps[steps > _EQUAL], initial=1.0))
+    noise = 2.0 * float(np.min(sizes[sizes > _EQUAL], initial=1.0))
     velocities.believed(stamp, values, noise)
     absent = len(given) and not given.any() and np.ptp(values[:, 0]) > _MOVED
     if absent:
@@ -77,6 +88,19 @@ def questions(
     efforts = values[np.isfinite(values[:, 2]), 2]
     if question := questioned(float(np.max(np.abs(efforts), initial=0.0))):
         yield question
+
+
+def _impossible_steps(
+    data: Sequence[bytes], received: Sequence[int], joint: str, period: float
+) -> Iterator[Fact]:
+    """Yield that the encoder jumped, or else that readings were implausible, by default limits."""
+    parameters = replace(NodeParameters.load(), rotor_joint=joint, rotor_encoder_range=period)
+    rotor = RotorInput(parameters)
+    rotor.accept_batch(data, received)
+    if jumped := rotor.plausibility.jumped:
+        yield jumped
+    elif (count := rotor.rejected[Rejection.IMPLAUSIBLE]) and not rotor.plausibility.beyond_limits:
+        yield Condition.REJECTED(counts={Rejection.IMPLAUSIBLE: count})
 
 
 def kind_of_encoder(data: Sequence[bytes], received: Sequence[int], joint: str) -> list[Value]:
@@ -118,4 +142,4 @@ def recorded_questions(bag: Bag, topic: str, joint: str) -> Iterator[Observed | 
                 break
     except DamagedBagError:
         pass  # the reader of the recording reports it
-    yield from questions(data, received, joint)
+    yield from questions(data, received, joint, steps=True)

@@ -73,6 +73,27 @@ def test_stamps_that_repeat_are_named(tmp_path):
     assert asked == Observation.STAMPS_REPEAT(count=792, total=800)
 
 
+@pytest.mark.parametrize('wrap', [0.0, math.tau, 25.0])
+@pytest.mark.parametrize('readings', [0, 2, 300])
+def test_steps_that_no_rotor_can_make_are_named(readings, wrap, tmp_path):
+    """As of a corrupt reading, or a drive that restarts; wraps of the encoder are none."""
+    positions = ROTOR.copy()
+    positions[400 : 400 + readings] += 11.0 if wrap else 80.0
+    wrapped = np.remainder(positions + wrap / 2, wrap) - wrap / 2 if wrap else positions
+    rotor = Samples(stamps(TIMES), wrapped)
+    path = write_recording(tmp_path / 'bag', rotor, Samples(stamps(TIMES), OUTPUT))
+    with Bag(path) as bag:
+        told = [*map(str, recorded_questions(bag, '/rotor_state', 'rotor'))]
+    if not readings:
+        assert told == []
+    elif wrap:
+        assert len(told) <= 1
+    else:
+        (said,) = told
+        jumps = "the rotor's encoder jumped by -80 rad at"
+        assert said.startswith('rejected: implausible 2' if readings < 3 else jumps)
+
+
 @pytest.mark.parametrize('counts', [16384.0, 100.0])
 def test_counts_of_an_encoder_are_named(counts):
     """They are no rad, unlike positions with one decimal, and those of a rotor at rest."""
