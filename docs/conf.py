@@ -40,7 +40,7 @@ _WIDTH = 92  # characters
 _UNUSABLE = 2  # exit code
 logging.getLogger('numexpr').setLevel(logging.WARNING)  # it says how many processors there are
 
-_FOLDERS = ('bags', 'benchmark', 'docs', 'docs/reference', 'docs/reference/gearkin')
+_FOLDERS = ('bags', 'benchmark', 'docs', 'docs/reference', 'docs/reference/gearkin', 'findings')
 
 project = 'gear_kinematics'
 root_doc = 'docs/index'
