@@ -5,8 +5,8 @@
 # Expected: the goal that is given, as the controller positions rotary stages to 0.0001° and takes counts as units. What
 # happens: goals, positions to be defined and limits are written with six significant digits, so that a goal is off by
 # up to 5 counts from a million on, and by up to 0.0005° from 100° on, without a warning; the position that is read has
-# all digits. A ParkerGV6 has 4000 counts per revolution in its documentation, but the angle of one turn is 1.8°, that
-# of a gear of 1:200, which is in no documentation. An adapter that keeps what is sent stands in for the controllers.
+# all digits. A ParkerGV6 has 4000 counts per revolution by its docstrings, but the angle of one turn is 1.8°, that of a
+# gear of 1:200, which only a comment in the source tells. An adapter that keeps what is sent replaces the controllers.
 # For us: write 'PA' with all digits, by axis.write(); compute angles from counts yourself.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
