@@ -1,12 +1,12 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# elliptec 0.1.0: a stage sent to the angle it reads turns back at half of its positions, and 360 times 1° are 359.8°
+# elliptec 0.1.0: a stage that is sent to the angle that it reads turns back at half of its positions.
 #
-# Expected: a stage that is sent to the angle at which it stands stays there, and 360 turns of 1° are one turn to within
-# half a pulse each, as their remainders cancel. What happens: an angle that is read is rounded to 0.0001°, and one that
-# is sent is cut off to a whole pulse. So a stage of 143360 pulses per turn, as Thorlabs has them, turns back by one
-# pulse, 0.0025°, at 71361 of them, and 1° is 398 of 398.22 pulses each time. A stub takes the place of the serial line.
-# For us: give angles of whole pulses plus a quarter of one, and absolute ones.
+# Expected: a stage that is sent to the angle at which it stands stays there. What happens: an angle that is read is
+# rounded to 0.0001°, and one that is sent is cut off to a whole pulse instead of rounded. So a stage of 143360 pulses
+# per turn, as Thorlabs has them, turns back by one pulse, 0.0025°, at 71361 of them. A stub takes the place of the
+# serial line.
+# For us: add half a pulse, 0.00126°, to each angle that is sent.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
 set -eu
@@ -31,8 +31,6 @@ class Stage:
             return {'Range': 360, 'Pulse/Rev': PULSES, 'Serial No.': '1', 'Motor Type': 18}
         if instruction == b'ma':
             self.position = message
-        elif instruction == b'mr':
-            self.position += message
         return '0', 'PO', self.position
 
 
@@ -45,9 +43,9 @@ for stage.position in range(PULSES):
     assert stage.position in (before, before - 1)
     turned += stage.position != before
 print('sent to the angle that is read:', turned, 'of', PULSES, 'positions turn back')
-stage.position = 0
-for _ in range(360):
-    rotator.shift_angle(1.0)
-print('360 times 1°:', rotator.get_angle(), '°')
-assert turned == 71361 and stage.position == 360 * 398
+for stage.position in range(PULSES):
+    before = stage.position
+    rotator.set_angle(rotator.get_angle() + 180 / PULSES)
+    assert stage.position == before
+assert turned == 71361
 PYTHON
