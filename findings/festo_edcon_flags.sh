@@ -1,13 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# festo-edcon 1.0.3: over Modbus, each flag and each byte of a drive is read as None, also that its homing is valid.
+# festo-edcon 1.0.3: over Modbus, each flag and unsigned byte of a drive is read as None, also that its homing is valid.
 #
 # Expected of read_pnu(): True for the flag "Actual referencing is valid", and 1 for the byte "Active gear factor
 # index". What happens: a Modbus register has two bytes, and the library keeps both; after it has taken the first it
 # unpacks the value once more from the two, which fails, so that it gives None. This concerns the 846 of the 3548
 # parameters in its table that are of the types BOOL and USINT. An error is logged, but None counts as false in an `if`,
-# so that a drive that is homed is homed again. A torque of 16 bits is read right. A stub takes the place of the Modbus
-# client, with the registers of its mailbox.
+# so that a drive that is homed is homed again. A signed byte and a torque of 16 bits are read right. A stub takes the
+# place of the Modbus client, with the registers of its mailbox.
 # For us: read flags and bytes by read_pnu_raw()[0].
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
