@@ -136,7 +136,7 @@ class GearState:
 
     def encoder(self, data: JointMessage, now: Callable[[], int]) -> Sequence[ErrorSample]:
         """Process the next message of the output's encoder; see `OutputEncoder.accept`."""
-        return self.output_encoder.accept(data, now)
+        return self.output_encoder.accept(data, now, self.input.last)
 
     def encode(self) -> list[tuple[str, bytes]]:
         """Return topic and message of what is published on the chosen topics for a message."""

@@ -15,7 +15,12 @@ from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.slip import SlipWatch
 from gear_kinematics.state.turn_reference import TurnReference
 from gear_kinematics.wire.cdr import SECOND
-from gear_kinematics.wire.joint_reader import JointMessage, JointReader, RejectedInputError
+from gear_kinematics.wire.joint_reader import (
+    CLOCK_RESET,
+    JointMessage,
+    JointReader,
+    RejectedInputError,
+)
 
 
 def measured_angle(parameters: NodeParameters, position: Any) -> Any:
@@ -45,19 +50,24 @@ class OutputEncoder:
         self.parameters = parameters
         self._reader = JointReader(parameters.output_encoder_joint)
         self._ratio = parameters.gear.gear_ratio
+        longest = round(parameters.transmission_error_max_gap * SECOND)
+        self._farthest = CLOCK_RESET + longest  # ns, between the latest stamps of both encoders
         self.comparison.configure(
-            max_gap=round(parameters.transmission_error_max_gap * SECOND),
+            max_gap=longest,
             travel=parameters.transmission_error_travel,
         )
         self.slip_watch = SlipWatch(parameters)
         self.reference = self._turn_reference if parameters.absolute else None
         self._segment: int | None = None
 
-    def accept(self, data: JointMessage, now: Callable[[], int]) -> Sequence[ErrorSample]:
+    def accept(
+        self, data: JointMessage, now: Callable[[], int], latest: RotorSample | None = None
+    ) -> Sequence[ErrorSample]:
         """Process the next message; returns the errors that have become known, in order.
 
-        A message without a stamp gets the time of the clock `now`, ns. RejectedInputError, which
-        is counted, is raised if the message has no valid angle.
+        A message without a stamp gets the time of the clock `now`, ns. If the `latest` sample of
+        the rotor is known, a stamp far from its stamp is that of another clock, and not compared.
+        RejectedInputError, which is counted, is raised if the message has no valid angle.
         """
         self.received += 1
         self._compare_one_segment()
@@ -66,8 +76,12 @@ class OutputEncoder:
         except RejectedInputError as rejection:
             self.rejected[str(rejection)] += 1
             raise
+        stamp = stamp or now()
+        if latest and abs(stamp - latest.stamp) > self._farthest:
+            self.comparison.unmatched['no rotor state of about the same time'] += 1
+            return ()
         angle = measured_angle(self.parameters, position)
-        return self._note(self.comparison.add_measured(stamp or now(), angle))
+        return self._note(self.comparison.add_measured(stamp, angle))
 
     def follow(
         self, sample: RotorSample, correction: Correction | None = None

@@ -317,3 +317,24 @@ def test_a_delay_about_the_start_and_stop_of_the_shaft_gives_no_wrong_turn(delay
             angle = bench.turn(output, error=late - output)
             assert not known or angle == pytest.approx(output, abs=1e-9)
         assert bench.rotor.referenced
+
+
+@pytest.mark.parametrize('ahead', [0, 2, -3, 37])
+@pytest.mark.parametrize('changes', [{}, {'rotor_encoder': 'single_turn'}])
+def test_encoder_of_another_clock_finds_no_turns(changes, ahead):
+    """Where it has stood before a motion, as the rotor stands after that."""
+    gear = GearState(
+        replace(MULTI, max_rotor_speed=250.0, transmission_error_max_gap=0.1, **changes)
+    )
+    for k in range(1200):
+        turned = 90.0 * min(max(k - 100, 0), 60) / 60  # in 0.6 s, after a second
+        stamp = START + k * SECOND // 100
+        position = math.remainder(turned, math.tau) if changes else turned
+        gear.rotor(rotor_bytes(stamp, position=[position]), int)
+        of_output = rotor_bytes(stamp + ahead * SECOND, ['shaft'], [turned / -19.0])
+        gear.encoder(of_output, int)
+    gear.rotor(rotor_bytes(START + 12 * SECOND, position=[position]), int)
+    assert gear.referenced is not bool(ahead)
+    if gear.referenced:
+        turns, angle = gear.sample.position
+        assert math.tau * turns + angle == pytest.approx(90.0)
