@@ -49,6 +49,10 @@ class FindingCause(Enum):
         'from a certain moment on, all outputs differ, as if a parameter had been changed while '
         'the node ran' + _FIRST
     )
+    CHANGED_TO_GIVEN = (
+        'up to a certain moment, all outputs differ, as if a parameter had been changed to the '
+        'given one while the node ran[, the first right one at {moment}]'
+    )
     OTHER_JOINT = (
         'the outputs are not those of {joint}: they are those of {other}; repeat with '
         '--joint {other}'

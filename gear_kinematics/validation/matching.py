@@ -202,6 +202,7 @@ class OutputTopic:
         self._gear, self._tolerances, self._changes = expectation
         self._wrong = 0
         self._latest_wrong = Occurrences()  # since the latest right output
+        self._until_right = 0, 0  # wrong ones before the first right one, and its stamp, ns
         self._right: tuple[float, ...] = ()  # rotor angles of the first and latest right one, rad
         self._wrong_without_velocity = 0  # besides, if velocities were expected
         self._without_velocity: Array | bool = False  # messages of the latest batch, (n,)
@@ -263,11 +264,14 @@ class OutputTopic:
             errors.update(field, samples['stamp'], angle)
             wrong |= np.abs(field.error) > errors.tolerance
             wrong[field.one_sided] = True
-        self._wrong += int(np.count_nonzero(wrong))
         if len(right := np.flatnonzero(~wrong)):
             self._latest_wrong = Occurrences()
+            if not self._right:
+                stamp = int(samples['stamp'][right[0]])
+                self._until_right = self._wrong + int(right[0]), stamp
             first, latest = angle[right[[0, -1]]].tolist()
             self._right = self._right[0] if self._right else first, latest
+        self._wrong += int(np.count_nonzero(wrong))
         self._latest_wrong.add(samples['stamp'][right[-1] + 1 if len(right) else 0 :])
         self._wrong_without_velocity += int(np.count_nonzero(self._without_velocity & ~wrong))
         self.series.update(samples['stamp'], angle, *fields)

@@ -29,7 +29,7 @@ Array = NDArray[Any]
 Bounds = tuple[Array, Array]
 
 _AHEAD = 1000  # samples that are compared with a message that has no stamp in common with any
-_CHANGED = 10  # least number of wrong outputs that begin at one moment and last to the end
+_CHANGED = 10  # least number of outputs that are all wrong before or after one moment
 _NEAR = 500_000_000  # ns between the reception of an input and the stamp of its output
 
 STATE_UNITS = dict(zip(FIELDS, ('rad', 'rad/s', 'N·m'), strict=True))
@@ -176,11 +176,15 @@ class OutputState(JointStateTopic):
 
     def causes(self) -> Iterator[Finding]:
         """Yield what explains errors of the angle, or else of the velocity and the effort."""
-        since = self._latest_wrong
+        since, (before, first_right) = self._latest_wrong, self._until_right
         # Other errors, such as another ratio, also leave outputs right, but at one angle only.
-        if _CHANGED <= self._wrong == since.count and len({*self._right}) > 1:
-            yield Finding(FindingCause.CHANGED, stamp=since.first, explains=True)
-            return
+        if self._wrong >= _CHANGED and len({*self._right}) > 1:
+            if self._wrong == since.count:
+                yield Finding(FindingCause.CHANGED, stamp=since.first, explains=True)
+                return
+            if self._wrong == before:
+                yield Finding(FindingCause.CHANGED_TO_GIVEN, stamp=first_right, explains=True)
+                return
         if not self.errors[0].report().passed:
             if found := diagnose(self._gear, self.fit, self._tolerances.angle):
                 yield found

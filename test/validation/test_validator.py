@@ -504,11 +504,15 @@ def test_a_parameter_that_was_changed_while_the_node_ran_is_the_likely_cause(
     before, after = (answered(each, rotor) for each in (config, replace(config, **change)))
     begin = rotor[200][1]
     messages = [m for m in before if m[1] < begin] + [m for m in after if m[1] >= begin]
-    report = validate(messages, config, strict=True)
-    assert not report.passed
-    [cause] = [finding for finding in report.findings if finding.explains]
     stamp = replaying.stamp_of(replaying.decode(rotor[200][2], JOINT_STATE))
-    assert (cause.cause, cause.stamp) == (FindingCause.CHANGED, stamp)
+    for given, expected in (
+        (config, FindingCause.CHANGED),
+        (replace(config, **change), FindingCause.CHANGED_TO_GIVEN),
+    ):
+        report = validate(messages, given, strict=True)
+        assert not report.passed
+        [cause] = [finding for finding in report.findings if finding.explains]
+        assert (cause.cause, cause.stamp) == (expected, stamp)
     assert validate(before, config).passed
 
 
