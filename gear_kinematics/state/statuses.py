@@ -148,7 +148,7 @@ class Condition(Enum):
     DISAGREES = (
         ERROR,
         'output_encoder disagrees: ' + _BOTH,
-        f'Check whether an encoder has slipped; {_HOME_IT}, or restart the node.',
+        f'Check the directions of both encoders, and for slips; {_HOME_IT}, or restart the node.',
     )
     NOT_CHECKED = OK, 'reference not checked', ''
     WERE_UNKNOWN = WARN, 'turns unknown for {count} inputs', 'Do not use the outputs of that time.'
@@ -169,11 +169,15 @@ class Condition(Enum):
         _PEAK_TO_PEAK,
         'Check the gear and its encoders, or raise transmission_error_limit.',
     )
-    BEYOND_ANY_GEAR = WARN, _PEAK_TO_PEAK, _HOME
+    BEYOND_ANY_GEAR = (
+        WARN,
+        _PEAK_TO_PEAK,
+        f'Check gear_ratio, and the directions and zeros of both encoders; {_HOME_IT}.',
+    )
     SLIPPED = (
         WARN,
         'the output has slipped by {angle_deg:.2f}° against the rotor, at {time:.3f} s',
-        f'Check the couplings and the zeros of both encoders; {_HOME_IT}.',
+        f'Check the couplings, and the directions and zeros of both encoders; {_HOME_IT}.',
     )
     FITS_NO_LONGER = WARN, 'calibration no longer fits', 'Calibrate the gear again.'
     DIRECTION_NOT_CHECKED = OK, 'direction not checked', ''
