@@ -28,6 +28,7 @@ SAMPLES = 60
 """Errors of a block, at least, of which a third is further from both ends than the longest delay.
 The true error lies outside of the range of n independent ones with a probability of 2^(1 - n),
 whatever the distribution of the noise (both sides of its median are equally likely): 2e-6 here."""
+_ALIKE = 1.5  # greatest ratio of the budgets of two blocks at rest
 
 
 def range_fault(
@@ -205,6 +206,9 @@ class TurnReference:
         """Forget all errors, as the count has changed."""
         self._block = ErrorBlock()
         self.decision: Decision | None = None  # the latest on the present count
+        self._refuted = math.inf
+        """The least budget, rad, that could tell the turns apart and did not explain the distance:
+        that of faster motion explains more."""
         self.disagreement: Fact | None = None
         """How the encoder contradicts the present count; it stays until a block that can tell the
         turns apart agrees, as one in fast motion may agree with anything."""
@@ -226,9 +230,12 @@ class TurnReference:
                 self.decision = decision
                 if decision.disagreement or decision.budget < decision.margin:
                     self.disagreement = decision.disagreement
-                if not referenced and decision.unambiguous:
-                    self._refer(decision)
-                    return ()
+                if decision.unambiguous:
+                    if not referenced and decision.budget <= _ALIKE * self._refuted:
+                        self._refer(decision)
+                        return ()
+                elif decision.budget < decision.margin:
+                    self._refuted = min(self._refuted, decision.budget)
         return samples if referenced else ()
 
     def _refer(self, decision: Decision) -> None:

@@ -338,3 +338,16 @@ def test_encoder_of_another_clock_finds_no_turns(changes, ahead):
     if gear.referenced:
         turns, angle = gear.sample.position
         assert math.tau * turns + angle == pytest.approx(90.0)
+
+
+@pytest.mark.parametrize('apart', [0.0, 0.8])
+def test_motion_does_not_find_turns_that_the_rest_before_it_refutes(apart):
+    """By a zero that is off by 0.8 of the angle between two turns; a delay could explain 0.2."""
+    gear = GearState(replace(SINGLE, max_rotor_speed=250.0, transmission_error_max_gap=0.1))
+    for k in range(1200):
+        turned = 13.0 * max(k - 200, 0) / 100
+        stamp = START + k * SECOND // 100
+        gear.rotor(rotor_bytes(stamp, position=[math.remainder(turned, math.tau)]), int)
+        measured = (turned + apart * math.tau) / -19.0
+        gear.encoder(rotor_bytes(stamp, ['shaft'], [measured]), int)
+    assert gear.referenced is not bool(apart)
