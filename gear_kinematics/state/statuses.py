@@ -46,7 +46,7 @@ class Condition(Enum):
     JUMPED = (
         ERROR,
         "the rotor's encoder jumped by {angle:.4g} rad at {time:.3f} s",
-        'Check whether the drive restarted, and the encoder; if it wraps, set rotor_encoder.',
+        'Check whether the drive restarted or repeats readings; if they wrap, set rotor_encoder.',
     )
     WRAPS = (
         ERROR,

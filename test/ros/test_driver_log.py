@@ -104,7 +104,7 @@ def test_jump_of_the_encoder_is_one_warning():
             graph.hear(1.0 + 0.001 * number, 5.0 + 100.0 * (number > 3))
     graph.driver_log.update(1, 0.0)
     graph.driver_log.update(1, 0.0)
-    said = "the rotor's encoder jumped by 100 rad at 1.004 s. Check whether the drive restarted, "
+    said = "the rotor's encoder jumped by 100 rad at 1.004 s. Check whether the drive restarted "
     assert [(level, text[: len(said)]) for level, text in graph.logged] == [('W', said)]
 
 
