@@ -65,6 +65,8 @@ class SlipWatch:
     def add(self, sample: ErrorSample) -> None:
         """Take the next error of known turns."""
         errors = self._errors
+        if errors and sample.stamp < errors[-1].stamp:  # the clock was set back
+            errors.clear()
         errors.append(sample)
         # Each third lasts as long as the longest delay, so that all speeds are known that a
         # delayed error in the middle can be of.

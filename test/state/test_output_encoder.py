@@ -220,6 +220,14 @@ def test_slip_stays_a_warning_after_the_window_has_passed(degrees, speed):
         rest(bench, more, 500, math.radians(degrees), speed=speed)
 
 
+def test_slip_is_found_after_the_clock_was_set_back(bench):
+    for k in range(3000):
+        stamp = START + k * MS - 60 * SECOND * (k > 500)
+        bench.measure(stamp, 0.1 * (k > 2000))
+        bench.turn(stamp, 0.0)
+    assert bench.encoder.slip_watch.slip is not None
+
+
 @pytest.mark.parametrize('drift', [0.0, 2e-4, -2e-4])
 def test_slow_drift_in_steady_motion_is_a_slip(drift, bench):
     for k in range(4000):
