@@ -31,6 +31,7 @@ class Parameter:
             if self.kind is str and kind in {int, float} and math.isfinite(value):
                 texts = dict.fromkeys((str(Fraction(str(value))), str(value)))
                 quoted = f'; quote it: {" or ".join(map(repr, texts))}'
+                quoted += f', and twice after -p: "{name}:={str(value)!r}"'
             return f'{name} must be of type {self.kind.__name__}, not {value!r}{quoted}'
         if isinstance(value, list) and not all(isinstance(item, self.items) for item in value):
             what = 'strings' if self.items is str else 'numbers with a decimal point'

@@ -124,7 +124,7 @@ REFUSED = [
     ('branches', 'a', ('list',)),
     ('branches', [1, 2], ('strings',)),
     ('gear_ratio', '19:1', ('an integer, a fraction or a decimal, such as -19',)),
-    ('gear_ratio', 50.5, ("; quote it: '101/2' or '50.5'",)),
+    ('gear_ratio', 50.5, ("'101/2' or '50.5', and twice after -p: \"gear_ratio:='50.5'\"",)),
     ('rotor_joint', 1, ("; quote it: '1'",)),
     ('rotor_direction', 0, ('-1', '1', '2')),
     ('rotor_zero', math.inf, ('1e+15',)),
