@@ -74,7 +74,7 @@ def describe_missing(joint: str, data: bytes) -> str:
     """List the joints of a JointState without the wanted one; '' stands for the only one."""
     names = joints_of(data)
     if not joint:
-        there = f'not a single joint in it; there are: {listed(names)}'
+        there = f'more than one joint in it; there are: {listed(names)}'
         return there if names else 'no joint in it'
     return f'no joint {joint!r} in it{among(joint, names)}'
 

@@ -180,7 +180,7 @@ def test_stamp_is_the_time_that_its_parts_mean(seconds, nanoseconds, stamp):
         ),
         ('rotor', ['wheel'], "no joint 'rotor' in it; there are: wheel"),
         ('rotor', [], "no joint 'rotor' in it; there are none"),
-        ('', ['b', 'a'], 'not a single joint in it; there are: a, b'),
+        ('', ['b', 'a'], 'more than one joint in it; there are: a, b'),
         ('', [], 'no joint in it'),
         ('m', ['\x1b[2J'], r"no joint 'm' in it; there are: \x1b[2J"),
         ('m', [''], "no joint 'm' in it; there are: 0"),
