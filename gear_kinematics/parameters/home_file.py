@@ -37,7 +37,8 @@ def write_home(path: Path, actuators: Mapping[str, NodeParameters], node: str) -
         replace_file(path, yaml.dump(document, Dumper=Dumper, sort_keys=False).encode())
     except OSError as error:
         try:
-            path.unlink(missing_ok=True)
+            if path.exists():
+                path.unlink()
         except OSError:
             stale = f'{error.strerror}; delete it, since its zero is out of date'
             raise OSError(error.errno, stale) from error

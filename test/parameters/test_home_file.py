@@ -112,6 +112,8 @@ def test_old_zero_is_removed_where_the_new_one_cannot_be_written(path, monkeypat
     monkeypatch.setattr('pathlib.Path.unlink', full)
     with pytest.raises(OSError, match='its zero is out of date'):
         write_home(path, {'': replace(HOMED[''], rotor_zero=1.0)}, NODE)
+    with pytest.raises(OSError, match=r'device$'):  # without a file to delete
+        write_home(path.with_name('new.yaml'), HOMED, NODE)
 
 
 @pytest.mark.parametrize(
