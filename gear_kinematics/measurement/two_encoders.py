@@ -10,7 +10,7 @@ that each leave out one block of successive samples.
 
 import math
 from collections.abc import Collection
-from itertools import pairwise
+from itertools import compress, pairwise
 
 import numpy as np
 
@@ -93,7 +93,10 @@ class EncoderFit:
         # The same holds for reading errors: the acceleration does not contain the reading itself.
         acceleration = slope * (first - early - after + last) / (3.0 * STEP**2)
         left = rest = output[kept] - slope * at - np.mean(output[kept] - slope * at)
-        blocks = np.array_split(np.column_stack([columns, _LAG * acceleration, rest]), _BLOCKS)
+        course = (then[kept] - np.mean(then[kept])) / np.ptp(then[kept])
+        drifts = _PLAY * course, _DELAY * course * speed
+        others = np.column_stack([_LAG * acceleration, *drifts, rest])
+        blocks = np.array_split(np.hstack([columns, others]), _BLOCKS)
         self._products = np.array([block.T @ block for block in blocks])
         self._model = list(range(columns.shape[1]))
         self._equations = NormalEquations(self._products)
@@ -116,7 +119,8 @@ class EncoderFit:
         samples that are `period` apart, s; 0 if it is not interpolated.
         """
         lagging = self._equations.solve([*self._model, len(self._model)], slice(1))
-        curvature = NormalEquations(self._products[:, :-1, :-1])
+        most = len(self._model) + 1
+        curvature = NormalEquations(self._products[:, :most, :most])
         curvature.noise = self._equations.noise
         # The rotor is taken to move evenly between samples; with a delay, it is so twice.
         apart = max(period**2 / 4.0, self._between)
@@ -135,8 +139,16 @@ class EncoderFit:
         return jackknife(unit * self._delays, spread)
 
     def lost_motion(self, *others: Component, delay: bool) -> Estimate:
-        """Estimate the angle lost on a reversal, rad, separate from a delay or including it."""
-        chosen = [k for k in self._model if delay or k != _LATE]
+        """Estimate the angle lost on a reversal, rad, separate from a delay or including it.
+
+        Clear drifts of the zero and, with the delay, of the clocks are fitted, too. A ratio could
+        not be told from them.
+        """
+        model = [k for k in self._model if delay or k != _LATE]
+        drifts = [len(self._model) + k for k in (1, 2)[: 1 + delay]]
+        found = self._equations.first_order([*model, *drifts])[:, len(model) :].T
+        clear = [jackknife(fits).clear for fits in found]
+        chosen = [*model, *compress(drifts, clear)]
         fits = -2.0 * _PLAY * self._equations.first_order(chosen)[:, _DIRECTION]
         spread = 2.0 * _PLAY * float(self._equations.spreads(chosen)[_DIRECTION])
         # Both the spread and the scatter of blocks contain the noise: the greater of them counts.

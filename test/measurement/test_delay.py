@@ -59,6 +59,18 @@ def test_delay_is_told_from_play_and_taken_out(profile, delay):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize('clock', [0.0, 2e-4])
+def test_slow_drifts_of_zero_and_clock_are_no_play(clock):
+    """As of a gear that warms up, and of two boards each with a crystal."""
+    drive = Drive(PLAY, ERRORS, noise=0.05 * ARC_MINUTE, **STEPS)
+    times, rotor, output = drive.readings(ramped_strokes(3.0, 9.0, 2.0), 16.0, 1000.0, 1)
+    output = np.interp((1.0 + clock) * times, times, output) + 2.0 * ARC_MINUTE * times / 16.0
+    found = figures(encoders(rotor, output, stamps(times), COUNTS, OUTPUT_COUNTS))
+    assert found.lost_motion.value == pytest.approx(PLAY, abs=0.06 * ARC_MINUTE)
+    assert found.lost_motion.uncertainty < 0.5 * ARC_MINUTE
+
+
+@pytest.mark.slow
 def test_delay_at_one_speed_is_not_called_play():
     drive = Drive(PLAY, ERRORS, 2e-3, **STEPS)
     both = recorded(drive, even_strokes(3.0, 1.0), 16.0)
