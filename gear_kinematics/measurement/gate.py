@@ -163,7 +163,7 @@ def _steps(error: Array, ideal: Array, period: float) -> _Steps | None:
     rows = np.flatnonzero(reverses & (np.abs(steps) > limit) & ~lost)
     near = np.lib.stride_tricks.sliding_window_view(np.pad(speeds, around), 2 * around + 1)
     lost[rows] = np.abs(steps[rows]) <= 2.2 * delay * near[rows].max(axis=1)
-    slipped = _slipped(level, ideal, usually)
+    slipped = _slipped(level, ideal, usually, reverses)
     return _Steps(((np.abs(steps) > limit) & ~lost) | slipped, slipped, limit)
 
 
@@ -220,11 +220,13 @@ def _reversals(ideal: Array, around: int) -> tuple[NDArray[np.bool_], Array]:
     return reverses, after
 
 
-def _slipped(error: Array, ideal: Array, usually: float) -> NDArray[np.bool_]:
+def _slipped(
+    error: Array, ideal: Array, usually: float, reverses: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
     """Find steps of the error after which it differs at all angles, in both directions, (n - 1,).
 
     The error, without stray readings, and the ideal output angle are (n,), rad; `usually` is the
-    98 % quantile of the steps, rad.
+    98 % quantile of the steps, rad; `reverses`, (n - 1,), says which are close to a reversal.
     """
     steps = np.diff(error)
     found = np.zeros(len(steps), bool)
@@ -241,7 +243,9 @@ def _slipped(error: Array, ideal: Array, usually: float) -> NDArray[np.bool_]:
             there = np.abs(ideal - ideal[row]) < _PLACE
             passes = [_rise(error, ideal - ideal[row], there & (way == w)) for w in (-1, 1)]
             shares = np.diff(passes) / steps[row]
-        found[row] = len(shares) > 0 and shares.min() > _MOST_OF and shares.max() < 1.0 / _MOST_OF
+        # In one direction alone, a delay changes the error with the speed, too.
+        enough = len(shares) > reverses[row]
+        found[row] = enough and shares.min() > _MOST_OF and shares.max() < 1.0 / _MOST_OF
     return found
 
 
@@ -265,23 +269,24 @@ def _followed(error: Array, rows: Array, steps: _Steps, period: float) -> tuple[
     spread = float(np.ptp(error[kept[0]]))
     for step, others in ((1, parts[longest + 1 :]), (-1, parts[:longest][::-1])):
         last = parts[longest][1] - 1 if step > 0 else parts[longest][0]
-        reached, beyond = error[slice(*parts[longest])], False
+        reached, beyond = error[slice(*parts[longest])][::-step][:_STAYS], False
         for begin, end in others:
             near, far = (begin, end - 1) if step > 0 else (end - 1, begin)
             gap = abs(rows[near] - rows[last]) > _STAYS
             # The interpolation mixes some of a stray rotor reading into its neighbours.
             level = np.median(error[begin:end][::step][:_STAYS])
-            before = np.median(reached[::-step][:_STAYS])
             place = begin if step > 0 else end
-            moved = abs(math.remainder(level - before, period)) > steps.limit + spread * gap
+            off = abs(math.remainder(level - np.median(reached), period))
+            moved = off > steps.limit + spread * gap
             if moved or steps.slipped[place - 1]:
                 if end - begin < _STAYS and not steps.slipped[place - 1]:
                     continue
                 jumps.append(place)
-                beyond = True
+                beyond, reached = True, reached[:0]
             if not beyond:
                 kept.append(np.arange(begin, end))
-            last, reached = far, error[begin:end]
+            last = far
+            reached = np.concatenate([error[begin:end][::-step], reached])[:_STAYS]
     return np.sort(np.concatenate(kept)), sorted(jumps)
 
 

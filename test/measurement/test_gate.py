@@ -253,6 +253,25 @@ def test_a_delay_of_the_output_is_no_slip_at_a_reversal(gate, bits, delay, degre
     assert after is before
 
 
+def test_a_late_output_is_no_slip_where_strokes_differ_in_speed(gate):
+    """The way during the delay changes at each reversal, as each stroke has its own speed."""
+    ends = np.cumsum([0.0, 2.0, 8.0, 4.0, 2.0])
+    time = np.arange(0.0, ends[-1], 0.02)
+    rotor, late = (np.interp(time + ahead, ends, [0, 4, 0, 4, 0]) for ahead in (0.0, 0.003))
+    noise = np.random.default_rng(1).normal(0.0, 2e-5, len(time))
+    output = with_play(late, 6.0 * ARC_MINUTE) + noise
+    before, after = gate(np.column_stack([time, -19.0 * rotor, output]))
+    assert after is before
+
+
+def test_a_stray_reading_that_hardly_leaves_the_limit_is_no_jump(clean, gate):
+    clean[999:1005, 2] -= np.radians(0.1)
+    clean[1000, 2] += np.radians(0.35)
+    before, after = gate(clean)
+    assert not [fault for fault in after.faults if fault.what is Observation.JUMPED]
+    assert len(after.encoders.measured) >= len(before.encoders.measured) - 1
+
+
 def test_wraps_of_encoders_of_one_turn_are_no_faults(clean, gate):
     clean[:, 1:] = np.remainder(clean[:, 1:], 2.0 * np.pi)
     before, after = gate(clean)
