@@ -169,6 +169,9 @@ class States:
             step = step_of(sources.rotor_counts, motion.turned)
             torque, turned = float(ratio) * effort[known], motion.turned[known]
             locked = locked_shaft(torque, turned, step, ratio, stamp[known], measured=False)
+            if locked.not_locked:
+                encoder = f'where it turns, an {OUTPUT_ENCODER} is needed'
+                raise RecordingError(f'{path}: {locked.not_locked}; {encoder}')
         if has_effort:
             described.append(f'torque: effort of {rotor} times the ratio, N·m')
         return Recording(

@@ -21,6 +21,7 @@ from gear_kinematics.wire.cdr import SECOND
 Array = NDArray[Any]
 
 _SPEED_WINDOW = 0.02  # s, over which the speed is averaged
+_MOST_TWIST = 0.35  # rad of the output under torque; a shaft that turns further is not locked
 
 
 class RecordingError(ValueError):
@@ -66,6 +67,15 @@ class Loading:
     timed: bool  #: whether time was recorded
     angle_step: Step  #: rad at the output, between readings of the angle
     measured: bool  #: whether an encoder measured the output; otherwise it is taken to be locked
+
+    @property
+    def not_locked(self) -> str:
+        """What shows that the shaft turns freely; empty if it may be locked."""
+        # A few readings may be stray.
+        if np.ptp(np.quantile(self.angle, (0.01, 0.99))) <= _MOST_TWIST:
+            return ''
+        turned = np.degrees(np.ptp(self.angle))
+        return f'the output turns by {turned:.3g}° under torque: it is not locked'
 
     def chosen(self, rows: Array | slice) -> Self:
         """Return the samples of some rows."""

@@ -47,7 +47,6 @@ _LEAST = 1e-30
 """Smaller numbers are taken as 0, so that no squares or inverses underflow later."""
 _GAP = 5  # greatest gap, in usual intervals of the rotor's samples, that is interpolated
 _HALF_TURN = 180.0  # degrees: least jump of a single-turn encoder
-_MOST_TWIST = 0.35  # rad of the output under torque; a shaft that turns further is not locked
 _BLOCKS, _LIKE = 10, (0.08, 1.0)
 """Number of parts of a recording; error of the output within a part that shows degrees, rad."""
 _WHOLE = 50  # number of different whole numbers that are no coincidence
@@ -298,12 +297,9 @@ class _Samples:
             self.series['angle'].stamp if self.timed else None,
             measured=angle.on_output,
         )
-        # A few readings may be stray.
-        if np.ptp(np.quantile(locked.angle, (0.01, 0.99))) > _MOST_TWIST:
-            raise ColumnsError(
-                f'the output turns by {np.degrees(np.ptp(locked.angle)):.3g}° under torque: it is '
-                'not locked, or the unit is another, which --angle-unit gives'
-            )
+        if locked.not_locked:
+            other = 'or the unit is another, which --angle-unit gives'
+            raise ColumnsError(f'{locked.not_locked}, {other}')
         return locked
 
     def encoders(self, period: float) -> Encoders:

@@ -254,6 +254,17 @@ def test_efforts_of_the_rotor_are_torque_at_the_output(tmp_path, config, measure
     assert measured(recording).hysteresis.value == pytest.approx(expected, abs=5e-5)
 
 
+def test_a_joint_of_a_bag_that_moves_freely_is_no_torque_ramp(tmp_path, config):
+    """A pendulum's torque rises with its angle, and friction opens a loop."""
+    time = np.arange(0.0, 40.0, 0.01)
+    angle = math.radians(50.0) * np.sin(TURN * time / 8.0)
+    torque = 5.0 * np.sin(angle) + 0.4 * np.sign(np.gradient(angle))
+    stamps = START + np.round(time * 1e9).astype(np.int64)
+    path = write_recording(tmp_path / 'free', Samples(stamps, -19.0 * angle, torque / -19.0))
+    with pytest.raises(RecordingError, match='the output turns by 100° under torque: it is not l'):
+        read(path, config)
+
+
 def test_bag_without_torque_and_output_is_refused(tmp_path, config, angle):
     path = ramps_on_rotor(tmp_path / 'bare', angle, efforts=None)
     with pytest.raises(BagError, match='/rotor_state has no effort, and no output_enc'):
