@@ -13,7 +13,13 @@ import numpy as np
 
 from gear_kinematics.measurement.columns import ColumnsError, Sources
 from gear_kinematics.measurement.dialects import TableFile
-from gear_kinematics.measurement.names import ANGLE_UNITS, meaning
+from gear_kinematics.measurement.names import (
+    ANGLE_UNITS,
+    FOREIGN,
+    TIME_UNITS,
+    TORQUE_UNITS,
+    meaning,
+)
 from gear_kinematics.measurement.recording import Array
 
 _TRIED, _FEWEST, _ROWS = 12, 10, 10_000
@@ -25,7 +31,7 @@ _WANTED = 'target|goal|desire|cmd|command|setpoint'
 """Words in names of columns of what was commanded, not measured."""
 _NO_ANGLE = re.compile(
     r'(?i)torq|effort|force|curr|vel(?!_mapper)|speed|rpm|/ ?s|temp|time|stamp|control|elec|tau|'
-    rf'cell|acc(?!um)|dot|err|volt|power|^t$|^[ft][xyz]|{_WANTED}'
+    rf'cell|acc(?!um)|dot|err|volt|power|^t$|^[ft][xyz]|^i_?[qd](?![a-z])|{_WANTED}'
 )
 """Words in names of columns that are not proposed as angles."""
 _LIKELY = re.compile(
@@ -112,14 +118,19 @@ def _completed(
 def _examples(table: TableFile) -> Iterator[Mapping[str, str]]:
     """Yield columns that may be both encoders or angle and torque, the likeliest first."""
     names = [name for name in table.names if name and list(table.names).count(name) == 1]
-    known = {'', *ANGLE_UNITS}
-    angles = [n for n in filterfalse(_NO_ANGLE.search, names) if meaning(n).unit in known]
+    known, others = {'', *ANGLE_UNITS}, {*FOREIGN, *TORQUE_UNITS, *TIME_UNITS}
+    angles = [
+        name
+        for name in filterfalse(_NO_ANGLE.search, names)
+        if (unit := meaning(name).unit) in known or (unit not in others and _LIKELY.search(name))
+    ]
+    torques = [n for n in names if _TORQUE.search(n) or meaning(n).unit in TORQUE_UNITS]
     likely = [*filter(_LIKELY.search, angles)]
     raw, _ = table.load((likely if len(likely) > 1 else angles)[:_TRIED])
     raw = {name: array.astype(float) for name, array in raw.items() if array.dtype.kind in 'iuf'}
     pairs = [*_alike(raw)]
     yield from ({'rotor': rotor, 'output': output} for sure, rotor, output in pairs if sure)
-    for angle, torque in product(likely, filter(_TORQUE.search, names)):
+    for angle, torque in product(likely, torques):
         if angle != torque:
             yield {'angle': angle, 'torque': torque}
     yield from ({'rotor': rotor, 'output': output} for sure, rotor, output in pairs if not sure)

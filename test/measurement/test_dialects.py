@@ -532,6 +532,8 @@ UNTOLD = {
     'unknown word': plain('time,motor_pos_x,output_pos_x'),
     'times': lambda t, r, o: written([25 * t, r / 3, o / 3], NAMES),
     'both motors': plain('time,motor1_pos,motor2_pos'),
+    'a unit of a maker': lambda t, r, o: written([t * 1e3, *in_counts(r, o)],
+        'Time [ms];Position actual value [qc];Load position [qc]', 3 * ['{:.0f}'], ';'),
     'a torque beside': lambda t, r, o: written(
         [t, r, o, t], 'time,POSITION,ABS_POSITION,TORQUE', '{:.5f}'),
     'no locked output': lambda t, r, o: written(
@@ -548,6 +550,8 @@ UNTOLD_RAMPS = {
     'units of rotation': lambda t, a, q: written(
         [t, a * DEG, q], '"Time","Rotation","Axial Torque"\n"(s)","(Degrees)","(N-m)"',
         3 * ['"{:.6f}"']),
+    'a torque by its unit alone': lambda t, a, q: written(
+        [t, q / 0.00706155, a * DEG], 'Time (Sec),Tracking (in-oz),Angle (deg)', 3 * ['{:.6f}']),
     'a unit that is a word': lambda t, a, q: written(
         [t, a, q], 'time,angle_grad,torque', 3 * ['{:.6f}']),
 }  # fmt: skip
@@ -778,6 +782,14 @@ def test_what_is_neither_table_nor_bag_is_refused_with_what_can_be_read(tmp_path
     kinds = r'bags are .mcap.* tables .csv.*\.parquet.* as \.csv\.gz, \.csv\.zst, \.csv\.zip'
     with pytest.raises(BagError, match=kinds):
         read(tmp_path / 'r.ods', gear)
+
+
+def test_no_current_is_proposed_as_an_angle(tmp_path, gear, reference):
+    time, angle, torque = reference('ramps')
+    columns = [time, np.round(angle * REV * 8192), torque]
+    path = saved(tmp_path, written(columns, 't,shadow,Iq', ('{:.2f}', '{:.0f}', '{:.4f}')))
+    with pytest.raises(RecordingError, match='by --angle-column, --torque-column'):
+        read(path, gear)
 
 
 def test_the_advice_gives_the_output_the_column_that_is_named_after_it(tmp_path, gear, reference):
