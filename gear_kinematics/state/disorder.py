@@ -31,10 +31,11 @@ class Disorder:
             return self._step
         return Condition.CLOCKS_ALTERNATE(count=self.close_resets)
 
-    def note_reset(self, number: int) -> None:
-        """Note that the message of a number reset the clock."""
+    def note_reset(self, number: int, last: int, stamp: int) -> None:
+        """Note that the message of a number reset the clock, from the last stamp to its own."""
         self.close_resets += number - self._reset < _CLOSE
         self._reset = number
+        self._note_step(last, stamp)
 
     def set_back(self, last: int, stamp: int) -> int:
         """Return by how much the clock was set back between two samples, ns; forget the stamps.
@@ -45,9 +46,12 @@ class Disorder:
         rising = len(stamps) > 1 and all(a < b for a, b in pairwise([*stamps, stamp]))
         time = last - stamps[0] if rising else 0
         if time > _CLOCK_STEP:
-            size, at = time / SECOND, last / SECOND
-            self._step = Condition.CLOCK_SET_BACK(size=size, time=at)
+            self._note_step(last, stamps[0])
         return time
+
+    def _note_step(self, last: int, stamp: int) -> None:
+        size, at = (last - stamp) / SECOND, last / SECOND
+        self._step = Condition.CLOCK_SET_BACK(size=size, time=at)
 
 
 class Bursts:

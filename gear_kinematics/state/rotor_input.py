@@ -341,7 +341,7 @@ class RotorInput:
             raise RejectedInputError(Rejection.OUT_OF_ORDER)
         else:
             self.resets += 1
-            self.disorder.note_reset(self.received)
+            self.disorder.note_reset(self.received, last, stamp)
             self.turns.reset()
             self.plausibility.reset()
             self.velocity_field.restart()

@@ -141,7 +141,7 @@ ROWS = {
     'unnormalised stamp': Row(
         part({'nanoseconds': (99, SECOND + 60 * PERIOD)}), {'unnormalised_stamps': 1}
     ),
-    'clock set back': Row(moved(stamp=-2 * SECOND), {'resets': 1}),
+    'clock set back': Row(moved(stamp=-2 * SECOND), {'resets': 1}, found=FindingCause.SET_BACK),
     'clock runs backwards': Row(
         [{'stamp': START + 2 * (COUNT - k) * SECOND} for k in range(COUNT)],
         {'resets': COUNT - 1},
@@ -160,6 +160,7 @@ ROWS = {
     'bag in a loop': Row(
         [{'stamp': START + k % 30 * 4 * PERIOD} for k in range(COUNT)],
         {'resets': COUNT // 30 - 1},
+        found=FindingCause.SET_BACK,
     ),
     'turns unseen': Row(
         moved(stamp=SECOND),
