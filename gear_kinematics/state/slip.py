@@ -16,7 +16,7 @@ class Slip(NamedTuple):
     """A lasting movement of the output against the rotor."""
 
     stamp: int  # ns: the first error beyond the tolerance
-    angle: float  # by which the measured output angle has moved, as of the latest errors, rad
+    angle: float  # rad, by which the output has moved, as of the latest errors of a similar speed
 
 
 class _Block(NamedTuple):
@@ -83,11 +83,12 @@ class SlipWatch:
         block = _Block(middle, min(speeds, default=0.0), max(speeds, default=0.0))
         self._errors = errors[third:]
         reference, steady, last = self._reference, self._steady, self._last
-        self._last = block
+        limit, self._last = self._parameters.transmission_error_limit, block
         if not reference or not last or not steady:
             self._reference = self._steady = block
         elif self.slip:
-            self.slip = self.slip._replace(angle=block.error - reference.error)
+            if reference.tolerance(block, self._parameters) <= 2.0 * limit:
+                self.slip = self.slip._replace(angle=block.error - reference.error)
         elif moved := (
             self._moved(reference, block) or self._moved(last, block) or self._moved(steady, block)
         ):
@@ -96,7 +97,6 @@ class SlipWatch:
             self.slip = Slip(first.stamp, moved)
         elif block.speed < reference.speed:
             self._reference = block  # in slow motion a delay hides less
-        limit = self._parameters.transmission_error_limit
         if steady and steady.tolerance(block, self._parameters) > 2.0 * limit:
             self._steady = block
 

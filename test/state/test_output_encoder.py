@@ -220,6 +220,14 @@ def test_slip_stays_a_warning_after_the_window_has_passed(degrees, speed):
         rest(bench, more, 500, math.radians(degrees), speed=speed)
 
 
+def test_size_of_a_slip_does_not_change_in_motion_where_the_encoder_is_late(bench):
+    for k in range(6000):
+        speed, moved = (3.0, 0.003 * (k - 4000)) if k > 4000 else (0.0, 0.0)
+        bench.measure(START + k * MS, moved - 0.02 * speed + 0.1 * (k > 2000))
+        bench.turn(START + k * MS, -19.0 * moved)
+    assert bench.encoder.slip_watch.slip.angle == pytest.approx(0.1, abs=1e-9)
+
+
 def test_slip_is_found_after_the_clock_was_set_back(bench):
     for k in range(3000):
         stamp = START + k * MS - 60 * SECOND * (k > 500)
