@@ -78,7 +78,7 @@ class Actuator:
             zero = rotor.zero_for(self.rotor_angle)
             before = rotor.turns.relative_to(rotor.zero, parameters.rotor_direction)
         except RuntimeError as error:  # after the joint was changed, too
-            none = f'there was no valid {topics.ROTOR_STATE} yet'
+            none = f'no valid {topics.ROTOR_STATE} has come yet'
             raise RefusedError(none, '; check the driver') from error
         if (age := time.monotonic() - self._seen) > parameters.input_timeout:
             last = f'the last valid {topics.ROTOR_STATE} came {age:.1f} s ago'
@@ -89,4 +89,4 @@ class Actuator:
             raise RefusedError(f'the shaft turns at {speed:.3g} rad/s', too_fast)
         whole, rest = ratio.output_angle(*before, math)
         was, now = math.degrees(TURN * whole + rest), math.degrees(parameters.home_angle)
-        return zero, f'the shaft was at {was:z.1f}° and is now {now:z.1f}°'
+        return zero, f'the shaft was at {was:z.1f}° and is now at {now:z.1f}°'

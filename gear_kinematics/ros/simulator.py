@@ -108,7 +108,7 @@ class GearSimulator(PublishingNode):
         now = time.monotonic_ns()
         late = now - self._due
         if late > _MOST_LATE:
-            self._warn(f'{late / SECOND:.2f} s behind real time, and skipped: '
+            self._warn(f'skipped {late / SECOND:.2f} s to catch up with real time: '
                        'the processor is busy, or the rate is too high')  # fmt: skip
             self._due += late
         self._compare_clocks()
@@ -170,8 +170,8 @@ class GearSimulator(PublishingNode):
         gear = worn.model.gear = worn.model.gear.worn(angle)
         left = f'a preload of {gear.preload:.2f} N·m is left'
         if not gear.preload:
-            left = f'the output has a play of {1e3 * -gear.interference:.2f} mrad'
-        return _told(response, f'the flanks wore off by {1e3 * angle:.2f} mrad: {left}')
+            left = f'the output has {1e3 * -gear.interference:.2f} mrad of play'
+        return _told(response, f'the flanks lost {1e3 * angle:.2f} mrad: {left}')
 
 
 @dataclass(slots=True)

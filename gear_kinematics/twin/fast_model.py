@@ -51,8 +51,8 @@ class FastModel:
         stiffness = sum(springs)
         frequency = math.sqrt(stiffness / reduced + stiffness / self._output_inertia)
         if frequency > _FASTEST:
-            fault = f'rotor and output would oscillate at {frequency:.0f} rad/s; the fast model '
-            fault += f'follows {_FASTEST:.0f} rad/s: give them more inertia or less stiffness'
+            fault = f'rotor and output would oscillate at {frequency:.0f} rad/s, but the fast '
+            fault += f'model follows up to {_FASTEST:.0f}: give more inertia or less stiffness'
             raise MechanismError([fault])
         self._in_series = replace(gear, stiffness=tuple(springs), shaft_stiffness=math.inf)
         self._gear = gear

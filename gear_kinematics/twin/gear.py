@@ -110,7 +110,7 @@ class TwinGear:
         if math.inf in self.stiffness:
             faults.append('branch_stiffness must be greater than 0: no simulated branch is rigid')
         if not self.parameters.loads.rotor_inertia:
-            faults.append('loads.rotor_inertia must be greater than 0 to be simulated')
+            faults.append('loads.rotor_inertia must be greater than 0 for a simulation')
         if faults:
             raise MechanismError(faults)
         torque, bands = 0.0, ((-0.5 * self.play, 0.5 * self.play),) * len(self.stiffness)

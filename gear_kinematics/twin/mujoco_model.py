@@ -58,10 +58,10 @@ class MujocoModel:
         """Keep the speed within what MuJoCo follows: all velocities at once, as the loops ask."""
         fastest = _FASTEST / self._step
         if any(self._warnings.tolist()):
-            self.notice = 'the motion was beyond what MuJoCo follows, and has begun anew'
+            self.notice = 'the motion exceeded what MuJoCo can follow, and starts anew'
             mujoco.mj_resetData(self.model, self.data)
         elif (speed := abs(self._velocities.item(self._rotor))) > fastest:
-            self.notice = f'the rotor is held at the {fastest:.0f} rad/s that MuJoCo follows'
+            self.notice = f'the rotor is limited to the {fastest:.0f} rad/s that MuJoCo can follow'
             self._velocities *= fastest / speed
 
     def _build(self, gear: TwinGear) -> None:

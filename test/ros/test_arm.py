@@ -54,7 +54,7 @@ def test_all_shafts_are_homed_or_none_and_each_is_told(sent, tmp_path):
     """19.9 rad of the rotor are -60.0° of a shoulder of -19, and -22.8° of an elbow of -50."""
     path = tmp_path / 'home.yaml'
     node = sent(home_file=str(path)).node
-    nothing = 'shoulder, elbow: there was no valid rotor_state yet; check the driver'
+    nothing = 'shoulder, elbow: no valid rotor_state has come yet; check the driver'
     assert home(node).message == f'no shaft was homed: {nothing}'
     drive(node, MILLISECOND, m1=19.9, m2=19.9)
     drive(node, 2 * MILLISECOND, m1=19.9, m2=19.9, velocity=5.0)
@@ -68,13 +68,13 @@ def test_all_shafts_are_homed_or_none_and_each_is_told(sent, tmp_path):
     drive(node, 3 * MILLISECOND, m1=19.9, m2=19.9)
     kept = f'(rotor_zero 19.900 rad, kept in {path})'
     assert home(node, 'elbow').message == (
-        f'elbow: the shaft was at -22.8° and is now 0.0° {kept}'
+        f'elbow: the shaft was at -22.8° and is now at 0.0° {kept}'
     )  # fmt: skip
     assert zeros(node) == [0.0, 19.9]
     assert zeros(sent(home_file=str(path)).node) == [0.0, 19.9]
     assert home(node).message == (
-        f'shoulder: the shaft was at -60.0° and is now 0.0° {kept}; '
-        f'elbow: the shaft was at 0.0° and is now 0.0° {kept}'
+        f'shoulder: the shaft was at -60.0° and is now at 0.0° {kept}; '
+        f'elbow: the shaft was at 0.0° and is now at 0.0° {kept}'
     )
     assert zeros(node) == zeros(sent(home_file=str(path)).node) == [19.9, 19.9]
 

@@ -46,7 +46,7 @@ def test_answer_can_be_checked_by_a_person(homing, tmp_path, capfd):
     node = homing()
     drive(node, [TURNED])
     answer = home(node)
-    words = 'the shaft was at 61.5° and is now 0.0° (rotor_zero -20.394 rad, '
+    words = 'the shaft was at 61.5° and is now at 0.0° (rotor_zero -20.394 rad, '
     assert (answer.success, answer.message) == (True, words + 'lost at restart: set home_file)')
     assert f'gear_state_publisher]: {answer.message}\n' in capfd.readouterr().err
     path = tmp_path / 'home.yaml'
@@ -54,7 +54,7 @@ def test_answer_can_be_checked_by_a_person(homing, tmp_path, capfd):
     assert values_of(node)['home file'] == 'not homed yet'
     drive(node, [TURNED] * 200)
     assert home(node).message == f'{words}kept in {path})'
-    again = 'the shaft was at 0.0° and is now 0.0° (rotor_zero -20.394 rad, '
+    again = 'the shaft was at 0.0° and is now at 0.0° (rotor_zero -20.394 rad, '
     assert home(node).message == f'{again}kept in {path})'
 
 
@@ -120,7 +120,7 @@ def test_turns_that_the_output_encoder_adds_are_no_speed(homing):
             answers.append(node._actuators['']._speed)
     assert len(answers) > 100
     assert set(answers) == {0.0}
-    assert home(node).message.startswith('the shaft was at 114.6° and is now 0.0°')
+    assert home(node).message.startswith('the shaft was at 114.6° and is now at 0.0°')
 
 
 def test_position_that_is_old_is_not_homed(homing):

@@ -224,7 +224,7 @@ def test_time_that_is_not_made_up_for_is_left_out_and_said(bench):
     bench.process.send_signal(signal.SIGSTOP)
     time.sleep(0.8)  # what a busy processor does
     bench.process.send_signal(signal.SIGCONT)
-    bench.wait_until(lambda: 's behind real time, and skipped' in bench.text(), 'a warning')
+    bench.wait_until(lambda: 's to catch up with real time' in bench.text(), 'a warning')
     bench.wait_until(bench.up_to_date, 'stamps of the present time')
 
 
@@ -263,8 +263,8 @@ def test_an_arm_follows_one_command_and_tells_all_joints_in_one_message(context)
     first, second, _ = node._gears
     worn = [node._wear(gear, None, SimpleNamespace()).message for gear in (first, second, first)]
     assert worn == [
-        *2 * ['the flanks wore off by 2.70 mrad: a preload of 0.31 N·m is left'],
-        'the flanks wore off by 2.70 mrad: the output has a play of 2.20 mrad',
+        *2 * ['the flanks lost 2.70 mrad: a preload of 0.31 N·m is left'],
+        'the flanks lost 2.70 mrad: the output has 2.20 mrad of play',
     ]
     node.destroy_node()
 

@@ -148,7 +148,7 @@ def test_a_fast_rotor_is_as_fast_as_that_of_the_fast_model():
     assert mujocos.notice == ''
     mujocos.data.qvel *= 3.0
     mujocos.advance(1e-3, 0.0, 0.0)
-    assert mujocos.notice == 'the rotor is held at the 3780 rad/s that MuJoCo follows'
+    assert mujocos.notice == 'the rotor is limited to the 3780 rad/s that MuJoCo can follow'
     for _ in range(100):
         mujocos.advance(1e-3, 0.0, 0.0)
     assert abs(mujocos.rotor_velocity) < 3780.0  # without load, friction slows it down
@@ -161,7 +161,7 @@ def test_a_load_beyond_all_bounds_leaves_a_gear_that_works_and_no_file(tmp_path,
     for _ in range(10):
         model.advance(1e-3, 0.0, 1e6)
         notices.add(model.notice)
-    assert 'the motion was beyond what MuJoCo follows, and has begun anew' in notices
+    assert 'the motion exceeded what MuJoCo can follow, and starts anew' in notices
     settled(model, 0.0)
     assert not [*tmp_path.iterdir()]
 

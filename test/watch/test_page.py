@@ -155,7 +155,7 @@ def test_home_is_asked_called_and_undone_with_the_keyboard(connected):
         connected.keyboard.press(key)
     expect(answer).to_have_text(
         re.compile(
-            r'the shaft was at -?\d+\.\d° and is now 0\.0° \(rotor_zero -?\d+\.\d{3} rad, '
+            r'the shaft was at -?\d+\.\d° and is now at 0\.0° \(rotor_zero -?\d+\.\d{3} rad, '
             r'lost at restart: set home_file\)\.'
         )
     )

@@ -31,7 +31,7 @@ def test_table_in_a_terminal_homes_with_keys(tmp_path):
         question = r'The output is at -?\d+\.\d°\. Set it to 0\.0°\?   y yes   n no'
         terminal.wait_for(question, keys='h')
         terminal.type('ny')  # which no question precedes
-        terminal.wait_for(r'the shaft was at -?\d+\.\d° and is now 0\.0° \(rotor_zero ', keys='hy')
+        terminal.wait_for(r'the shaft was at -?\d+\.\d° and is now at 0\.0° ', keys='hy')
         terminal.wait_for(r'u undo: back to rotor_zero \S+')
         terminal.wait_for(r'Undone: back to rotor_zero \S+\.', keys='u')
         terminal.type('q')
@@ -41,7 +41,7 @@ def test_table_in_a_terminal_homes_with_keys(tmp_path):
 @pytest.mark.usefixtures('running')
 def test_home_says_where_the_shaft_was_and_is(capsys):
     wait_until(lambda: main(['home', '--node', OTHER]) == 0, 'a node that does not refuse')
-    moved = rf'^{OTHER}: the shaft was at -?\d+\.\d° and is now 0\.0° \(rotor_zero '
+    moved = rf'^{OTHER}: the shaft was at -?\d+\.\d° and is now at 0\.0° \(rotor_zero '
     assert re.search(moved, capsys.readouterr().out, re.MULTILINE)
     assert main(['home', '--node', OTHER, '--actuator', 'elbow']) == 2
     service = f'there is no service {OTHER}/elbow/home; did you mean `{OTHER}/home`?'
