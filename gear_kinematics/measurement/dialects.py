@@ -269,7 +269,7 @@ def _names(
         del rows[-1]  # such as the rate of sampling, of catman
     labelled = (row for row in rows[:-1] if re.search('(?i)unit|einheit', ''.join(row[:1])))
     label = next((row for row in labelled if known_units(row[1:])), [])
-    alike = [row[:width] for row in rows if row[2:] and len({*row[:width:2]}) == 1]
+    alike = [row[:width] for row in rows if row[2:width] and len({*row[:width:2]}) == 1]
     pairs = {row[0].lower(): row[1::2] for row in alike}
     for key, names in pairs.items():
         if key not in _CLOCKS and meaning(key).role != 'time':

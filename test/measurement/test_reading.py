@@ -177,6 +177,7 @@ def test_rows_that_are_not_finite_are_left_out_and_reported(tmp_path, config, an
         ('', 'no rows of numbers'),
         ('angle,torque\nx,4\n', 'no usable rows'),
         ('a,b\n1,2\n', 'neither an angle and a torque nor a rotor and an output'),
+        ('t;motor;output\n0\n1\n2\n', 'among the columns t (0); '),
         ('angle,angle,torque\n1,2,3\n', "more than one column 'angle'"),
         (b'\x00\x01,\x02\n', 'not text'),
         (None, 'No such file or directory'),
