@@ -32,6 +32,8 @@ class Parameter:
                 texts = dict.fromkeys((str(Fraction(str(value))), str(value)))
                 quoted = f'; quote it: {" or ".join(map(repr, texts))}'
                 quoted += f', and twice after -p: "{name}:={str(value)!r}"'
+            if self.kind is list and kind is self.items:
+                quoted = f'; write [{value!r}]'
             return f'{name} must be of type {self.kind.__name__}, not {value!r}{quoted}'
         if isinstance(value, list) and not all(isinstance(item, self.items) for item in value):
             what = 'strings' if self.items is str else 'numbers with a decimal point'

@@ -121,7 +121,7 @@ REFUSED = [
     ('ring_teeth', True, ('int',)),
     ('eccentricity', 1.1, ('1e-06', '1.0')),
     ('eccentricity', 1, ('float',)),
-    ('branches', 'a', ('list',)),
+    ('branches', 'a', ("list, not 'a'; write ['a']",)),
     ('branches', [1, 2], ('strings',)),
     ('gear_ratio', '19:1', ('an integer, a fraction or a decimal, such as -19',)),
     ('gear_ratio', 50.5, ("'101/2' or '50.5', and twice after -p: \"gear_ratio:='50.5'\"",)),
