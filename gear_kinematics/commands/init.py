@@ -8,6 +8,7 @@ from pathlib import Path
 
 from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.encoders import add_known_ratio, add_new_config, ratio_of_teeth
+from gear_kinematics.commands.files import check_targets
 from gear_kinematics.commands.joints import ask, can_ask, choose_joint, joints_of_arm
 from gear_kinematics.commands.output import Console, complain, warn_of_shared_memory
 from gear_kinematics.kinematics import GearRatio
@@ -51,6 +52,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         raise ValueError('--arm sets up all joints: leave out --actuator and --joint')
     if not options.arm:
         check_new(path, options.actuator)
+    check_targets(options, {} if path.exists() else {'-o': options.output})
     warn_of_shared_memory(participants=1)
     # These need ROS, unlike most commands.
     from gear_kinematics.watch.drivers import listen  # noqa: PLC0415

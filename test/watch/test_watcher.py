@@ -633,10 +633,6 @@ ROTOR = f'which joint is the rotor? {JOINTS}'
             ['--joint', 'm1'],
             'what is the ratio of the gear? Give it, such as --ratio -19 or --teeth 80/76',
         ),
-        (
-            ['-o', 'nowhere/a.yaml', '--joint', 'm1', '--ratio', '-19'],
-            'nowhere/a.yaml: No such file or directory',
-        ),
     ],
 )
 def test_init_says_why_it_writes_nothing(listening, capsys, arguments, cause):
@@ -645,6 +641,14 @@ def test_init_says_why_it_writes_nothing(listening, capsys, arguments, cause):
     assert told.err == f'gearkin: {cause}\n'
     assert '/motor/joint_states: brake, m1 at 1000 Hz\n' in told.out
     assert not list(listening.iterdir())
+
+
+@pytest.mark.usefixtures('listening')
+def test_init_names_a_missing_folder_before_it_listens(capsys):
+    assert main(['init', '-o', 'nowhere/a.yaml', '--joint', 'm1', '--ratio', '-19']) == 2
+    told = capsys.readouterr()
+    assert told.err == 'gearkin: nowhere/a.yaml: No such file or directory\n'
+    assert not told.out
 
 
 def test_init_writes_what_is_named(listening, capsys):
