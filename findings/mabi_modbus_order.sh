@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# mabi-modbus 1.7.1 (Rust): of the four orders of bytes that its simulated drives have, two are the other two.
+# mabi-modbus 1.7.1 (Rust): the byte orders DC BA and BA DC of its simulated drives are CD AB and AB CD.
 #
 # A float or a 32-bit position is in two registers, and drives differ in the order of its four bytes. By the table in
 # the documentation of WordOrder, 0x12345678 is 0x7856 and 0x3412 in the order DC BA, and 0x3412 and 0x7856 in BA DC.
