@@ -180,9 +180,10 @@ def unknown_parameters(
         if branch and key in BRANCH_PARAMETERS and actuator in ('', *branches):
             hint = f'; `{branch}` is not in `{full_name(actuator, "branches")}`'
         elif name in branches:
-            hint = f'; what holds for {name} stands below it, such as `{name}.rotor_joint`'
+            hint = f'; give the parameters of {name} below it, such as `{name}.rotor_joint`'
         elif name.startswith('actuators.'):
-            hint = '; `actuators` is a list of names, beside which each has its parameters'
+            own_name = name.removeprefix('actuators.')
+            hint = f'; `actuators` is a list of names: write `{own_name}` beside it'
         elif key in COMMON and group in branches:
             hint = f'; give `{key}` without `{group}.`, as it holds for all actuators'
         else:
@@ -224,11 +225,11 @@ def _name_faults(
     groups = {name.partition('.')[0] for name in (*PARAMETERS, *others, *_GROUPS)}
     for name, count in Counter(names).items():
         if count > 1:
-            yield f'actuators: `{name}` is there {count} times'
+            yield f'actuators: `{name}` is listed {count} times'
         if not _TOKEN.fullmatch(name):
             rule = 'at most 64 letters, digits and _, and begin with a letter'
             yield f'actuators: {name!r:.80} must be {rule}'
         elif name in branches:
-            yield f'actuators: `{name}` is the name of a branch, too'
+            yield f'actuators: `{name}` is also the name of a branch'
         elif name in groups:
-            yield f'actuators: `{name}` is the name of a parameter or of a group of them, too'
+            yield f'actuators: `{name}` is also the name of a parameter or of a group of them'

@@ -77,7 +77,7 @@ def _extended(path: Path, blocks: Mapping[str, Sequence[str]], head: Sequence[st
         extended = parameter_blocks(text) == before
     except (yaml.YAMLError, ValueError):
         extended = False
-    faults = faults_in(arm) if extended else ['write each of its parameters in its own line']
+    faults = faults_in(arm) if extended else ['write each of its parameters on a line of its own']
     if faults:
         raise ConfigError(f'{path}: {"; ".join(faults)}')
     return text

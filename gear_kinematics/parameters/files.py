@@ -102,8 +102,8 @@ def _check_strays(path: Path, name: str, blocks: Sequence[tuple[str, dict[str, A
             common |= of_gear
     if strays := [each for each in strays if not common or _mistyped(each, name)]:
         raise ConfigError(
-            f'{path}: the parameters of {", ".join(strays)} do not apply to {name}, to which only '
-            'a wildcard does: correct one of the two names'
+            f'{path}: only the parameters of a wildcard apply to {name}, not those of '
+            f'{", ".join(strays)}: correct one of the two names'
         )
 
 

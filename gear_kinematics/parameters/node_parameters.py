@@ -76,7 +76,9 @@ class NodeParameters:
         "Whether outputs are published while the rotor's turns are not known",
         choices=('publish', 'withhold'),
     )
-    input_timeout: float = parameter('Time without input that is an ERROR, s', 1e-3, 1e6)
+    input_timeout: float = parameter(
+        'Time without input after which diagnostics report ERROR, s', 1e-3, 1e6
+    )
     output_joint: str = parameter('Name of the output shaft in output_state and the URDF')
     output_range: tuple[float, ...] = parameter(
         'Least and greatest angle of the output, rad, less than a turn apart: they tell its turn '

@@ -42,7 +42,7 @@ def node_arguments(configurations: Mapping[str, str]) -> NodeArguments:
     }
     if given and '' not in loaded:
         names = ' and '.join(given)
-        raise ConfigError(f'{config}: {names} of an arm must be given in the file, by actuator')
+        raise ConfigError(f'{config}: give {names} of an arm in the file, below its actuators')
     actuators = {name: replace(each, **given) for name, each in loaded.items()}
     return NodeArguments(config, actuators, given)
 

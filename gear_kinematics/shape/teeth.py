@@ -104,7 +104,7 @@ def tooth_pair(mechanism: Mechanism, module: float) -> 'ToothPair':
     problem = f'involute teeth of module {module:g} m do not mesh at an eccentricity of {e:g} m'
     least = 0.5 * module * teeth * math.cos(PRESSURE_ANGLE)
     if e <= least:
-        raise InterferenceError(f'{problem}: it must be greater than {least:.6g} m')
+        raise InterferenceError(f'{problem}, which must be greater than {least:.6g} m')
     pairs = [ToothPair(mechanism, module, percent / 100.0) for percent in range(100, 0, -1)]
     pair = next((pair for pair in pairs if pair.clear), pairs[-1])
     if not (pair.clear and pair.contact_ratio >= 1.0):

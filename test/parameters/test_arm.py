@@ -73,13 +73,13 @@ def test_only_a_prefix_that_is_given_is_before_the_output_joint(tmp_path, given,
 
 
 FAULTS = [
-    ({'actuators': ['a1', 'a1']}, '`a1` is there 2 times'),
+    ({'actuators': ['a1', 'a1']}, '`a1` is listed 2 times'),
     ({'actuators': ['a b', '1x']}, "'a b' must be", "'1x' must be at most"),
     ({'actuators': [65 * 'x']}, "xxx' must be at most 64 letters, digits and _"),
-    ({'shoulder': None}, 'what holds for shoulder stands below it'),
-    ({'actuators': {'shoulder': {'rotor_zero': 1.0}}}, '`actuators` is a list of names'),
-    ({'actuators': ['a', 'loads']}, '`a` is the name of a branch', '`loads` is the name of a'),
-    ({'actuators': ['rotor_zero']}, '`rotor_zero` is the name of a parameter'),
+    ({'shoulder': None}, 'give the parameters of shoulder below it'),
+    ({'actuators': {'shoulder': {'rotor_zero': 1.0}}}, 'write `shoulder.rotor_zero` beside it'),
+    ({'actuators': ['a', 'loads']}, '`a` is also the name of a branch', '`loads` is also the'),
+    ({'actuators': ['rotor_zero']}, '`rotor_zero` is also the name of a parameter'),
     ({'actuators': 'shoulder'}, 'actuators must be of type list'),
     (
         {'shoulder.rotor_joint': 'm', 'elbow.rotor_joint': 'm'},

@@ -77,7 +77,7 @@ def test_a_new_file_begins_with_its_head(tmp_path):
             ELBOW['elbow'],
             'it is not the file of one',
         ),
-        ('/**: {ros__parameters: {actuators: [b1]}}', ELBOW['elbow'], 'in its own line'),
+        ('/**: {ros__parameters: {actuators: [b1]}}', ELBOW['elbow'], 'on a line of its own'),
         (BLOCK, ["rotor_joint: 'shoulder'"], "rotor_joint 'shoulder' belongs to shoulder and elb"),
         (BLOCK, ['gear_ratio: 3'], "quote it: '3'"),
         ('/**: {ros__parameters: {actuators: 3}}', ELBOW['elbow'], 'has a list of'),

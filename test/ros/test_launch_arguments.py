@@ -70,7 +70,7 @@ def test_given_values_replace_that_of_the_file(config, tmp_path):
     arm = tmp_path / 'arm.yaml'
     arm.write_text('/**: {ros__parameters: {actuators: [shoulder, elbow]}}')
     assert list(arguments(arm).actuators) == ['shoulder', 'elbow']
-    with pytest.raises(ConfigError, match='frame_prefix of an arm must be given in the file'):
+    with pytest.raises(ConfigError, match='give frame_prefix of an arm in the file'):
         arguments(arm, frame_prefix='my_')
 
 
