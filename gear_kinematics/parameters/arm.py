@@ -149,7 +149,7 @@ def shared_names(actuators: Mapping[str, NodeParameters]) -> list[str]:
     for (parameter, value), names in owners.items():
         if len(actuators) > 1 and not value and parameter in _JOINTS:
             every = ' and '.join(full_name(name, parameter) for name in names)
-            faults.append(f'{every} must name a joint of several, or be left out')
+            faults.append(f'{every} must name one of several joints, or be left out')
         elif len(names) > 1:
             which = f'{parameter} {value!r} belongs to {" and ".join(names)}'
             faults.append(f'{which}: give each its own, or leave it out')

@@ -49,7 +49,7 @@ class DriverLog:
             self._own[name], self._lacking[name] = own, self._lacking[name] + 1 if lacks else 0
             if self._lacking[name] == max(2, math.ceil(each.parameters.input_timeout)):
                 joint, there = each.parameters.rotor_joint, self._joints()
-                hint = '; other joints still come' if joint in there else among(joint, there)
+                hint = '; other joints are still heard' if joint in there else among(joint, there)
                 lacking[hint][name] = repr(joint)
         for hint, joints in lacking.items():
             text = f'no joint {", ".join(joints.values())} on {self._topic}{hint}'

@@ -54,7 +54,7 @@ class DriverInput:
         asked_for = self._node.get_parameter(override).value
         best_available = ReliabilityPolicy.BEST_AVAILABLE.name.lower()
         if event.last_policy_kind == QoSPolicyKind.RELIABILITY and asked_for == best_available:
-            self._node.get_logger().info(f'{name}: subscribing with best effort, as a driver does')
+            self._node.get_logger().info(f'{name}: subscribing with best effort, as offered')
             self._node.destroy_subscription(self.subscription)
             self._subscribe()
 

@@ -88,7 +88,7 @@ FAULTS = [
     ({'output_joint': 'x'}, "output_joint 'x' belongs to shoulder and elbow"),
     ({'frame_prefix': 'l_'}, "frame_prefix 'l_' belongs to shoulder and elbow"),
     ({'elbow.output_joint': 'shoulder_rotor'}, "two actuators have a joint 'shoulder_rotor'"),
-    ({'rotor_joint': ''}, 'shoulder.rotor_joint and elbow.rotor_joint must name a joint'),
+    ({'rotor_joint': ''}, 'shoulder.rotor_joint and elbow.rotor_joint must name one of'),
     (
         {'sholder.gear_ratio': '5', 'elbow.rotor_jiont': 'm'},
         '`sholder.gear_ratio`; did you mean `shoulder.gear_ratio`?',

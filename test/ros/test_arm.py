@@ -158,6 +158,6 @@ def test_joints_that_messages_with_others_lack_are_logged_once(sent, capfd):
     said = [line for line in capfd.readouterr().err.splitlines() if 'no joint' in line]
     assert [line.partition(']: ')[2] for line in said] == [
         "elbow: no joint 'M2' on /arm/rotor_state; did you mean `m2`? there are: m1, m2",
-        "elbow: no joint 'm2' on /arm/rotor_state; other joints still come",
-        "shoulder, elbow: no joint 'm1', 'm2' on /arm/rotor_state; other joints still come",
+        "elbow: no joint 'm2' on /arm/rotor_state; other joints are still heard",
+        "shoulder, elbow: no joint 'm1', 'm2' on /arm/rotor_state; other joints are still heard",
     ]
