@@ -141,14 +141,14 @@ class EncoderFit:
     def lost_motion(self, *others: Component, delay: bool) -> Estimate:
         """Estimate the angle lost on a reversal, rad, separate from a delay or including it.
 
-        Clear drifts of the zero and, with the delay, of the clocks are fitted, too. A ratio could
-        not be told from them.
+        Drifts of the zero and, with the delay, of the clocks and a lag that grows with the
+        acceleration, as that of a filter, are fitted, too, where they are clear.
         """
         model = [k for k in self._model if delay or k != _LATE]
-        drifts = [len(self._model) + k for k in (1, 2)[: 1 + delay]]
-        found = self._equations.first_order([*model, *drifts])[:, len(model) :].T
+        further = [len(self._model) + k for k in ((0, 1, 2) if delay else (1,))]
+        found = self._equations.first_order([*model, *further])[:, len(model) :].T
         clear = [jackknife(fits).clear for fits in found]
-        chosen = [*model, *compress(drifts, clear)]
+        chosen = [*model, *compress(further, clear)]
         fits = -2.0 * _PLAY * self._equations.first_order(chosen)[:, _DIRECTION]
         spread = 2.0 * _PLAY * float(self._equations.spreads(chosen)[_DIRECTION])
         # Both the spread and the scatter of blocks contain the noise: the greater of them counts.

@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 from gear_recordings import encoders
+from scipy.signal import lfilter
 from simulated_encoders import (
     ARC_MINUTE,
     TURN,
@@ -68,6 +69,18 @@ def test_slow_drifts_of_zero_and_clock_are_no_play(clock):
     found = figures(encoders(rotor, output, stamps(times), COUNTS, OUTPUT_COUNTS))
     assert found.lost_motion.value == pytest.approx(PLAY, abs=0.06 * ARC_MINUTE)
     assert found.lost_motion.uncertainty < 0.5 * ARC_MINUTE
+
+
+@pytest.mark.slow
+def test_a_filter_of_the_output_is_no_play():
+    """It delays less while strokes begin and end, which become ever faster."""
+    drive = Drive(PLAY, ERRORS, noise=0.05 * ARC_MINUTE, **STEPS)
+    strokes = ramped_strokes(5.0, 9.0, 0.7)
+    times, rotor, output = drive.readings(lambda t: strokes(t * (0.5 + t / 30.0)), 30.0, 100.0, 1)
+    share = 1.0 - math.exp(-0.01 / 0.02)
+    filtered = output[0] + lfilter([share], [1.0, share - 1.0], output - output[0])
+    found = figures(encoders(rotor, filtered, stamps(times), COUNTS, OUTPUT_COUNTS))
+    assert found.lost_motion.value == pytest.approx(PLAY, abs=0.1 * ARC_MINUTE)
 
 
 @pytest.mark.slow
