@@ -77,7 +77,7 @@ class OutputEncoder:
             self.rejected[str(rejection)] += 1
             raise
         stamp = stamp or now()
-        if latest and abs(stamp - latest.stamp) > self._farthest:
+        if latest and abs(stamp - latest[0]) > self._farthest:  # its stamp, by the fastest way
             self.comparison.unmatched['no rotor state of about the same time'] += 1
             return ()
         angle = measured_angle(self.parameters, position)

@@ -50,7 +50,7 @@ class SlipWatch:
 
     def __init__(self, parameters: NodeParameters) -> None:
         self._parameters = parameters
-        self._longest = parameters.transmission_error_max_gap * SECOND  # delay, ns
+        self._longest = 3.0 * parameters.transmission_error_max_gap * SECOND  # delays, ns
         self.restart()
 
     def restart(self) -> None:
@@ -65,12 +65,14 @@ class SlipWatch:
     def add(self, sample: ErrorSample) -> None:
         """Take the next error of known turns."""
         errors = self._errors
-        if errors and sample.stamp < errors[-1].stamp:  # the clock was set back
-            errors.clear()
         errors.append(sample)
+        elapsed = sample[0] - errors[0][0]  # their stamps, by the fastest way
         # Each third lasts as long as the longest delay, so that all speeds are known that a
         # delayed error in the middle can be of.
-        if len(errors) < _SAMPLES or sample.stamp - errors[0].stamp < 3.0 * self._longest:
+        if len(errors) < _SAMPLES or 0 <= elapsed < self._longest:
+            return
+        if elapsed < 0:  # the clock was set back
+            errors.clear()
             return
         third = len(errors) // 3
         # Of single intervals, the steps of an encoder would be changes of the speed.
