@@ -5,11 +5,12 @@
 #
 # A flange at a roll of 20°, a pitch of -90° and a yaw of 10°, of which only the sum of roll and yaw is defined.
 # Expected of euler_angles(): a roll and a yaw with the sum of 30°, as it gives for a Rotation3 of these angles. What
-# happens for a UnitQuaternion of these angles: 10.8° and 8.4°, a pose that is 10.8° away. The case of ±90° is taken only
-# if an element of the matrix is exactly ±1, and here it is rounded to a little less. to_rotation_matrix() before it is no
-# help, as the quaternion's own euler_angles() does the same. At a pitch of 90°, 59 of 180 poses are more than 1° away.
-# Rotation3::euler_angles_ordered() about the same axes gives -30° and 0° for the first pose, which is 60° away, with the
-# documented flag that the angles are not unique; at 90° it is right, with the same flag. At -89.9° all are exact.
+# happens for a UnitQuaternion of these angles: 10.8° and 8.4°, a pose that is 10.8° away. The case of ±90° is taken
+# only if an element of the matrix is exactly ±1, and here it is rounded to a little less. to_rotation_matrix() before
+# it is no help, as the quaternion's own euler_angles() does the same. At a pitch of 90°, 59 of 180 poses are more
+# than 1° away. Rotation3::euler_angles_ordered() about the same axes gives -30° and 0° for the first pose, which is
+# 60° away, with the documented flag that the angles are not unique; at 90° it is right, with the same flag. At -89.9°
+# all are exact.
 # For us: keep the orientation of a flange as a quaternion, and make the pose from its angles again to check them.
 #
 # Exit code 0: still so. Needs cargo; installs the version into a temporary folder.
@@ -36,7 +37,8 @@ fn away(roll: f64, pitch: f64, shown: bool) -> [f64; 4] {
     let (roll, tilt, yaw) = (roll.to_radians(), pitch.to_radians(), 10f64.to_radians());
     let matrix = Rotation3::from_euler_angles(roll, tilt, yaw);
     let quaternion = UnitQuaternion::from_euler_angles(roll, tilt, yaw);
-    let (ordered, unique) = matrix.euler_angles_ordered([Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()], true);
+    let axes = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()];
+    let (ordered, unique) = matrix.euler_angles_ordered(axes, true);
     assert_eq!(unique, pitch.abs() < 89.99);
     let read = [
         matrix.euler_angles(),
@@ -63,7 +65,8 @@ fn main() {
     assert!(matrix < 0.001 && quaternion > 2.0 && ordered < 0.01);
     let distances: Vec<f64> = (0..180).map(|roll| away(roll as f64, 90.0, false)[1]).collect();
     let wrong = distances.iter().filter(|&&distance| distance > 1.0).count();
-    println!("at 90°, {wrong} of 180 are more than 1° away, up to {:.1}°", distances.iter().copied().fold(0.0, f64::max));
+    let worst = distances.iter().copied().fold(0.0, f64::max);
+    println!("at 90°, {wrong} of 180 are more than 1° away, up to {worst:.1}°");
     assert!(wrong > 20);
 }
 RUST
