@@ -5,9 +5,10 @@
 #
 # 1 N·m at the motor of a Gearbox of 30 whose efficiency is 0.8 forward and 0.05 backward ("nearly non-backdrivable").
 # Expected at the joint: 24 N·m while it drives, and no more than 30 N·m when it stands. What happens: 312 N·m at a
-# speed of 0, since the mean of 0.8 and 1 / 0.05 is taken there, and 24 N·m at 0.1 rad/s. With the efficiencies by
-# default it is 32.3 N·m. A LeadScrew.from_geometry() of 2 mm that locks itself pushes with 157 kN instead of 81 N at
-# 0.1 N·m. So each simulation that begins at rest begins with a blow.
+# speed of 0, and 24 N·m at 0.1 rad/s. The documented formula passes smoothly from 0.8 to 1 / 0.05 with the sign of the
+# power, so it takes the mean of both at a power of 0; what this does to a drive that starts is not mentioned. With the
+# efficiencies by default it is 32.3 N·m. A LeadScrew.from_geometry() of 2 mm that locks itself pushes with 157 kN
+# instead of 81 N at 0.1 N·m. So each simulation that begins at rest begins with a blow.
 # For us: take a transmission's torque at standstill as ratio times motor torque, within its friction, not from these
 # blocks.
 #
