@@ -7,7 +7,7 @@
 # a unique answer at y = 90°. What happens: from 86.4° on, where the sine is above 0.998, y is 90°, x is 0 and z is the
 # rest, a pose that is up to 3.6° away. A joint that moves slowly through 86.4° jumps by 3.6°, and its angles by 20°. At
 # 86° it is exact.
-# For us: take the angles of a tilted flange from Rotation3::euler_angles() of nalgebra.
+# For us: keep the orientation of a flange as a quaternion, and show its angles only up to a tilt of 86°.
 #
 # Exit code 0: still so. Needs cargo; installs the version into a temporary folder.
 set -eu
