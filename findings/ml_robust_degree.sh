@@ -7,7 +7,7 @@
 # degree". Expected of degree 1: the line, with a stiffness of 100 N·m/rad. What happens: one coefficient, a constant
 # torque; a line needs degree 2, and the example of its README gives 3 for a parabola without a word on it. Expected of
 # degree 2 for a shaft that stiffens with its angle: no error at all. What happens: a line, another one at each run,
-# with 290, 430 or 600 N·m/rad. ml-regression-polynomial, of the same authors, takes degree 1 as a line.
+# such as 290, 430 or 600 N·m/rad. ml-regression-polynomial, of the same authors, takes degree 1 as a line.
 # For us: give RobustPolynomialRegression the wanted degree plus 1, and look at its number of coefficients.
 #
 # Exit code 0: still so. Needs node; installs the versions into a temporary folder.
