@@ -3,10 +3,10 @@
 # kalman-em 0.2.3: with every other reading of an encoder missing, its noise of 10 mrad is found as 370 mrad.
 #
 # A joint swings by ±1 rad and is read at 100 Hz with a noise of 10 mrad. With all readings, fit() and smooth() find a
-# noise of 10 mrad and a motion that is right to 31 mrad. Missing readings may be NaN, as documented. Expected with
-# every other one missing, which leaves 50 a second: about the same. What happens: the step that learns the matrix H
-# divides sums over the readings that exist by sums over all times, and so does the one that learns the noise R. H gets
-# smaller with each iteration, the noise is found as 370 mrad, and the smoothed angle is up to 0.8 rad away. The
+# noise of 10 mrad and a motion that is right to about 30 mrad. Missing readings may be NaN, as documented. Expected
+# with every other one missing, which leaves 50 a second: about the same. What happens: the step that learns the matrix
+# H divides sums over the readings that exist by sums over all times, and so does the one that learns the noise R. H
+# gets smaller with each iteration, the noise is found as 370 mrad, and the smoothed angle is up to 0.8 rad away. The
 # likelihood, which must rise from one iteration to the next, falls, without a warning.
 # For us: fill the gaps by interpolation before fit(), and check that log_liks_ rises.
 #
