@@ -202,7 +202,7 @@ def home(folder: Path) -> None:
     with Person(folder, 'watch', '--text') as watching:
         watching.wait_for('connected')
         watching.wait_for(r'Set it to 0\.0°', keys='h')
-        watching.wait_for(r'is now 0\.0°', keys='hy')
+        watching.wait_for(r'is now at 0\.0°', keys='hy')
         watching.type('q')
         assert watching.end() == 0
 
