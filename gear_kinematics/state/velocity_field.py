@@ -34,8 +34,10 @@ _FEW = 4  # velocities between readings, of which the mean is that of an oscilla
 _RELATED = 0.5  # the correlation that a motion has with its velocities, at least
 _FILTERED = 0.5  # share by which what a filter leaves of a motion may differ from a projection
 _LATE, _EXPLAINED = 0.03, 0.9
-"""s, and the square of a correlation, from which a delay is worth a word. Noise of the positions
-looks like half of `SPAN`, but explains a half."""
+"""s, and the square of a correlation, from which a delay is worth a word."""
+_CHANGES = 4.0
+"""Noises of a reading: least change of the travels from which a delay is told. At a steady speed,
+an error of the positions, such as one of each turn, looks like a delay of half of `SPAN`."""
 
 
 class VelocityMeaning(StrEnum):
@@ -177,14 +179,14 @@ class VelocityField:
             self._moved |= mean != 0.0
             readings.append((stamp, position, mean))
             if len(readings) > 1:
-                self._follow(travel)
+                self._follow(travel, noise)
         del readings[:-_MOST]
         for stride in _STRIDES:
             if self._compare(travel, stride):
                 break
         self.quiet_until = 0 if self.contradicts else self.due
 
-    def _follow(self, travel: float) -> None:
+    def _follow(self, travel: float, noise: float) -> None:
         """Decide on a motion of more than `travel`, rad, however unsteady, of the latest readings.
 
         Only a factor that has a name counts: delays of filters make any of the others.
@@ -201,16 +203,13 @@ class VelocityField:
             off = expected - turn
             self._off_squares += off * off
             turned = (start - origin) * (stamp - before) / (before - earlier)
-            for k, change in enumerate(
-                (
-                    turned - turn,
-                    expected - former * (stamp - before) * 1e-9,
-                )
-            ):
+            changes = turned - turn, expected - former * (stamp - before) * 1e-9
+            for k, change in enumerate(changes):
                 self._products_of_changes[k] += off * change
                 self._change_squares[k] += change * change
         if self._turns >= _FEWEST and self._path >= travel:
-            self._note_delay()
+            if self._change_squares[0] >= self._turns * (_CHANGES * noise) ** 2:
+                self._note_delay()
             least = _ALIGNED * self._squares * self._velocity_squares
             if self._products * self._products >= least > 0.0:
                 factor = self._products / self._squares

@@ -182,6 +182,20 @@ def test_fields_that_are_late_in_unsteady_motion_are_named(delay, named, step):
         assert meaning.values == {'delay': pytest.approx(abs(delay), rel=0.05)}
 
 
+@pytest.mark.parametrize(('eccentric', 'noise'), [(0.02, 0.0), (0.0, 0.01)])
+def test_errors_of_positions_at_a_steady_speed_are_no_delay(eccentric, noise):
+    """Even where readings, 0.1 s apart, take them half a turn apart."""
+    time, speed = np.arange(36_000) / 100, 5.0 * TURN
+    angle = speed * time
+    errors = noise * np.random.default_rng(3).uniform(-1.0, 1.0, len(time))
+    position = angle + eccentric * np.sin(angle + 0.5) + errors
+    values = np.column_stack([position, np.full_like(time, speed), np.zeros_like(time)])
+    stamps = SECOND + np.arange(len(time)) * (SECOND // 100)
+    rotor = VelocityField(np.nan)
+    rotor.believed(stamps, values, 0.05)
+    assert rotor.meaning is None
+
+
 @pytest.mark.parametrize('rate', [10, 20, 30, 100])
 def test_velocities_of_a_slow_driver_are_no_sign_of_late_positions(rate):
     """They are those of the end of the travel."""
