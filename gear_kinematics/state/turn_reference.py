@@ -92,6 +92,12 @@ class Decision(NamedTuple):
         return abs(self.distance) <= self.budget < self.margin and not self.outside
 
     @property
+    def refuted(self) -> bool:
+        """Whether the errors exclude the turns, rather than leave two places for them."""
+        either = self.outside and self.outside.condition is Condition.AT_EITHER_END
+        return self.budget < self.margin and not (self.unambiguous or either)
+
+    @property
     def disagreement(self) -> Fact | None:
         """How the encoder contradicts the rotor's count, if it does."""
         apart = self.measured - self.output_angle
@@ -234,7 +240,7 @@ class TurnReference:
                     if not referenced and decision.budget <= _ALIKE * self._refuted:
                         self._refer(decision)
                         return ()
-                elif decision.budget < decision.margin:
+                elif decision.refuted:
                     self._refuted = min(self._refuted, decision.budget)
         return samples if referenced else ()
 

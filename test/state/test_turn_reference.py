@@ -192,6 +192,15 @@ def test_range_of_nearly_a_turn_does_not_tell_its_ends_apart():
     assert bench.rest(math.radians(20.0)) == pytest.approx(math.radians(20.0), abs=2e-3)
 
 
+def test_turns_that_may_be_at_either_end_are_found_as_soon_as_the_output_leaves_it():
+    bench = Bench(replace(SINGLE, output_range=(0.0, math.radians(359.9)), **GAP))
+    bench.rest(0.0)
+    assert not bench.rotor.referenced
+    found = bench.turn(*np.arange(300) * 5e-4)  # at 0.5 rad/s, where a delay could explain 0.4°
+    assert bench.rotor.referenced
+    assert found == pytest.approx(0.1495, abs=1e-9)
+
+
 def test_range_is_checked_without_an_encoder_at_the_output():
     bench = Bench(replace(MULTI, output_encoder_reference='none', **QUARTERS))
     for degrees, facts in ((269.0, []), (-90.0, [outside(-90.0)])):
