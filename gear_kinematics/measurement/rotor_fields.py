@@ -14,6 +14,7 @@ from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.effort_field import EffortField, questioned
+from gear_kinematics.state.reach import FLOOR
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.state.velocity_field import VelocityField, VelocityMeaning
@@ -70,7 +71,7 @@ def questions(
     sizes = np.abs(np.diff(values[:, 0]))
     given = values[np.isfinite(values[:, 1]), 1]
     velocities = VelocityField(float(1 / ratio) if ratio else np.nan)
-    noise = 2.0 * float(np.min(sizes[sizes > _EQUAL], initial=1.0))
+    noise = max(2.0 * float(np.min(sizes[sizes > _EQUAL], initial=1.0)), FLOOR)
     velocities.believed(stamp, values, noise)
     absent = len(given) and not given.any() and np.ptp(values[:, 0]) > _MOVED
     if absent:

@@ -139,3 +139,13 @@ def test_messages_too_few_for_turns_are_named_unless_velocities_help(rate, veloc
     found = questions(data, [0] * len(data), 'rotor', None, (650.0, 6500.0))
     matches = [re.fullmatch(said, str(each)) for said, each in zip(asked, found, strict=True)]
     assert all(matches)
+
+
+def test_noise_of_positions_at_a_steady_speed_is_no_delay_of_the_velocities():
+    speed = np.minimum(np.arange(30_000) * 0.5, 50.0)
+    noise = np.random.default_rng(1).uniform(-0.01, 0.01, (4, len(speed)))
+    received = stamps(np.arange(len(speed)) / 100)
+    for position in np.cumsum(speed) / 100 + noise:
+        each = zip(received, position.tolist(), speed.tolist(), strict=True)
+        data = [rotor_bytes(t, position=[p], velocity=[v]) for t, p, v in each]
+        assert not [*questions(data, received, 'rotor')]
