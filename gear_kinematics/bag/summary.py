@@ -84,7 +84,7 @@ def summarise(
         unclear = str(error).removeprefix(f'{bag.path}: ')
     others = Counter[str]()
     readers: dict[str, JointReader | None] = {}
-    if any(joints[:1]):
+    if joints and joints[0]:
         readers[rotor] = JointReader(joints[0])
     times = {topic: list[tuple[int, int]]() for topic in bag.topics}
     ends: list[int] = []

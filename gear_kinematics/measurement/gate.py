@@ -244,7 +244,7 @@ def _slipped(
             passes = [_rise(error, ideal - ideal[row], there & (way == w)) for w in (-1, 1)]
             shares = np.diff(passes) / steps[row]
         # In one direction alone, a delay changes the error with the speed, too.
-        enough = len(shares) > reverses[row]
+        enough = len(shares) >= (2 if reverses[row] else 1)
         found[row] = enough and shares.min() > _MOST_OF and shares.max() < 1.0 / _MOST_OF
     return found
 

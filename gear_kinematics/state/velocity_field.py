@@ -243,9 +243,10 @@ class VelocityField:
     def _note_delay(self) -> None:
         """Say that velocities or positions are late if two blocks in a row show it.
 
-        One block that does not ends it. By a delay of the velocities, each is between those of
-        the last two travels, or before; by one of the positions, the travel is that of an earlier
-        velocity. A few velocities between two readings are those of a later time than the travel.
+        One block that shows no delay ends it. Late velocities lie between those of the last two
+        travels, or are earlier ones; late positions make a travel that of an earlier velocity.
+        Where there are few velocities between two readings, their mean is that of a later time
+        than the travel, and says nothing about the positions.
         """
         for k, late in enumerate((1, -1)[: 2 - self._sparse]):
             product, squares = self._products_of_changes[k], self._change_squares[k]
