@@ -7,9 +7,11 @@ interpolated to its stamp, once ideal samples on both sides of it are known.
 
 import math
 from collections import Counter, deque
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_turns
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
@@ -31,6 +33,37 @@ class ErrorSample(NamedTuple):
     def since(self, before: 'ErrorSample') -> float:
         """Travel of the ideal output from another sample, rad."""
         return TURN * (self.turns - before.turns) + self.ideal - before.ideal
+
+
+SAMPLES = 60
+"""Errors of a block, at least. The true error lies outside of the range of n independent ones with
+a probability of 2^(1 - n), whatever the distribution of the noise (both sides of its median are
+equally likely): 2e-6 here."""
+
+
+class ErrorBlock:
+    """Collects the latest errors into blocks, of each of which a third is new.
+
+    A block lasts three times as long as the longest delay between the encoders, so that the motion
+    is known that a delayed error of its middle third can be of.
+    """
+
+    def __init__(self, parameters: NodeParameters, *, gaps: bool = False) -> None:
+        """Start empty; without `gaps`, no two errors of a block are further apart than a delay."""
+        longest = parameters.longest_delay_ns
+        self._least, self._max_gap = 3 * longest, math.inf if gaps else longest
+        self._errors: list[ErrorSample] = []
+
+    def add(self, sample: ErrorSample) -> Sequence[ErrorSample]:
+        """Take the next error; returns the block that it completes, or nothing."""
+        errors = self._errors
+        if errors and not 0 <= sample.stamp - errors[-1].stamp <= self._max_gap:
+            errors.clear()  # a stamp before the last one is that of a clock that was set back
+        errors.append(sample)
+        if len(errors) < SAMPLES or sample.stamp - errors[0].stamp < self._least:
+            return ()
+        self._errors = errors[len(errors) // 3 :]
+        return errors
 
 
 class Direction:

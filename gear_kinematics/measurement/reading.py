@@ -225,8 +225,7 @@ def _compared(
     motion: RotorMotion, stamps: Array, angles: Array, parameters: NodeParameters, sources: Sources
 ) -> Encoders:
     """Interpolate the rotor to the angles of the output."""
-    gap = round(parameters.transmission_error_max_gap * SECOND)
-    before, share, inside = match(motion.stamp, stamps, gap)
+    before, share, inside = match(motion.stamp, stamps, parameters.longest_delay_ns)
     outside = int(np.count_nonzero((stamps < motion.stamp[0]) | (stamps > motion.stamp[-1])))
     unmatched = {
         'outside of the rotor states': outside,

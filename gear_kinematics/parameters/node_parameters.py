@@ -21,6 +21,7 @@ from gear_kinematics.parameters.body_parameters import BRANCH_PARAMETERS, LOADS_
 from gear_kinematics.parameters.files import ConfigError, default_values
 from gear_kinematics.parameters.parameter import Parameter, declared_in, parameter
 from gear_kinematics.share import share_directory
+from gear_kinematics.wire.cdr import SECOND
 
 NODE = 'gear_state_publisher'  #: the default name of the node
 
@@ -294,6 +295,11 @@ class NodeParameters:
     def rotor_limits(self) -> tuple[float, float]:
         """Greatest speed, rad/s, and acceleration, rad/s², of the rotor."""
         return self.max_rotor_speed, self.max_rotor_acceleration
+
+    @property
+    def longest_delay_ns(self) -> int:
+        """The gap beyond which nothing is interpolated, which bounds the encoders' delay, ns."""
+        return round(self.transmission_error_max_gap * SECOND)
 
     @property
     def absolute(self) -> bool:

@@ -8,12 +8,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from gear_kinematics.correction.error_window import ErrorStatistics
+from gear_kinematics.correction.transmission_error import SAMPLES
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.state.disorder import ALTERNATING
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition, Fact, GearReport
-from gear_kinematics.state.turn_reference import SAMPLES, TurnReference, range_fault
+from gear_kinematics.state.turn_reference import TurnReference, range_fault
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import Rejection
 

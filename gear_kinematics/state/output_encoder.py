@@ -50,7 +50,7 @@ class OutputEncoder:
         self.parameters = parameters
         self._reader = JointReader(parameters.output_encoder_joint)
         self._ratio = parameters.gear.gear_ratio
-        longest = round(parameters.transmission_error_max_gap * SECOND)
+        longest = parameters.longest_delay_ns
         self._farthest = CLOCK_RESET + longest  # ns, between the latest stamps of both encoders
         self.comparison.configure(
             max_gap=longest,

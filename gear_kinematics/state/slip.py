@@ -5,11 +5,9 @@ import statistics
 from itertools import pairwise
 from typing import NamedTuple
 
-from gear_kinematics.correction.transmission_error import ErrorSample
+from gear_kinematics.correction.transmission_error import ErrorBlock, ErrorSample
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.wire.cdr import SECOND
-
-_SAMPLES = 60  # of a block; the median of the middle third ignores single wrong readings
 
 
 class Slip(NamedTuple):
@@ -50,13 +48,12 @@ class SlipWatch:
 
     def __init__(self, parameters: NodeParameters) -> None:
         self._parameters = parameters
-        self._longest = 3.0 * parameters.transmission_error_max_gap * SECOND  # delays, ns
         self.restart()
 
     def restart(self) -> None:
         """Forget the slip and the reference, as the zero or the turns have changed."""
         self.slip: Slip | None = None
-        self._errors: list[ErrorSample] = []
+        self._block = ErrorBlock(self._parameters, gaps=True)
         self._reference: _Block | None = None
         self._steady: _Block | None = None
         """The first block at about the present speed, between which a delay hides little."""
@@ -64,15 +61,7 @@ class SlipWatch:
 
     def add(self, sample: ErrorSample) -> None:
         """Take the next error of known turns."""
-        errors = self._errors
-        errors.append(sample)
-        elapsed = sample[0] - errors[0][0]  # their stamps, by the fastest way
-        # Each third lasts as long as the longest delay, so that all speeds are known that a
-        # delayed error in the middle can be of.
-        if len(errors) < _SAMPLES or 0 <= elapsed < self._longest:
-            return
-        if elapsed < 0:  # the clock was set back
-            errors.clear()
+        if not (errors := self._block.add(sample)):
             return
         third = len(errors) // 3
         # Of single intervals, the steps of an encoder would be changes of the speed.
@@ -81,9 +70,9 @@ class SlipWatch:
             for a, b in pairwise(errors[:: third // 4])
             if b.stamp > a.stamp
         ]
+        # The median of the middle third ignores single wrong readings.
         middle = statistics.median(each.error for each in errors[third:-third])
         block = _Block(middle, min(speeds, default=0.0), max(speeds, default=0.0))
-        self._errors = errors[third:]
         reference, steady, last = self._reference, self._steady, self._last
         limit, self._last = self._parameters.transmission_error_limit, block
         if not reference or not last or not steady:

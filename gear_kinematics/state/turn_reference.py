@@ -15,19 +15,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gear_kinematics.correction.transmission_error import ErrorSample
+from gear_kinematics.correction.transmission_error import ErrorBlock, ErrorSample
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.kinematics.rotor_turns import TURN, repeated
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.wire.batches import Array
-from gear_kinematics.wire.cdr import SECOND
 
-SAMPLES = 60
-"""Errors of a block, at least, of which a third is further from both ends than the longest delay.
-The true error lies outside of the range of n independent ones with a probability of 2^(1 - n),
-whatever the distribution of the noise (both sides of its median are equally likely): 2e-6 here."""
 _ALIKE = 1.5  # greatest ratio of the budgets of two blocks at rest
 
 
@@ -168,31 +163,6 @@ def decide(
     return Decision(angle, error, turns, distance, budget, margin, tolerance, measured, outside)
 
 
-class ErrorBlock:
-    """Decides on the turns by the latest errors of the output, each time a third of them is new.
-
-    The longest gap of rotor states in which angles are compared bounds the delay between the
-    encoders. A block lasts three times as long, so that the motion about its middle is known.
-    """
-
-    def __init__(self) -> None:
-        self._errors: list[ErrorSample] = []
-
-    def add(
-        self, sample: ErrorSample, parameters: NodeParameters, unseen: float = 0.0
-    ) -> Decision | None:
-        """Take the next error; returns a decision if it completes a block. See `decide`."""
-        errors, longest = self._errors, parameters.transmission_error_max_gap * SECOND
-        if errors and not 0 <= sample.stamp - errors[-1].stamp <= longest:
-            errors.clear()
-        errors.append(sample)
-        if len(errors) < SAMPLES or sample.stamp - errors[0].stamp < 3.0 * longest:
-            return None
-        decision = decide(errors, parameters, unseen)
-        del errors[: len(errors) // 3]
-        return decision
-
-
 class TurnReference:
     """Follows the errors of the output, and references the rotor's count where it is unambiguous.
 
@@ -210,7 +180,7 @@ class TurnReference:
 
     def restart(self) -> None:
         """Forget all errors, as the count has changed."""
-        self._block = ErrorBlock()
+        self._block = ErrorBlock(self.rotor.parameters)
         self.decision: Decision | None = None  # the latest on the present count
         self._refuted = math.inf
         """The least budget, rad, that could tell the turns apart and did not explain the distance:
@@ -231,9 +201,9 @@ class TurnReference:
         """
         referenced = self.rotor.referenced
         for sample in samples:
-            unseen = self.rotor.turns.unseen_travel
-            if decision := self._block.add(sample, self.rotor.parameters, unseen):
-                self.decision = decision
+            if errors := self._block.add(sample):
+                unseen = self.rotor.turns.unseen_travel
+                self.decision = decision = decide(errors, self.rotor.parameters, unseen)
                 if decision.disagreement or decision.budget < decision.margin:
                     self.disagreement = decision.disagreement
                 if decision.unambiguous:

@@ -22,7 +22,6 @@ from gear_kinematics.validation.fields import Array, Occurrences, Window
 from gear_kinematics.validation.recorder import HOLE
 from gear_kinematics.validation.report import Finding
 from gear_kinematics.wire.batches import decode_joint_states
-from gear_kinematics.wire.cdr import SECOND
 
 _KEPT = 16_384  # samples of each kind that wait for the others
 _KIND = np.dtype([('stamp', np.int64), ('angle', np.float64)])
@@ -84,7 +83,7 @@ class EncoderErrors:
         at = np.maximum(np.searchsorted(ideal['stamp'], errors['stamp']), 1)
         before, after = ideal[at - 1], ideal[at]
         interval = after['stamp'] - before['stamp']
-        longest = min(longest, self._parameters.transmission_error_max_gap * SECOND)
+        longest = min(longest, self._parameters.longest_delay_ns)
         judged = before['usable'] & after['usable']
         judged &= np.abs(after['count'] - before['count']) <= self._tolerance
         judged &= (before['stamp'] <= errors['stamp']) & (interval <= longest)

@@ -10,10 +10,10 @@ from contextlib import suppress
 from functools import partial
 
 from gear_kinematics.bag import TopicMessages
-from gear_kinematics.correction.transmission_error import ErrorSample
+from gear_kinematics.correction.transmission_error import ErrorBlock, ErrorSample
 from gear_kinematics.kinematics import RotorPosition, RotorSample
 from gear_kinematics.state.gear_state import GearState
-from gear_kinematics.state.turn_reference import ErrorBlock
+from gear_kinematics.state.turn_reference import decide
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.fields import Window
 from gear_kinematics.validation.report import Finding
@@ -30,7 +30,7 @@ class TurnReferences:
         self._parameters, self._corrector = gear.parameters, gear.corrector
         self._encoder = gear.output_encoder
         self._encoder.reference = None
-        self._block, self._segment = ErrorBlock(), -1
+        self._block, self._segment = ErrorBlock(self._parameters), -1
         self._agreed, self._disagreeing = False, 0
         self._fault: Finding | None = None
 
@@ -45,7 +45,8 @@ class TurnReferences:
         columns = (samples[name].tolist() for name in ('segment', 'stamp', 'turns', 'angle'))
         for segment, stamp, turns, angle in zip(*columns, strict=True):
             if segment != self._segment:
-                self._segment, self._block, self._disagreeing = segment, ErrorBlock(), 0
+                self._block = ErrorBlock(self._parameters)
+                self._segment, self._disagreeing = segment, 0
             sample = RotorSample(stamp, RotorPosition(int(turns), angle), None, None)
             correction = None
             if self._corrector:
@@ -62,9 +63,9 @@ class TurnReferences:
 
     def _judge(self, samples: Sequence[ErrorSample]) -> None:
         for sample in samples:
-            decision = self._block.add(sample, self._parameters)
-            if not decision:
+            if not (errors := self._block.add(sample)):
                 continue
+            decision = decide(errors, self._parameters)
             fault = (decision.unambiguous or decision.outside) and decision.disagreement
             self._agreed |= decision.unambiguous and not fault
             self._disagreeing = self._disagreeing + 1 if fault else 0

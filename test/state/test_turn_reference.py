@@ -10,11 +10,11 @@ import pytest
 from live import SECOND, START, rotor_bytes
 
 from gear_kinematics.correction.corrector import Correction
+from gear_kinematics.correction.transmission_error import SAMPLES
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.monitors import Connections
 from gear_kinematics.state.statuses import Condition
-from gear_kinematics.state.turn_reference import SAMPLES
 
 MS = SECOND // 1000
 MULTI = replace(
