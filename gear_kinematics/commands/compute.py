@@ -10,7 +10,7 @@ from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, only
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.parameters.arm import labelled
-from gear_kinematics.report.document import counted, printable
+from gear_kinematics.report.document import printable
 from gear_kinematics.validation.compute import ComputeResult, compute
 from gear_kinematics.wire.nearest import listed
 
@@ -98,22 +98,6 @@ def _print_summary(out: Path, result: ComputeResult) -> None:
     )
     if result.left_out:
         print(printable(f'left out: {listed(result.left_out)}'))
-    for name, rotor in inputs.items():
-        doubts = (
-            rotor.why_lost,
-            rotor.plausibility.beyond_limits,
-            rotor.disorder.clock_step,
-            f'{counted(rotor.zero_stamps, "message")} without a stamp: outputs have the time of '
-            'reception'
-            if rotor.zero_stamps
-            else '',
-            rotor.velocity_field.in_recording,
-            result.questions[name],
-            result.outside[name],
-            'the effort is 0 throughout the motion, and left out'
-            if rotor.effort_field.absent
-            else '',
-            '' if rotor.referenced else 'the turns of the rotor are not known at the end',
-        )
-        for doubt in filter(None, doubts):
+    for name in inputs:
+        for doubt in result.doubts[name]:
             complain(f'{out}: {labelled(name, str(doubt))}')

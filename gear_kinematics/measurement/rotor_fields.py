@@ -19,7 +19,7 @@ from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.state.velocity_field import VelocityField, VelocityMeaning
 from gear_kinematics.state.wraps import too_seldom
-from gear_kinematics.wire.batches import Array, JointStates, decode_joint_states
+from gear_kinematics.wire.batches import Array, JointStateBatch, JointStates, decode_joint_states
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import Rejection
 
@@ -42,7 +42,7 @@ def questions(
     """Yield what seems to be wrong with the fields of n messages.
 
     Args:
-        data: the messages, serialised sensor_msgs/JointState.
+        data: the messages, serialised sensor_msgs/JointState; a batch is decoded once.
         received: times of reception, ns, which replace missing stamps.
         joint: name of the rotor's joint; '' takes the only one.
         ratio: gear ratio if known, to recognise velocities of the output.
@@ -143,4 +143,4 @@ def recorded_questions(bag: Bag, topic: str, joint: str) -> Iterator[Observed | 
                 break
     except DamagedBagError:
         pass  # the reader of the recording reports it
-    yield from questions(data, received, joint, steps=True)
+    yield from questions(JointStateBatch(data), received, joint, steps=True)

@@ -106,6 +106,9 @@ class Condition(Enum):
     )
     VELOCITIES_WERE = OK, 'until {time:.3f} s, {doubt}', ''
     EFFORT_TOO_LARGE = OK, _EFFORT, ''
+    EFFORT_IS_ZERO = OK, 'the effort is 0 throughout the motion, and left out', ''
+    UNSTAMPED = OK, '{messages} without a stamp: outputs have the time of reception', ''
+    UNREFERENCED_AT_END = OK, 'the turns of the rotor are not known at the end', ''
     BEYOND_LIMITS = (
         WARN,
         '{which}',

@@ -14,10 +14,11 @@ from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, TopicErr
 from gear_kinematics.bag.roles import Topics, find_in_namespace, in_namespace
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.report.document import counted
 from gear_kinematics.state.effort_field import questioned
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.rotor_input import RotorInput
-from gear_kinematics.state.statuses import Fact
+from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.state.turn_reference import farthest_outside
 from gear_kinematics.wire.batches import join_joint_states
 from gear_kinematics.wire.topics import (
@@ -39,13 +40,12 @@ _OUTPUTS = *STATE_TOPICS, *CORRECTED_TOPICS, TRANSMISSION_ERROR, *LOAD_TOPICS
 
 @dataclass(frozen=True, slots=True)
 class ComputeResult:
-    """Numbers of messages that were computed and copied."""
+    """What was computed and copied, and what makes the outputs doubtful."""
 
     inputs: Mapping[str, RotorInput]  # by actuator, with counts of the rotor's messages
     computed: int  # messages written on each output topic
     copied: int  # messages copied from other topics
-    questions: Mapping[str, Fact | None]  # by actuator: efforts that are hardly torques of a rotor
-    outside: Mapping[str, Fact | None]  # by actuator: an output angle outside of its range
+    doubts: Mapping[str, Sequence[Fact]]  # by actuator: what seems wrong with its input
     left_out: tuple[str, ...]  # topics not copied: not chosen, or not possible in a rosbag2
 
 
@@ -131,8 +131,7 @@ def compute(
         inputs_of,
         computed,
         copied,
-        {name: questioned(effort) for name, effort in efforts.items()},
-        outside,
+        {name: _doubts(each, efforts[name], outside[name]) for name, each in inputs_of.items()},
         left_out=tuple(sorted(source.topics.keys() - {*kept, *outputs})),
     )
 
@@ -183,6 +182,23 @@ def _answers(
         data = columns[0] if len(columns) == 1 else join_joint_states(columns)
         joined[name] = dict(zip(places, data, strict=True))
     return joined
+
+
+def _doubts(rotor: RotorInput, effort: float, outside: Fact | None) -> list[Fact]:
+    """Return what seems wrong with an input, by its state at the end and its greatest effort."""
+    unstamped = Condition.UNSTAMPED(messages=counted(rotor.zero_stamps, 'message'))
+    doubts = (
+        rotor.why_lost,
+        rotor.plausibility.beyond_limits,
+        rotor.disorder.clock_step,
+        unstamped if rotor.zero_stamps else None,
+        rotor.velocity_field.in_recording,
+        questioned(effort),
+        outside,
+        Condition.EFFORT_IS_ZERO() if rotor.effort_field.absent else None,
+        None if rotor.referenced else Condition.UNREFERENCED_AT_END(),
+    )
+    return [doubt for doubt in doubts if doubt]
 
 
 def _check_topics(

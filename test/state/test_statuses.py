@@ -22,6 +22,7 @@ VALUES = {
     'time': 1_700_000_000.5,
     'counts': {'joint missing': 12, 'not a JointState': 1},
     'count': 12,
+    'messages': '12 messages',
     'meaning': 'rpm',
     'doubt': Condition.VELOCITIES_ARE(meaning='0'),
     'factor': 9.5493,
