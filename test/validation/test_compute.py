@@ -18,6 +18,7 @@ from shipped_bags import BAGS, CONFIGS, TYPES, read_bag, write_bag
 from gear_kinematics.bag import Bag, BagError, DamagedBagError
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.statuses import Condition
 from gear_kinematics.validation.compute import ComputeResult, compute
 
 OUTPUTS = ('/output_state', '/body_poses')
@@ -67,6 +68,15 @@ def rotor_only(tmp_path) -> Path:
             if number % 10 == 0:
                 writer.write(other, stamp + 600, UNKNOWN)
     return path
+
+
+def test_an_effort_of_zero_throughout_the_motion_makes_outputs_doubtful(tmp_path):
+    stamps = range(SECOND, 2 * SECOND, SECOND // 100)
+    data = [rotor_bytes(t, position=[t / SECOND], effort=[0.0]) for t in stamps]
+    messages = [('/rotor_state', t, each) for t, each in zip(stamps, data, strict=True)]
+    types = {'/rotor_state': TYPES['/rotor_state']}
+    done = run(write_bag(tmp_path / 'in', messages, types), tmp_path / 'out', config())
+    assert done.doubts == {'': [Condition.EFFORT_IS_ZERO()]}
 
 
 @pytest.mark.parametrize('compression', ['none', 'zstd'])
