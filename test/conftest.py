@@ -53,6 +53,7 @@ from collections.abc import Callable  # noqa: E402
 
 import hypothesis  # noqa: E402
 import pytest  # noqa: E402
+from chromium import chromium  # noqa: E402
 
 from gear_kinematics.kinematics import Branch, Mechanism  # noqa: E402
 from gear_kinematics.parameters import NodeParameters  # noqa: E402
@@ -110,6 +111,12 @@ def actuator() -> Mechanism:
         Branch('b', cam_phase=math.pi, axial_position=-0.04),
     )
     return Mechanism(80, 76, 0.0011, branches)
+
+
+@pytest.fixture(scope='module')
+def browser():
+    with chromium() as browser:
+        yield browser
 
 
 @pytest.fixture

@@ -9,6 +9,7 @@ from fractions import Fraction
 
 import pytest
 from blocked_bags import BAGS, gearkin, refusal
+from oracle import turn_of
 
 from gear_kinematics.commands.cli import main
 
@@ -35,11 +36,6 @@ def holes(setting: dict) -> tuple[int, int, int]:
 
 def degrees(angle: float) -> str:
     return repr(math.degrees(angle))
-
-
-def turn_of(ring_teeth: int, tooth: int, ring_hole: int, chassis_hole: int) -> Fraction:
-    turn = Fraction(tooth, ring_teeth) + Fraction(ring_hole, ring_teeth + 1)
-    return (turn + Fraction(chassis_hole, ring_teeth + 2)) % 1
 
 
 # The vernier.

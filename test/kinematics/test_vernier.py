@@ -10,6 +10,7 @@ import mpmath
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
+from oracle import turn_of
 
 from gear_kinematics.kinematics.vernier import (
     angle_between,
@@ -21,15 +22,6 @@ from gear_kinematics.kinematics.vernier import (
 )
 
 SMALL = range(1, 13)
-
-
-def turn_of(ring_teeth: int, tooth: int, ring_hole: int, chassis_hole: int) -> Fraction:
-    """Turn of the ring gear's profile by a setting, in whole turns, from first principles."""
-    return (
-        Fraction(tooth, ring_teeth)
-        + Fraction(ring_hole, ring_teeth + 1)
-        + Fraction(chassis_hole, ring_teeth + 2)
-    ) % 1
 
 
 def every_setting(ring_teeth: int) -> list[tuple[int, int, int]]:

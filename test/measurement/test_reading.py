@@ -10,7 +10,7 @@ import pytest
 from gear_recordings import Gear, Samples, creep, ramps, write_csv, write_recording
 from live import rotor_bytes
 from refusals import refused
-from simulated_encoders import stepped
+from simulated_encoders import MS, stepped
 
 from gear_kinematics.bag import BagError, TopicMessages
 from gear_kinematics.measurement import dialects, reading
@@ -23,7 +23,6 @@ from gear_kinematics.measurement.sentences import Observation
 from gear_kinematics.measurement.stamps import RestoredClock
 
 TURN = 2.0 * math.pi
-MS = 10**6
 START = 1_700_000_000 * 10**9
 GEAR = Gear(play=0.01, stiffness=300.0, friction=0.8)
 TORQUE = ramps(*[(5.0, 200)] * 3)

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from gear_recordings import Samples, write_csv, write_recording
-from simulated_encoders import START, TURN, Drive, even_strokes, stepped
+from simulated_encoders import MS, START, TURN, Drive, even_strokes, stepped
 
 from gear_kinematics.correction.transmission_error import Direction
 from gear_kinematics.measurement.lost_motion import measure
@@ -12,7 +12,6 @@ from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import RecordingError
 from gear_kinematics.measurement.two_encoders import directions
 
-MS = 10**6
 PLAY = 3e-3
 AMPLITUDES = {19: 1.0e-3, 20: 4e-4, 2: 5e-4, 1520: 2e-4}  # by order
 RATE = 1000.0

@@ -10,7 +10,7 @@ import numpy as np
 import oracle
 import pytest
 import report_samples as samples
-from chromium import chromium, noting
+from chromium import noting
 
 from gear_kinematics import plotting
 from gear_kinematics.kinematics import Branch, Mechanism
@@ -36,12 +36,6 @@ MECHANISMS = (
     (Mechanism(11, 8, 0.004, (Branch('a', 0.4), Branch('b', 2.9), Branch('c', -1.3))), 0.0025),
 )
 """Each with the module of its teeth."""
-
-
-@pytest.fixture(scope='module')
-def browser():
-    with chromium() as browser:
-        yield browser
 
 
 @pytest.fixture(scope='module')

@@ -7,6 +7,7 @@ Nothing of `gear_kinematics` is imported here, and nothing here is a closed form
 """
 
 import math
+from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -195,3 +196,12 @@ def _combine(rule, *motions):
     parts = [_combine(rule, *fields) for fields in zip(*motions, strict=True)]
     kind = type(motions[0])
     return kind(*parts) if hasattr(kind, '_fields') else tuple(parts)
+
+
+def turn_of(ring_teeth: int, tooth: int, ring_hole: int, chassis_hole: int) -> Fraction:
+    """Turn of the ring gear's profile by a setting, in whole turns, from first principles."""
+    return (
+        Fraction(tooth, ring_teeth)
+        + Fraction(ring_hole, ring_teeth + 1)
+        + Fraction(chassis_hole, ring_teeth + 2)
+    ) % 1

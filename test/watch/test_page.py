@@ -8,7 +8,7 @@ import threading
 from contextlib import contextmanager
 
 import pytest
-from chromium import chromium, noting
+from chromium import noting
 from live import Listener
 from watching import (
     DEADLINE,
@@ -37,12 +37,6 @@ expect = sync_api.expect
 @pytest.fixture(scope='module')
 def folder(tmp_path_factory):
     return tmp_path_factory.mktemp('watch')
-
-
-@pytest.fixture(scope='module')
-def browser():
-    with chromium() as browser:
-        yield browser
 
 
 @pytest.fixture(scope='module')
