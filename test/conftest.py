@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""What every test needs: a ROS domain of its own, hypothesis profiles, mechanisms, shared data."""
+"""What every test needs: a ROS domain of its own, hypothesis profiles, gears, shared data."""
 
 import atexit
 import os
@@ -147,7 +147,7 @@ def context():
 
 
 @pytest.fixture(scope='module')
-def config() -> dict:
+def config() -> NodeParameters:
     """Return the default parameters of the node."""
     return NodeParameters.load()
 

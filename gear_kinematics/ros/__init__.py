@@ -1,2 +1,2 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The node and other ROS interfaces; only this room imports rclpy."""
+"""The node and other ROS interfaces; `watch` alone imports rclpy, too."""
