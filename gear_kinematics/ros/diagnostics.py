@@ -9,8 +9,8 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSCompatibility, QoSProfile, ReliabilityPolicy, qos_check_compatible
 from rclpy.subscription import Subscription
-from rclpy.topic_endpoint_info import TopicEndpointInfo
 
+from gear_kinematics.ros.graph import node_of
 from gear_kinematics.state.statuses import Condition, Fact, GearReport
 
 _POLICIES = 'reliability', 'durability', 'deadline', 'liveliness', 'liveliness_lease_duration'
@@ -48,7 +48,7 @@ def find_faults(
     """
     own_name = node.get_fully_qualified_name()
     faults = [
-        Condition.DRIVER_QOS(topic=subscription.topic, policy=policy, node=full_name(driver))
+        Condition.DRIVER_QOS(topic=subscription.topic, policy=policy, node=node_of(driver))
         for subscription in subscriptions
         for driver in node.get_publishers_info_by_topic(subscription.topic)
         for policy in _unmet(subscription.qos_profile, driver.qos_profile)
@@ -59,12 +59,12 @@ def find_faults(
         if not listeners and topic not in exclusive:
             continue
         offers = {
-            full_name(end): end.qos_profile for end in node.get_publishers_info_by_topic(topic)
+            node_of(end): end.qos_profile for end in node.get_publishers_info_by_topic(topic)
         }
         # Ask the graph: in a publisher's own profile some policies are left to the middleware.
         if own_offer := offers.pop(own_name, None):
             faults += [
-                Condition.LISTENER_QOS(topic=topic, policy=policy, node=full_name(listener))
+                Condition.LISTENER_QOS(topic=topic, policy=policy, node=node_of(listener))
                 for listener in listeners
                 for policy in _unmet(listener.qos_profile, own_offer)
             ]
@@ -77,11 +77,6 @@ def find_faults(
     if names.count((node.get_name(), node.get_namespace())) > 1:
         faults.append(Condition.SAME_NAME(node=own_name))
     return faults
-
-
-def full_name(endpoint: TopicEndpointInfo) -> str:
-    """Return the full name of the node of an endpoint."""
-    return f'{endpoint.node_namespace.rstrip("/")}/{endpoint.node_name}'
 
 
 def _unmet(requested: QoSProfile, offered: QoSProfile) -> Iterator[str]:

@@ -2,8 +2,8 @@
 """The ROS graph: which nodes are those of gears, and which topics those of drivers."""
 
 from rclpy.node import Node
+from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-from gear_kinematics.ros.diagnostics import full_name
 from gear_kinematics.wire import topics
 
 _TRIGGER = 'std_srvs/srv/Trigger'
@@ -12,6 +12,11 @@ _PUBLISHED = {
     for name, topic in topics.TOPICS.items()
     if topic.publisher == 'node' and topic.type == topics.JOINT_STATE
 }
+
+
+def node_of(endpoint: TopicEndpointInfo) -> str:
+    """Return the full name of the node of an endpoint."""
+    return f'{endpoint.node_namespace.rstrip("/")}/{endpoint.node_name}'
 
 
 class Graph:
@@ -38,7 +43,7 @@ class Graph:
         outputs = {
             topics.base_name(topic): topic
             for topic, publishers in self._publishers.items()
-            if any(full_name(end) == gear for end in publishers)
+            if any(node_of(end) == gear for end in publishers)
         }
         unknown = outputs.keys() - _PUBLISHED
         if topics.OUTPUT_STATE not in outputs and len(unknown) == 1 < len(outputs):
@@ -49,12 +54,12 @@ class Graph:
         """Identify the publishers of a gear's `output_state`: a node that restarts has others."""
         topic = self.outputs_of(gear).get(topics.OUTPUT_STATE, '')
         ends = self._publishers.get(topic, ())
-        return {bytes(end.endpoint_gid) for end in ends if full_name(end) == gear}
+        return {bytes(end.endpoint_gid) for end in ends if node_of(end) == gear}
 
     def drivers(self) -> list[str]:
         """Find the topics that other nodes than those of gears publish."""
         return sorted(
             topic
             for topic, publishers in self._publishers.items()
-            if any(full_name(end) not in self.gears for end in publishers)
+            if any(node_of(end) not in self.gears for end in publishers)
         )

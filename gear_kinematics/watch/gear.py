@@ -20,10 +20,8 @@ from rclpy.task import Future
 from std_srvs.srv import Trigger
 
 from gear_kinematics.parameters import BRANCH_PARAMETERS, PARAMETERS, NodeParameters
-from gear_kinematics.parameters.arm import actuators_of, faults_in
-from gear_kinematics.parameters.arm import full_name as of_actuator
-from gear_kinematics.ros.diagnostics import full_name
-from gear_kinematics.ros.graph import Graph
+from gear_kinematics.parameters.arm import actuators_of, faults_in, full_name
+from gear_kinematics.ros.graph import Graph, node_of
 from gear_kinematics.watch.drivers import Listener
 from gear_kinematics.watch.polled import Polled, Taken
 from gear_kinematics.wire import topics
@@ -197,7 +195,7 @@ class GearNode:
     def hears(self, topic: str) -> bool:
         """Return whether the node subscribes to a topic."""
         ends = self._node.get_subscriptions_info_by_topic(topic)
-        return any(full_name(end) == self.name for end in ends)
+        return any(node_of(end) == self.name for end in ends)
 
     def home(self, answer: 'futures.Future[Answer]') -> None:
         """Call `~/home`, and answer with its response."""
@@ -218,7 +216,7 @@ class GearNode:
             self._due = 0.0
 
         parameters = [
-            Parameter(of_actuator(self.actuator, name), value=value)
+            Parameter(full_name(self.actuator, name), value=value)
             for name, value in values.items()
         ]
         self._client.set_parameters_atomically(parameters, take)
