@@ -24,7 +24,7 @@ from gear_kinematics.commands.output import (
 )
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.measurement.commissioning import analysis
-from gear_kinematics.measurement.commissioning.document import document, write_file
+from gear_kinematics.measurement.commissioning.document import document, write_parameters
 from gear_kinematics.measurement.formats import is_table, open_bag
 from gear_kinematics.measurement.reading import as_recorded, read
 from gear_kinematics.measurement.rotor_fields import questions
@@ -75,7 +75,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     )
     result = _hear(request) if options.live else _read(options, request)
     if result.between and not file:
-        write_file(result, path, options.actuator)
+        write_parameters(result, path, options.actuator)
     report = document(result, str(options.check or path))
     return reporter.write(report, [options.check] if file else [])
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from gear_kinematics.measurement.figures import LOST_MOTION_SHARE, GearFigures
 from gear_kinematics.measurement.lost_motion import LostMotion
-from gear_kinematics.measurement.measured import LOST_MOTION, Measured, shown
+from gear_kinematics.measurement.measured import LOST_MOTION, Measured, cell_of
 from gear_kinematics.measurement.sentences import Cause, Observation, Observed
 
 _SMALLER = 0.7  # share of the amplitude below which smaller ramps are worth recording
@@ -105,7 +105,7 @@ def _judged(figure: Measured, limit: float) -> LimitCheck:
         what = Observation.MEASURED_ONCE
     elif low > sign * limit:
         what = Observation.BEYOND_LIMIT
-    value, most = figure.cell.with_unit(), shown(figure.unit, limit).with_unit()
+    value, most = figure.cell.with_unit(), cell_of(figure.unit, limit).with_unit()
     return LimitCheck(figure.name, holds, what(figure=figure.name, value=value, limit=most))
 
 

@@ -17,7 +17,7 @@ from gear_kinematics.measurement.changes import (
 )
 from gear_kinematics.measurement.document import Comparison
 from gear_kinematics.measurement.lost_motion import LostMotion
-from gear_kinematics.measurement.measured import HYSTERESIS, shown
+from gear_kinematics.measurement.measured import HYSTERESIS, cell_of
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.wording import ARC_MINUTES
 from gear_kinematics.report import document as doc
@@ -87,8 +87,8 @@ def _changed(changes: Sequence[Change], groups: Sequence[Group]) -> Observed:
 def _values(*changes: Change) -> dict[str, str]:
     """Format a figure before and after its changes, with one change for each later group."""
     first = changes[0]
-    before = shown(first.quantity.unit, first.before).text
-    after = shown(first.quantity.unit, *(change.after for change in changes)).with_unit()
+    before = cell_of(first.quantity.unit, first.before).text
+    after = cell_of(first.quantity.unit, *(change.after for change in changes)).with_unit()
     return {'figure': first.quantity.name, 'before': before, 'value': after}
 
 
@@ -113,8 +113,8 @@ def _table(changes: Sequence[Change], *, several: bool) -> doc.Table:
             'change': lambda c: printable(
                 f'{c.quantity.name}{f", {c.second}" if several else ""}'
             ),
-            'before': lambda c: shown(c.quantity.unit, c.before),
-            'after': lambda c: shown(c.quantity.unit, c.after),
+            'before': lambda c: cell_of(c.quantity.unit, c.before),
+            'after': lambda c: cell_of(c.quantity.unit, c.after),
             'ratio': lambda c: number(c.after / c.before),
             'interval': lambda c: ' to '.join(map(number, c.interval)),
             'judgement': lambda c: doc.Cell(

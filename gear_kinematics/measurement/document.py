@@ -13,7 +13,7 @@ from gear_kinematics.measurement.figures import LOST_MOTION_SHARE, GearFigures
 from gear_kinematics.measurement.json_values import plain
 from gear_kinematics.measurement.loops import Ramps
 from gear_kinematics.measurement.lost_motion import LostMotion
-from gear_kinematics.measurement.measured import LOST_MOTION, Measured, shown
+from gear_kinematics.measurement.measured import LOST_MOTION, Measured, cell_of
 from gear_kinematics.measurement.transmission import TransmissionFigures
 from gear_kinematics.measurement.wording import ARC_MINUTES
 from gear_kinematics.report import document as doc
@@ -107,7 +107,7 @@ def _reported(report: LostMotion, limits: Limits) -> tuple[doc.Section, Mapping[
 
 
 def _main(report: LostMotion) -> dict[str, str]:
-    return {f'{f.name} [{shown(f.unit).unit}]': f.cell.text for f in report.main_figures}
+    return {f'{f.name} [{cell_of(f.unit).unit}]': f.cell.text for f in report.main_figures}
 
 
 # Tables

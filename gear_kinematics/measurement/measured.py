@@ -40,7 +40,7 @@ class Measured(NamedTuple):
         return self.value.ends if self.value else ()
 
 
-def shown(unit: str, *values: float) -> Cell:
+def cell_of(unit: str, *values: float) -> Cell:
     """Show bare values in the unit of reports."""
     unit, scale = SHOWN.get(unit, (unit, 1.0))
     return Cell(', '.join(number(scale * value) for value in values), unit=unit)

@@ -18,7 +18,7 @@ from gear_kinematics.bag import Message, MessagesByTopic
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.commissioning.analysis import Commissioning, Request, commission
-from gear_kinematics.measurement.commissioning.document import write_file
+from gear_kinematics.measurement.commissioning.document import write_parameters
 from gear_kinematics.measurement.gate import gated
 from gear_kinematics.measurement.reading import States, as_recorded
 from gear_kinematics.measurement.rotor_fields import questions
@@ -88,8 +88,8 @@ class LiveCommissioning:
         return commission([recording], self.request)
 
     def write(self, actuator: str = '') -> str:
-        """Write the parameter file into the working directory, as `write_file` does."""
-        return write_file(self.result(), Path(default_config().name), actuator)
+        """Write the parameter file into the working directory, as `write_parameters` does."""
+        return write_parameters(self.result(), Path(default_config().name), actuator)
 
     def changes(self, gear: GearNode) -> dict[str, Any]:
         """Return the parameters that a running node has to change.

@@ -38,7 +38,7 @@ def actuator_file(result: Commissioning, name: str = default_config().name) -> s
     )
 
 
-def write_file(result: Commissioning, path: Path, actuator: str = '') -> str:
+def write_parameters(result: Commissioning, path: Path, actuator: str = '') -> str:
     """Write a gear to a new parameter file, or as an actuator to a new or existing one of an arm.
 
     Returns:
