@@ -11,7 +11,7 @@ import numpy as np
 
 from gear_kinematics.kinematics.gear_ratio import GearRatio, simplest_fraction
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.measurement.commissioning.encoder_range import MOST_SPAN
+from gear_kinematics.measurement.encoder_range import MOST_SPAN
 from gear_kinematics.measurement.recording import Array, Encoders, RecordingError
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.two_encoders import STEP, EncoderFit, directions

@@ -15,6 +15,7 @@ from gear_kinematics.measurement.encoder_step import step_of
 from gear_kinematics.measurement.formats import is_table, open_bag
 from gear_kinematics.measurement.gate import gated
 from gear_kinematics.measurement.recording import (
+    MOST_MESSAGES,
     Array,
     Encoders,
     Recording,
@@ -23,7 +24,6 @@ from gear_kinematics.measurement.recording import (
     locked_shaft,
     match,
 )
-from gear_kinematics.measurement.rotor_fields import MOST
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.stamps import RestoredClock, in_order
 from gear_kinematics.measurement.tables import read_table
@@ -81,7 +81,7 @@ def _read_bag(
         try:
             for found in bag.by_topic(topics, progress):
                 states.add(found[rotor], found[encoder] if encoder else None)
-                if sources.as_recorded and len(heard.data) < MOST:
+                if sources.as_recorded and len(heard.data) < MOST_MESSAGES:
                     heard.data += found[rotor].data
                     heard.received += found[rotor].received
         except DamagedBagError as error:
@@ -187,8 +187,7 @@ def _measured(
     """Stamps and output angles of messages; the time of reception replaces a zero stamp."""
     angle = measured_angle(parameters, states.values[:, 0])
     usable = ~states.malformed & states.present[:, 0] & (np.abs(angle) <= LARGEST_ANGLE)
-    stamp = np.where(states.stamp == 0, np.asarray(received, np.int64), states.stamp)
-    return stamp[usable], angle[usable]
+    return states.stamped(received)[usable], angle[usable]
 
 
 class _Columns:

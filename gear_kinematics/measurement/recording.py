@@ -20,6 +20,7 @@ from gear_kinematics.wire.cdr import SECOND
 
 Array = NDArray[Any]
 
+MOST_MESSAGES = 500_000  # of the rotor that are examined; they take about 200 bytes each
 _SPEED_WINDOW = 0.02  # s, over which the speed is averaged
 _MOST_TWIST = 0.35  # rad of the output under torque; a shaft that turns further is not locked
 

@@ -9,8 +9,9 @@ import numpy as np
 
 from gear_kinematics.bag import Bag, DamagedBagError
 from gear_kinematics.measurement.commissioning.analysis import Value, encoder_kind
-from gear_kinematics.measurement.commissioning.encoder_range import find_range
+from gear_kinematics.measurement.encoder_range import find_range
 from gear_kinematics.measurement.encoder_step import Step
+from gear_kinematics.measurement.recording import MOST_MESSAGES
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.effort_field import EffortField, questioned
@@ -23,7 +24,6 @@ from gear_kinematics.wire.batches import Array, JointStateBatch, JointStates, de
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import Rejection
 
-MOST = 500_000  # messages that are examined; they take about 200 bytes each
 _FEWEST = 10
 _MOVED = 1.0  # rad: a rotor that travels as far has certainly moved
 _STEP = Step(0.0, seen=False)
@@ -52,7 +52,7 @@ def questions(
             limits.
     """
     states = decode_joint_states(data, joint)
-    stamp = _stamps(states, received)
+    stamp = states.stamped(received)
     if unfit := int(np.count_nonzero(states.joint_found & ~states.arrays_fit)):
         yield Observation.SIZES_DIFFER(count=unfit)
     own = stamp[states.joint_found]  # other joints may have the same time
@@ -107,7 +107,7 @@ def _impossible_steps(
 def kind_of_encoder(data: Sequence[bytes], received: Sequence[int], joint: str) -> list[Value]:
     """Return the parameters of the rotor's encoder that messages show; see `questions`."""
     states = decode_joint_states(data, joint)
-    stamp, values = _in_order(states, _stamps(states, received))
+    stamp, values = _in_order(states, states.stamped(received))
     turned, found = values[:, 0], (0.0, 0)
     if len(stamp) >= _FEWEST:
         turned, found = _unwrapped(stamp, turned)
@@ -118,10 +118,6 @@ def _unwrapped(stamp: Array, positions: Array) -> tuple[Array, tuple[float, int]
     """Return positions, rad, without their wraps, and what `find_range` returns for them."""
     found = find_range(positions, (stamp - stamp[0]) / SECOND, _STEP)
     return np.unwrap(positions, period=found[0]) if found[0] else positions, found
-
-
-def _stamps(states: JointStates, received: Sequence[int]) -> Array:
-    return np.where(states.stamp == 0, np.asarray(received, np.int64), states.stamp)
 
 
 def _in_order(states: JointStates, stamp: Array) -> tuple[Array, Array]:
@@ -139,7 +135,7 @@ def recorded_questions(bag: Bag, topic: str, joint: str) -> Iterator[Observed | 
         for batch in bag.by_topic([topic]):
             received += batch[topic].received
             data += batch[topic].data
-            if len(data) > MOST:
+            if len(data) > MOST_MESSAGES:
                 break
     except DamagedBagError:
         pass  # the reader of the recording reports it

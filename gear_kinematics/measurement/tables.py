@@ -21,9 +21,8 @@ from gear_kinematics.measurement.columns import (
     find_columns,
     nanoseconds_of,
 )
-from gear_kinematics.measurement.commissioning.encoder_range import count_wraps, signed, unwrapped
-from gear_kinematics.measurement.commissioning.joint import other_unit
 from gear_kinematics.measurement.dialects import TableFile
+from gear_kinematics.measurement.encoder_range import count_wraps, other_unit, signed, unwrapped
 from gear_kinematics.measurement.encoder_step import Step, find_step
 from gear_kinematics.measurement.formats import open_table
 from gear_kinematics.measurement.gate import output_by_rotor

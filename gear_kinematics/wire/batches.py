@@ -148,6 +148,10 @@ class JointStates:
     values: Array  # (n, 3), by columns: position, velocity, effort; NaN where not present
     missing_joint: str  # joints of the first message without this one, in words; or ''
 
+    def stamped(self, received: Sequence[int]) -> Array:
+        """Return the stamps, with the time of reception, ns, in place of a missing one, (n,)."""
+        return np.where(self.stamp == 0, np.asarray(received, np.int64), self.stamp)
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PoseArrays:

@@ -22,7 +22,7 @@ from gear_kinematics.measurement.commissioning.analysis import (
     encoder_kind,
 )
 from gear_kinematics.measurement.commissioning.document import actuator_file, document
-from gear_kinematics.measurement.commissioning.encoder_range import find_range
+from gear_kinematics.measurement.encoder_range import find_range
 from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.measurement.recording import Recording, RecordingError
 from gear_kinematics.measurement.sentences import Observation

@@ -1,31 +1,18 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Both encoders of a gear in one recording, without wraps."""
 
-import math
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import TURN, split_turns
-from gear_kinematics.measurement.commissioning.encoder_range import count_wraps, find_range
-from gear_kinematics.measurement.encoder_step import Step
+from gear_kinematics.measurement.encoder_range import count_wraps, find_range, other_unit
 from gear_kinematics.measurement.gate import gated
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RecordingError
-from gear_kinematics.report.document import counted
 from gear_kinematics.wire.cdr import SECOND
 
 _NEAR = 0.1  # s, greatest distance of the sample from the moment that the user names
-_TURNS = {'degrees': 360.0, 'turns': 1.0}  # a turn in units that may be taken for rad
-_SAME_COUNTS = 0.02
-"""Share by which the counts per turn that wraps show may differ from a power of two, as the speed
-changes; 4000 differs from 4096 by 0.023."""
-_MIN_LEVELS, _ROUNDING = 4, 1e-5
-"""Number of different whole numbers that show counts, as fewer may be chance; and their rounding
-error, for counts up to 10^10 that were divided into turns and a remainder."""
-_MIN_BITS, _POWER = 6, 1e-4
-"""Recognition of an encoder with 2^n steps per turn: least n, and greatest distance of n from a
-whole number. A step in another unit looks like one by chance with a probability of 4e-4."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -86,20 +73,3 @@ class Joint:
             span = f'{seconds[0]:.13g} to {seconds[-1]:.13g} s'
             raise RecordingError(f'{self.recording.path}: {moment:.13g} s is not in {span}')
         return row
-
-
-def other_unit(values: Array, step: Step) -> str:
-    """Return the unit of positions if it is not rad, with the evidence and what to do; or ''."""
-    rounded, units = np.round(values), dict(_TURNS)
-    whole = np.abs(values - rounded).max() < _ROUNDING and len(np.unique(rounded)) >= _MIN_LEVELS
-    if whole:
-        units['counts'] = 2.0 ** math.ceil(math.log2(np.ptp(values) + 1.0))
-    for unit, turn in units.items():
-        bits = math.log2(turn / step.size) if step.seen and not whole else 0.0
-        if wraps := count_wraps(values, turn, _SAME_COUNTS if unit == 'counts' else 1.0):
-            many = ' if these are a turn' if unit == 'counts' else ''
-            shown = f'{unit} ({counted(wraps, "wrap")} at {turn:g})'
-            return f'{shown}: multiply by {TURN / turn:.9g}{many}'
-        if round(bits) >= _MIN_BITS and abs(bits - round(bits)) < _POWER:
-            return f'{unit} (steps of 1/2^{round(bits)} turn): multiply by {TURN / turn:.9g}'
-    return 'counts (whole numbers), of which a turn has an unknown number' if whole else ''

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The range of an encoder whose positions repeat, found by equal steps back."""
+"""The range of an encoder whose positions repeat, and units of positions that are not rad."""
 
 import math
 
@@ -8,6 +8,7 @@ import numpy as np
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.measurement.recording import Array
+from gear_kinematics.report.document import counted
 
 _UNCLEAR = 0.3, 0.7  # steps, in ranges, that may be a motion or a wrap
 _MOST_UNCLEAR = 0.05  # number of unclear steps, as in gaps, per wrap; with more, there is no wrap
@@ -20,6 +21,16 @@ _SPREADS, _ACCURACY = 6.0, 1e-6  # standard uncertainties, or share, within whic
 _REGISTER = 2**32  # counts after which a register of 32 bits repeats, read as unsigned
 _DECIMALS, _BY_CHANCE = 3, 0.05
 """Most decimals of a round range; probability below which it is no coincidence."""
+_TURNS = {'degrees': 360.0, 'turns': 1.0}  # a turn in units that may be taken for rad
+_SAME_COUNTS = 0.02
+"""Share by which the counts per turn that wraps show may differ from a power of two, as the speed
+changes; 4000 differs from 4096 by 0.023."""
+_MIN_LEVELS, _ROUNDING = 4, 1e-5
+"""Number of different whole numbers that show counts, as fewer may be chance; and their rounding
+error, for counts up to 10^10 that were divided into turns and a remainder."""
+_MIN_BITS, _POWER = 6, 1e-4
+"""Recognition of an encoder with 2^n steps per turn: least n, and greatest distance of n from a
+whole number. A step in another unit looks like one by chance with a probability of 4e-4."""
 
 
 def count_wraps(
@@ -101,3 +112,20 @@ def _step_back(values: Array, seconds: Array, edge: int) -> tuple[float, bool]:
     (size, *_), *_ = np.linalg.lstsq(np.vstack([behind, powers]).T, values, rcond=None)
     travel = values[edge] - values[0], values[-1] - values[edge + 1]
     return abs(float(size)), max(np.array(travel) * np.sign(size)) < -_LEAST_MOTION * abs(size)
+
+
+def other_unit(values: Array, step: Step) -> str:
+    """Return the unit of positions if it is not rad, with the evidence and what to do; or ''."""
+    rounded, units = np.round(values), dict(_TURNS)
+    whole = np.abs(values - rounded).max() < _ROUNDING and len(np.unique(rounded)) >= _MIN_LEVELS
+    if whole:
+        units['counts'] = 2.0 ** math.ceil(math.log2(np.ptp(values) + 1.0))
+    for unit, turn in units.items():
+        bits = math.log2(turn / step.size) if step.seen and not whole else 0.0
+        if wraps := count_wraps(values, turn, _SAME_COUNTS if unit == 'counts' else 1.0):
+            many = ' if these are a turn' if unit == 'counts' else ''
+            shown = f'{unit} ({counted(wraps, "wrap")} at {turn:g})'
+            return f'{shown}: multiply by {TURN / turn:.9g}{many}'
+        if round(bits) >= _MIN_BITS and abs(bits - round(bits)) < _POWER:
+            return f'{unit} (steps of 1/2^{round(bits)} turn): multiply by {TURN / turn:.9g}'
+    return 'counts (whole numbers), of which a turn has an unknown number' if whole else ''
