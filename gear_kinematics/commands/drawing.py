@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Common parts of `plot`, `animate` and `urdf`: a mechanism, its motion, and its teeth."""
+"""Common parts of commands that draw a mechanism: its motion, and whether its teeth mesh."""
 
 import argparse
 import math

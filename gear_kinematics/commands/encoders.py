@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The options for recordings of encoders and torques, common to `lost-motion` and `calibrate`."""
+"""Options of several commands for recordings of encoders and torques, and for known ratios."""
 
 import argparse
 import sys

@@ -66,6 +66,14 @@ def numbers(column: Any, point: str = '.') -> Any:
     if known := np.count_nonzero(np.isfinite(values)):
         others = np.count_nonzero(~np.isfinite(values) & ~text.str.lower().isin(MISSING))
         return values if known >= others else np.full(len(values), np.nan)
+    moments = _moments(text)
+    return moments.to_numpy('datetime64[ns]') if moments.notna().any() else values
+
+
+def _moments(text: Any) -> Any:
+    """Convert dates and times of the day in any of the usual notations; NaT for other text."""
+    import pandas as pd  # noqa: PLC0415, of an extra
+
     text = text.str.replace(',', '.')
     text = text.str.replace(r'(?<=:\d\d):(?=\d{3,}$)', '.', regex=True)  # 9:00:00:040
     moments = pd.to_datetime(text, format='ISO8601', utc=True, errors='coerce')
@@ -86,8 +94,7 @@ def numbers(column: Any, point: str = '.') -> Any:
             warnings.simplefilter('ignore', UserWarning)  # about texts in no common format
             moments = pd.to_datetime(dates, dayfirst=day_first, utc=True, errors='coerce')
         moments = moments + later
-    moments = moments.dt.tz_localize(None)
-    return moments.to_numpy('datetime64[ns]') if moments.notna().any() else values
+    return moments.dt.tz_localize(None)
 
 
 def may_be_divided(column: Any) -> bool:
