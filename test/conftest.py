@@ -104,6 +104,17 @@ def shared_path() -> Callable[[str], Path]:
 
 
 @pytest.fixture(scope='session')
+def recorded() -> list:
+    """The first 300 samples of a shipped bag and their outputs, as rosbags reads them."""
+    from shipped_bags import BAGS, TYPES, read_bag  # noqa: PLC0415, only where rosbags is
+
+    messages = read_bag(BAGS / 'servo_point_to_point')
+    assert len(messages) == 9000
+    assert {topic for topic, _, _ in messages} == set(TYPES)
+    return messages[:900]
+
+
+@pytest.fixture(scope='session')
 def actuator() -> Mechanism:
     """Return the mechanism of the default configuration."""
     branches = (

@@ -9,7 +9,6 @@ import time
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import replace
 from itertools import count, pairwise
 from pathlib import Path
 from threading import Event
@@ -20,11 +19,10 @@ from live import DEADLINE, Participant, rotor_bytes
 from rclpy.qos import QoSProfile
 from replaying import SECOND, assert_right, decode, stamp_of, valid_samples
 from sensor_msgs.msg import JointState
-from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, write_bag
+from shipped_bags import BAGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, config, write_bag
 
 from gear_kinematics.bag import Bag, BagError, DamagedBagError
 from gear_kinematics.commands.output import stopped_by_signals
-from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.ros import live
 from gear_kinematics.ros.live import ReplayError, live_messages
 from gear_kinematics.ros.replay import play
@@ -231,10 +229,6 @@ def test_messages_before_damage_are_played(listener):
 
 
 # Into a live node.
-
-
-def config(name: str = 'actuator', **changed) -> NodeParameters:
-    return replace(NodeParameters.load(CONFIGS / f'{name}.yaml'), **changed)
 
 
 def by_topic(messages) -> dict[str, list[bytes]]:

@@ -3,7 +3,6 @@
 
 import hashlib
 from collections import Counter
-from dataclasses import replace
 from pathlib import Path
 
 import mcap.reader
@@ -13,24 +12,15 @@ import replaying
 from live import SECOND, rotor_bytes
 from made_bags import definition_of
 from rosbags.rosbag2 import StoragePlugin, Writer
-from shipped_bags import BAGS, CONFIGS, TYPES, read_bag, write_bag
+from shipped_bags import BAGS, TYPES, config, config_of, read_bag, write_bag
 
 from gear_kinematics.bag import Bag, BagError, DamagedBagError
 from gear_kinematics.bag.roles import Topics
-from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.statuses import Condition
 from gear_kinematics.validation.compute import ComputeResult, compute
 
 OUTPUTS = ('/output_state', '/body_poses')
 UNKNOWN = b'\x00\x01\x00\x00nobody knows'
-
-
-def config(name: str = 'actuator', **changed) -> NodeParameters:
-    return replace(NodeParameters.load(CONFIGS / f'{name}.yaml'), **changed)
-
-
-def config_of(bag: str) -> NodeParameters:
-    return config('single_turn' if bag == 'single_turn_encoder' else 'actuator')
 
 
 def of_topic(messages, topic) -> list[bytes]:

@@ -14,11 +14,10 @@ import replaying
 from live import rotor_bytes
 from node_loop import answered
 from replaying import SECOND, edited
-from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, read_bag
+from shipped_bags import BAGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, config_of, read_bag
 from validating import feed, field_of, texts, topic_of, validate
 
 from gear_kinematics.bag import Message
-from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.document import moving
@@ -30,12 +29,6 @@ from gear_kinematics.wire.batches import FIELDS
 
 CHANGED = 100
 """Number of the changed message of a topic."""
-
-
-@pytest.fixture(scope='module')
-def recorded() -> list[Message]:
-    """The first 300 samples of a servo's move, and their outputs."""
-    return read_bag(BAGS / 'servo_point_to_point')[:900]
 
 
 def change_one(messages: list[Message], topic: str, edit: Callable) -> tuple[list[Message], int]:
@@ -60,11 +53,6 @@ def index_of(messages: list[Message], topic: str, number: int = CHANGED) -> int:
 
 def set_stamp(message, stamp: int) -> None:
     message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, SECOND)
-
-
-def config_of(name: str) -> NodeParameters:
-    file = 'single_turn' if name == 'single_turn_encoder' else 'actuator'
-    return NodeParameters.load(CONFIGS / f'{file}.yaml')
 
 
 @pytest.mark.parametrize(
