@@ -10,10 +10,7 @@ from typing import Any, NamedTuple
 
 from gear_kinematics.parameters import NODE, ConfigError, NodeParameters
 from gear_kinematics.parameters.arm import load_actuators
-from gear_kinematics.wire.topics import ROTOR_STATE
 
-NODE_ARGUMENTS = 'config', 'namespace', 'frame_prefix', 'rotor_joint', ROTOR_STATE
-"""Names of the launch arguments of gear_state_publisher.launch.py."""
 _OVERRIDES = 'frame_prefix', 'rotor_joint'  # replace those of the file, unless they are empty
 
 

@@ -4,11 +4,7 @@
 import pytest
 
 from gear_kinematics.parameters import ConfigError, NodeParameters, default_config
-from gear_kinematics.ros.launch_arguments import (
-    NODE_ARGUMENTS,
-    node_arguments,
-    reads_description_topic,
-)
+from gear_kinematics.ros.launch_arguments import node_arguments, reads_description_topic
 
 NODES = {
     '/gear_state_publisher': 81,
@@ -29,12 +25,10 @@ def config(tmp_path) -> str:
     return str(path)
 
 
-def arguments(config, namespace='', frame_prefix='', **above):
-    """The configurations of a launch with these arguments, which are all text."""
-    return node_arguments(
-        dict.fromkeys(NODE_ARGUMENTS, '')
-        | {'config': str(config), 'namespace': namespace, 'frame_prefix': frame_prefix, **above}
-    )
+def arguments(config, namespace='', frame_prefix='', rotor_joint='', **above):
+    """The arguments of the node in a launch with these configurations, which are all text."""
+    given = {'namespace': namespace, 'frame_prefix': frame_prefix, 'rotor_joint': rotor_joint}
+    return node_arguments({'config': str(config), **given, **above})
 
 
 def test_defaults_start_the_default_actuator():
