@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Compares the outputs of a node with recomputed ones.
+"""Compares the outputs of a node with recomputed ones, and computes them where there are none.
 
 In a test of another package:
 
