@@ -6,7 +6,7 @@
 A fault of a kind and a size begins at a random moment of a recording; the messages about it go
 through the objects with which the node processes its input, and diagnostics are taken once a
 second, at a random phase. An output is wrong if its rotor angle differs by more than the bound in
-`Bound` from what the recording has. It is called fine if the diagnostics before and after it are
+`bounds` from what the recording has. It is called fine if the diagnostics before and after it are
 `ok`, and the turns are known. Some faults also go through `gearkin validate`, with the outputs of
 the node. Each recording as it is, too, must give no warning. Prints a table in Markdown.
 """
