@@ -31,12 +31,14 @@ _KINDS = {word: kind for kind, words in _VOCABULARY.items() for word in words.sp
 _RANKS = {word: rank for rank, word in enumerate(_KINDS)}
 _EITHER = {'shaft', 'joint', 'gearbox'}
 """Words for the output that do not mean it beside one for the rotor, as in motor_shaft."""
-_OTHERS = '% ‰ percent pct a ma v mv volts adc w n kg g m mm °c min minutes h hours'
+_OTHERS = '% ‰ percent pct a ma v mv volts adc w n kg g m mm °c min h'
 FOREIGN = {*_OTHERS.split()}
-"""Units of quantities other than torque and angle, and units of time that are too coarse."""
+"""Units of quantities other than torque and angle, and words that may be times."""
 _CERTAIN = {'time', 'stamp', 'timestamp', 'timestamps', 'zeit', 'zeitstempel'}
 """Words for times that mean them beside unknown words, too, if the numbers rise."""
 _SPEEDS = {'rpm', 'rps', 'dps', 'cps'}
+_IN_BRACKETS = {'rotation': 'rev', 'min': 'minutes', 'h': 'hours'}
+"""Units that mean something else as words of a name, as in position_min."""
 _NO_UNIT = {'-', 'none', 'n/a', '1', ':'}
 
 _DEG, _KGF, _LBF = UNITS['deg'], 9.80665, 4.4482216152605  # rad, N, N
@@ -44,7 +46,7 @@ _SIZES: Mapping[str, Mapping[str, Any]] = {
     'angle': {
         'rad radian radians': 1.0,
         'mrad': 1e-3,
-        'deg ° degree degrees': _DEG,
+        'deg ° degree degrees grados gradi degrés': _DEG,
         'rev turn turns revs revolution revolutions rotations': TURN,
         'mdeg millideg': 1e-3 * _DEG,
         'cdeg': 1e-2 * _DEG,
@@ -54,7 +56,7 @@ _SIZES: Mapping[str, Mapping[str, Any]] = {
         "arcmin ′ '": _DEG / 60.0,
         'arcsec ″': _DEG / 3600.0,
         'gon': TURN / 400.0,
-        'counts count cnt inc increments ticks pulse pulses lsb steps': None,  # per turn as given
+        'counts count cnt inc increments ticks pulse pulses lsb steps qc': None,  # by turn
     },
     'torque': {
         'N·m nm': 1.0,
@@ -73,6 +75,8 @@ _SIZES: Mapping[str, Mapping[str, Any]] = {
         'ms msec millis milliseconds': 1e-3,
         'us µs usec micros microseconds': 1e-6,
         'ns nsec nsecs nanosec nanosecs nanoseconds': 1e-9,
+        'minutes minute': 60.0,
+        'hours hour': 3600.0,
         'days day': 86_400.0,
         'filetime': 1e-7,  # of Windows, as of TwinCAT
     },
@@ -95,6 +99,8 @@ _PLAINER = {
     r'\{name==': '{',  # of a joint, in paths of Foxglove
     r'\\\w+:\d+$': '',  # device and raster, of INCA
     r'(?i)^(time|zeit) +\d+ - [^[]*': r'\1',  # of catman
+    r'(?i)(?<![a-z])(time|zeit|elapsed|t)[ _](min|h)$': r'\1 [\2]',
+    r'(?i)(winkel.*[^a-z])grad(?![a-z])': r'\1deg',  # gradians elsewhere
     r'(?i)[ _]?(deg|rad|rev)[ _]?x10$': r'_d\1',
     r'(?i)[ _]?(deg|rad|rev)[ _]?x100$': r'_c\1',
     r'(?i)[ _]?(deg|rad|rev)[ _]?x1000$': r'_m\1',
@@ -187,7 +193,7 @@ def usual_unit(text: str) -> str:
     plain = re.sub(r'n(ewton)?[-_.*·⋅]?([cm]?)m(et(er|re)s?)?(?!\w)', r'n\2m', plain)
     outer, _, inner = plain.partition('(')  # as in "° (Degree)" and "(deg)"
     plain = (outer or inner).strip('()[].')
-    plain = 'rev' if plain == 'rotation' else plain  # otherwise a word for an angle
+    plain = _IN_BRACKETS.get(plain, plain)
     return '' if plain in _NO_UNIT else _UNITS.get(plain, plain)
 
 

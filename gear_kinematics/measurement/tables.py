@@ -264,15 +264,18 @@ class _Samples:
         numbers = np.round(values / column.scale, 6)  # as they are in the table
         moved, whole = np.abs(np.diff(values)), bool(np.all(numbers == np.round(numbers)))
         says = meaning(column.name)
+        raw = 'raw' in says.words
         if not step:
             if whole and len(np.unique(values)) > _WHOLE:
                 return 'has whole numbers', 'Nmm'
-            return ('is raw', 'N·m') if 'raw' in says.words else None
+            return ('is raw', 'N·m') if raw else None
         if not (says.role or column.unit):
             likely = 'rad' if np.ptp(numbers) < TURN else 'deg'
             return 'does not say that it is an angle', 'counts' if whole else likely
         if whole and np.ptp(values) > TURN:
             return 'has whole numbers, such as counts', 'counts'
+        if raw:
+            return 'is raw', 'rev'
         if column.borrowed:
             return None
         if _HALF_TURN < np.max(moved, initial=0.0) <= np.ptp(values) <= 2.0 * _HALF_TURN:

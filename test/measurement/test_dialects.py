@@ -284,6 +284,11 @@ ENCODERS = {
         's\tdeg\tdeg\nf8\tf8\tf8', '\t', angle=DEG),
     'over midnight': plain(time=lambda v: moment(' ')(v + 15 * 3600 - 20)[11:]),
     'whole seconds': plain('time_s,rotor,output', time='{:.0f}'),
+    'minutes': lambda t, r, o: written(
+        [t / 60.0, r, o], 'time_min,rotor_rad,output_rad', 3 * ['{:.7f}']),
+    'hours, and angles in German': lambda t, r, o: written(
+        [t / 3600.0, r * DEG, o * DEG], 'Zeit [h];Winkel Motor [Grad];abtriebswinkel_grad',
+        3 * ['{:.8f}'], ';'),
     'German': plain('Zeit [s];Winkel Antrieb [°];Winkel Abtrieb [°]', ';', angle=DEG, german=True),
     'catman': plain('T0 = 1\t\t\nZeit  1 - Standardmessrate [s]\tWinkel Motor [°]\t'
         'Winkel Abtrieb [°]\nAbtastrate: 25 Hz\t\t', '\t', angle=DEG, german=True),
@@ -463,6 +468,10 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         (lambda t, _, o: written([t, 1e-3 * o, o], 'time,angle,torque [mA]'),
          r'torque \[mA\] is in ma: convert it to one of N·m, '),
         (lambda t, _, o: written([t, 1e-3 * o, o], 'time,angle,torque_raw'), 'torque_raw is raw'),
+        (lambda t, r, o: written([t, r * REV, o * REV], 'time,motor raw,output raw', '{:.5f}'),
+         'motor raw is raw: give its unit with --angle-unit'),
+        (lambda t, r, o: written([t, r * REV, o * DEG], 'time,motor (raw),output [deg]', '{:.5f}'),
+         'raw: give its unit as in --rotor-column .motor .raw. .rev'),
         (lambda t, _, o: written([t, 1e-3 * o, o], 'time,angle,torque [MN·m]'), 'is not known'),
         (lambda t, r, o: written(
             [t, r, o], NAMES,
@@ -601,6 +610,7 @@ def test_advice_repeats_the_options_that_were_given(tmp_path, gear, reference):
         ('odrv{}.axis0.pos_vel_mapper.pos_rel', []),
         ('Data{}', ['--angle-unit', 'deg']),
         ('FB{} [cnt]', ['--rotor-counts', '4096', '--output-counts', '4096']),
+        ('FB{} [qc]', ['--rotor-counts', '4096', '--output-counts', '4096']),
     ],
 )
 @pytest.mark.parametrize('as_recorded', [False, True])
