@@ -41,6 +41,8 @@ _TYPES = re.compile(r'(?i)[iuf]\d+|(float|double|u?int)\d*|(type|interp|blockpat
 """Cells of rows between names and numbers that give types, as INCA and Simulink write them."""
 _FRAMES = re.compile(r'\s*\(\d+\.\d+\)\s+\w+\s+[0-9A-F]+#|;\$FILEVERSION|date \w{3} \w{3} \d')
 """Beginnings of CAN bus logs of candump, PCAN-View and CANoe."""
+_CODESYS = '[key]; [value]'
+"""Beginning of a trace of CODESYS, whose variables are below each other."""
 _NO_NAMES = re.compile(r'(?i)[-+|:=\s]*|sep=.*\s*')
 """Lines above the numbers that are no names, as below the names in tables of psql."""
 _CLOCKS = {'name': 'ms', 'x_value': 's'}
@@ -135,6 +137,13 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
     lines = [*io.StringIO(text, newline=None)]
     if size > _HEAD and not (lines := lines[:-1]):
         raise ValueError(f'the first row is longer than {_HEAD} characters')
+    if lines and lines[0].startswith(_CODESYS):
+        with opened(mode='r', compression='infer', encoding=encoding, errors='replace') as file:
+            how: Any = {'sep': ';', 'names': ['key', 'time', 'value'], 'skipinitialspace': True}
+            frame = pd.read_csv(file.handle, dtype=str, **how)
+        named = frame['key'].str.endswith('.Variable', na=False)
+        key = frame['time'].where(named).ffill()
+        return _long(frame.assign(key=key)[frame['key'].isna()], '.', 'key', 'value', {})
     layout = _layout(lines)
 
     def read(places: Sequence[int], every: int, kind: Any = None) -> Any:

@@ -289,6 +289,10 @@ ENCODERS = {
     'hours, and angles in German': lambda t, r, o: written(
         [t / 3600.0, r * DEG, o * DEG], 'Zeit [h];Winkel Motor [Grad];abtriebswinkel_grad',
         3 * ['{:.8f}'], ';'),
+    'CODESYS': lambda t, r, o: '[key]; [value]\nName; Application.Trace\nComment; \n' + ''.join(
+        f'{k}.Variable; GVL.{name}\n{k}.Size; 8\n{k}.Data; \n'
+        + ''.join(f'; {1e3 * at:.0f}; {v:.9g}\n' for at, v in zip(t, values, strict=True))
+        for k, (name, values) in enumerate({'motorPos': r, 'oil': t, 'outputPos': o}.items())),
     'German': plain('Zeit [s];Winkel Antrieb [°];Winkel Abtrieb [°]', ';', angle=DEG, german=True),
     'catman': plain('T0 = 1\t\t\nZeit  1 - Standardmessrate [s]\tWinkel Motor [°]\t'
         'Winkel Abtrieb [°]\nAbtastrate: 25 Hz\t\t', '\t', angle=DEG, german=True),
