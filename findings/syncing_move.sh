@@ -7,8 +7,8 @@
 # in a circle, as if their end went on with their beginning, where such a motion jumps by 1 rad, and the shift is 0.
 # If one reading is NaN, as an encoder marks a fault, the shift is 4.995 s, half of the record. If the clock of the
 # second one is 100 s ahead, which is what it is made to find, it is -9.742 s instead of 100.25 s; up to 9 s ahead is
-# found. Resampled by 'akima', the angle is 0 rad instead of 1 rad where the second record has not begun; the other
-# methods hold its first angle. None of it gives a warning.
+# found. Resampled by 'akima', the angle is 0 rad instead of 1 rad at times for which the second record has no readings;
+# 'linear' holds its last angle there. None of it gives a warning.
 # For us: leave out NaN, subtract the difference of the first times, and synchronise by speeds instead of angles.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
