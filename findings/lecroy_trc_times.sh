@@ -1,6 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# lecroyutils 4.0.2, lecroyscope 1.0.0, lecroyparser 1.4.2, wfm-oxide 0.4.1: times or voltages in a .trc are wrong.
+# lecroyutils 4.0.2, lecroyscope 1.0.0, lecroyparser 1.4.2, wfm-oxide 0.4.1: the times of a .trc are stretched, triggers
+# 1 s apart are 2.5 ms apart, or the bytes of its samples are exchanged.
 #
 # A .trc by LeCroy's template LECROY_2_3, with the signal of an encoder: four triggers, one a second, of 25 samples in
 # steps of 0.1 ms. Expected: samples 0.1 ms apart, and each trigger at its own time. What happens: lecroyutils and
