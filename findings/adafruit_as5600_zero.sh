@@ -1,12 +1,12 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# adafruit-circuitpython-as5600 1.0.3: to open an encoder takes away the zero and the range that were burnt into it.
+# adafruit-circuitpython-as5600 1.0.3: opening an encoder takes away the zero and the range that were burnt into it.
 #
-# The zero of an AS5600 can be burnt into it three times, so that it is there after each start. Expected: AS5600(bus) leaves it,
-# as it leaves the mode of the output. What happens: the constructor sets the zero to 0, the end and the range to 4095, the
-# filters, the hysteresis and the power mode to its own defaults. A joint whose zero was burnt at 1000 counts stands, with
-# no error, 87.9° beside its zero, until the encoder is switched off; zm_count still says that it was burnt. A table of
-# registers answers here as the encoder does, with its angle from its zero.
+# The zero of an AS5600 can be burnt into it three times, so that it is there after each start. Expected: AS5600(bus)
+# leaves it, as it leaves the mode of the output. What happens: the constructor sets the zero to 0, the end and the
+# range to 4095, the filters, the hysteresis and the power mode to its own defaults. A joint whose zero was burnt at
+# 1000 counts stands, with no error, 87.9° beside its zero, until the encoder is switched off; zm_count still says that
+# it was burnt. A table of registers answers here as the encoder does, with its angle from its zero.
 # For us: write the zero again after the constructor, or keep it in the host and read raw_angle.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

@@ -1,11 +1,12 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# feetech-servo-sdk 0.3.0 (Rust): an effort of 0 turns the servo to -180°, and to write the position that was read moves it.
+# feetech-servo-sdk 0.3.0 (Rust): an effort of 0 turns the servo to -180°, and writing the position that was read moves
+# it.
 #
-# By the README a RawEffort drives the servo by PWM, past its position loop. Expected: RawEffort(0) asks for no torque. What
-# happens: it is written as goal position 0, the end at -180°. Positions are read in steps of 1/4095 turn, but written in
-# steps of 1/4096: a servo at 3584 counts is read at 2.3575 rad, and this goal is sent as 3585. The middle, 2048, is 0.0008 rad.
-# A stream answers here as a servo does.
+# By the README a RawEffort drives the servo by PWM, past its position loop. Expected: RawEffort(0) asks for no torque.
+# What happens: it is written as goal position 0, the end at -180°. Positions are read in steps of 1/4095 turn, but
+# written in steps of 1/4096: a servo at 3584 counts is read at 2.3575 rad, and this goal is sent as 3585. The middle,
+# 2048, is 0.0008 rad. A stream answers here as a servo does.
 # For us: read_raw_position() gives counts; one count of an STS3215 is 2 π / 4096.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

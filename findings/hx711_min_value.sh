@@ -1,11 +1,11 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# hx711 0.7.0 (Rust): by its own limits each load is below the least one that the amplifier can give.
+# hx711 0.7.0 (Rust): each reading is below its MIN_VALUE, which is 8388608 instead of -8388608.
 #
-# An HX711 gives 24 bits, from -8388608 to 8388607, and stays at these ends when it is overloaded. Expected: MIN_VALUE is -8388608,
-# so that value <= MIN_VALUE finds an overload. What happens: MIN_VALUE is 8388608, greater than MAX_VALUE; the comparison is
-# true for each reading, value == MIN_VALUE is never, and clamp(MIN_VALUE, MAX_VALUE) ends the program. Readings
-# themselves have the right sign. Pins answer here as the amplifier does.
+# An HX711 gives 24 bits, from -8388608 to 8388607, and stays at these ends when it is overloaded. Expected: MIN_VALUE
+# is -8388608, so that value <= MIN_VALUE finds an overload. What happens: MIN_VALUE is 8388608, greater than MAX_VALUE;
+# the comparison is true for each reading, value == MIN_VALUE is never, and clamp(MIN_VALUE, MAX_VALUE) ends the
+# program. Readings themselves have the right sign. Pins answer here as the amplifier does.
 # For us: an overloaded torque sensor reads exactly -8388608 or 8388607; leave such samples out.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

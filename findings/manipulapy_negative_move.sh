@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# ManipulaPy 1.4.2: a joint that swings to 1 rad has an overshoot of 25 % and a rise time of 0.73 s, to -1 rad -100 % and 0 s.
+# ManipulaPy 1.4.2: a joint that swings to 1 rad has an overshoot of 25 % and a rise time of 0.73 s, one that swings to
+# -1 rad has -100 % and 0 s.
 #
-# The step response of a joint is evaluated, and then the same response with the other sign. Expected: the same metrics, as
-# the settling time is 4.21 s for both. What happens: calculate_rise_time() looks for the first value that is not less than
-# 10 % of the goal, which is the first of all at a negative goal, and calculate_percent_overshoot() takes the greatest value,
-# which is then the start. A move from 1 rad back to 0 rad has no overshoot either, as each goal of 0 has 0 %, although the
-# joint swings through by 0.25 rad. No warning says so, and a limit of the overshoot is passed by each of these.
+# The step response of a joint is evaluated, and then the same response with the other sign. Expected: the same metrics,
+# as the settling time is 4.21 s for both. What happens: calculate_rise_time() looks for the first value that is not
+# less than 10 % of the goal, which is the first of all at a negative goal, and calculate_percent_overshoot() takes the
+# greatest value, which is then the start. A move from 1 rad back to 0 rad has no overshoot either, as each goal of 0
+# has 0 %, although the joint swings through by 0.25 rad. No warning says so, and a limit of the overshoot is passed by
+# each of these.
 # For us: give the metrics the way from the start, times the sign of the move.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -1,9 +1,9 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# NekoRMD 0.2.2: to read an RMD motor's temperature stops the motor, and a speed of -6 is read as 65530.
+# NekoRMD 0.2.2: reading an RMD motor's temperature stops the motor, and a speed of -6 is read as 65530.
 #
-# Expected of read_motor_temperature_and_torque(): the command 0x9C, which reads the motor's state. What happens: 0xA2 with
-# zeros is sent, byte for byte the command of set_speed(0), so that a motor in motion is braked by each reading. In
+# Expected of read_motor_temperature_and_torque(): the command 0x9C, which reads the motor's state. What happens: 0xA2
+# with zeros is sent, byte for byte the command of set_speed(0), so that a motor in motion is braked by each reading. In
 # its answer the current, the speed and the angle are taken without a sign, and the temperature likewise.
 # For us: nothing must be written to a drive that is only watched; read 0x9C and unpack it as '<bhhh'.
 #

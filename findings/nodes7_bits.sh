@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# nodes7 0.3.18: to write two of the eight flags in a byte of an S7 PLC clears the other six.
+# nodes7 0.3.18: writing two of the eight flags in a byte of an S7 PLC clears the other six.
 #
 # Expected: DB1,X0.3.2, which reads the bits 3 and 4 of the byte 0 as an array, also writes these two alone, as
 # DB1,X0.3 does with one. What happens: an array of bits is written as whole bytes, whose other bits are 0: here the

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# s7connector 2.1 (Java): to store one flag clears the seven beside it, and a time of -6 ms is read as 4294967290 ms.
+# s7connector 2.1 (Java): storing one flag clears the seven beside it, and a time of -6 ms is read as 4294967290 ms.
 #
 # A bean names some variables of a data block: the flag DBX0.1, the speed DBD2 and the angle DBD10. Expected of store():
 # these variables are written, or only those that are not null. What happens: all bytes from the first to the last one

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# python-snap7 3.3.0: to write eight flags as an array of BOOL to an S7 PLC clears the speed and position behind them.
+# python-snap7 3.3.0: writing eight flags as an array of BOOL to an S7 PLC clears the speed and position behind them.
 #
 # Expected: DB1.DBX0.0:BOOL[8] is the eight bits of one byte, as an S7 PLC stores an array of BOOL, or it is an error.
 # What happens: each element is taken as a byte of its own. read_tag() gives the bit 0 of eight bytes one after the

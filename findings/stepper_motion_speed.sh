@@ -1,6 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# stepper-motion 0.1.1 (Rust): a turn takes 7.8 s instead of 1.5 s at 52 times its acceleration, and backlash stays.
+# stepper-motion 0.1.1 (Rust): a turn takes 7.8 s instead of 1.5 s at 52 times its acceleration, and its backlash
+# compensation does nothing.
 #
 # A stepper of 3200 steps a turn may turn at 360°/s and accelerate by 720°/s², which takes 1.5 s for a turn. What
 # happens: the time between two steps falls evenly from step to step, not the speed, so that the motor is slow for

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# tetra-feetech 0.1.0: to enable an STS3215 takes away its limit of acceleration, and a load of -20 % is read as 22.4 %.
+# tetra-feetech 0.1.0: enabling an STS3215 takes away its limit of acceleration, and a load of -20 % is read as 22.4 %.
 #
 # The memory table of the STS3215 has a torque switch of one byte at 40, then the acceleration of one byte at 41,
 # where 0 is the greatest. Expected of enable(): 1 at address 40. What happens: two bytes are written, so that an

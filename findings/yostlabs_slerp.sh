@@ -1,7 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# yostlabs-math 2026.3.11: nine tenths of the way from 0° to 20° are at 12.1° if the goal's quaternion has w < 0, and half
-# way between two equal poses is an error.
+# yostlabs-math 2026.3.11: nine tenths of the way from 0° to 20° are at 12.1° if the goal's quaternion has w < 0, and
+# half way between two equal poses is an error.
 #
 # slerp() of the maker of the 3-Space sensors of orientation. Expected: 18° at 0.9 of the way from 0° to 20°, whichever
 # of the two quaternions of the goal is given. What happens: 18.0° by the one, 12.1° by the other, as the angle is still
