@@ -1,6 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# bayesfilter 0.2.0: a shaft at 2 rad/s whose readings come at irregular times is estimated up to 0.15 rad too late.
+# bayesfilter 0.2.0: a shaft at 2 rad/s whose readings come at irregular times is estimated up to 0.15 rad behind its
+# angle.
 #
 # Its README says to use run() for readings at irregular times. run() estimates on a grid of its own, here of 10 Hz.
 # Expected: readings without noise at known times give the angle on the grid. What happens: each reading is taken as the
@@ -8,7 +9,8 @@
 # right to 0.1 mrad. With readings on the grid it is right. Besides, the first estimate is predicted by a step although
 # no time has passed: an initial speed of 2 rad/s, known to 1 rad/s, becomes 0.0002 rad/s by a first reading that agrees
 # with the initial angle.
-# For us: call predict() and update() with the time between two readings, and use run() with a much higher rate at most.
+# For us: call predict() and update() with the time between two readings, or run() at a rate far above that of the
+# readings.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
 set -eu
