@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# do-mpc 5.1.2: an accelerometer at a joint that speeds up with 2 rad/s² reads 0 once the joint's model is discretized.
+# do-mpc 5.1.2: an accelerometer at a joint that speeds up at 2 rad/s² reads 0 once the joint's model is discretized.
 #
 # A joint of 1 kg·m² has a measurement of its acceleration, its torque less its friction: y = C x + D u. Expected
 # of LinearModel.discretize(), which is by scipy's cont2discrete(): D stays as it is. What happens: the model that it

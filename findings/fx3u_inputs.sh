@@ -1,8 +1,8 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# fx3u-mcprotocol 1.0.0: the input X10 of a FX3 PLC is read from X12, and a position of -1 in D100 is 65535.
+# fx3u-mcprotocol 1.0.0: the input X10 of an FX3 PLC is read from X12, and a position of -1 in D100 is 65535.
 #
-# Inputs and outputs of a FX3 are counted in octal: X7 is followed by X10, which is the input 8. The manual of the
+# Inputs and outputs of an FX3 are counted in octal: X7 is followed by X10, which is the input 8. The manual of the
 # FX3U-ENET-ADP says so for the frames as well (Y20 is 10 in hexadecimal). The library takes the number as decimal, so
 # that X10 asks for the input 10, X12. From X10 on, each limit switch is another one, without an error; even X8 and
 # X9, which do not exist, are read. Words are read without their sign. A server on this machine answers here as the

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# mat73-reader 0.1.1: the counts of a 16-bit encoder in a .mat of MATLAB 7.3 are read as a text, and no fault as [0, 1].
+# mat73-reader 0.1.1: the counts of a 16-bit encoder in a .mat of MATLAB 7.3 are read as text, and an empty array of
+# faults as [0, 1].
 #
 # A file with counts of the class uint16, flags of the class logical, and an empty array of faults. Expected, as its
 # table says: numeric arrays as numpy.ndarray, only char arrays as str. What happens: the class is not read. Whatever

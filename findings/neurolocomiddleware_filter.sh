@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# NeuroLocoMiddleware 0.0.1: a low-pass of 0.5 s has 0.42 s in substeps, and the one of 1 / (1 + 0.5 s) is an error.
+# NeuroLocoMiddleware 0.0.1: a low-pass of 0.5 s has 0.42 s in substeps, and the usual low-pass from its coefficients is
+# an error.
 #
-# discretize_N_tustin(dt, N=5) is to take N steps of dt / N by Tustin's rule. Expected: the time constant of the other rules.
-# What happens: it takes N + 1 of them, so that the filter of a torque is 20 % too fast at N = 5, and twice as fast at N = 1. Its
-# end value is right, as is the time constant after discretize_tustin() and discretize_substep_euler().
-# from_poly_fraction([1], [1, 0.5]), the usual low-pass, is an UnboundLocalError, although its documentation allows shorter
-# numerators; the same with a zero for s, from_poly_fraction([1, 0], [1, 0.5]), is right.
+# discretize_N_tustin(dt, N=5) is to take N steps of dt / N by Tustin's rule. Expected: the time constant of the other
+# rules. What happens: it takes N + 1 of them, so that the filter of a torque is 20 % too fast at N = 5, and twice as
+# fast at N = 1. Its end value is right, as is the time constant after discretize_tustin() and
+# discretize_substep_euler(). from_poly_fraction([1], [1, 0.5]), the usual low-pass, is an UnboundLocalError, although
+# its documentation allows shorter numerators; the same with a zero for s, from_poly_fraction([1, 0], [1, 0.5]), is
+# right.
 # For us: use scipy.signal, or give as many coefficients in both, and discretize_tustin().
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

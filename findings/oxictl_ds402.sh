@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# oxictl 0.1.1 (Rust): the status word of a fault is that of no state of CiA 402, and that of a quick stop is another state.
+# oxictl 0.1.1 (Rust): the status word of a fault is that of no state of CiA 402, and that of a quick stop is that of
+# another state.
 #
-# Ds402StateMachine stands in for a drive. Expected of its status words: those that CiA 402 has for its states, by which a master tells
-# them, such as xxxx xxxx x0xx 1000 for a fault. What happens: five states are right. A fault is 0x0048, whose bits 3 and 6 are never
-# set together, so that a master finds no state; a fault reaction is 0x0018, which is a fault; and a quick stop is 0x0010, which is
-# not ready to switch on. Expected of the bit for a fault reset: it acts where it rises. What happens: it acts as long as it
-# is set, so that a master that has left it set loses each later fault within two cycles.
+# Ds402StateMachine stands in for a drive. Expected of its status words: those that CiA 402 has for its states, by which
+# a master tells them, such as xxxx xxxx x0xx 1000 for a fault. What happens: five states are right. A fault is 0x0048,
+# whose bits 3 and 6 are never set together, so that a master finds no state; a fault reaction is 0x0018, which is a
+# fault; and a quick stop is 0x0010, which is not ready to switch on. Expected of the bit for a fault reset: it acts
+# where it rises. What happens: it acts as long as it is set, so that a master that has left it set loses each later
+# fault within two cycles.
 # For us: test a driver's faults with another drive or by the bits of the state itself.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

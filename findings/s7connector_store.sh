@@ -6,8 +6,8 @@
 # these variables are written, or only those that are not null. What happens: all bytes from the first to the last one
 # are sent, with zeros where the bean has nothing. A bean with the flag alone clears the other seven flags of its byte,
 # one with the flag and the angle clears the speed limit between them and whatever else is there, and a speed that is
-# left null is written as 0. A TIME, which has a sign in a S7 PLC, is read without one, a DWORD of 3 000 000 000 counts,
-# which has none, is read as -1 294 967 296. A connector with a memory takes the place of the PLC here.
+# left null is written as 0. A TIME, which has a sign in an S7 PLC, is read without one, a DWORD of 3 000 000 000
+# counts, which has none, is read as -1 294 967 296. A connector with a memory takes the place of the PLC here.
 # For us: store() only beans that cover each bit of their bytes; read a DWORD as DWORD & 0xFFFFFFFFL.
 #
 # Exit code 0: still so. Needs a JDK and mvn; installs the versions into a temporary folder.

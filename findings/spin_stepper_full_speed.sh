@@ -1,12 +1,12 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# spin-stepper 0.1.0: at the greatest speed that it allows an L6470 stands, and 60 000 steps/s² are sent as 393.
+# spin-stepper 0.1.0: at the greatest speed that it allows, an L6470 stands still, and 60 000 steps/s² are sent as 393.
 #
-# Expected: run(max_steps_per_second) runs at 15 625 steps/s, or is an error. What happens: it sends 2^20 as a speed of 20 bits,
-# which is 0, and set_speed_limits(max_speed=15625) sends 1024 as a limit of 10 bits, also 0; 15 624 steps/s are
-# right. An acceleration of 60 000 steps/s² is sent as 4123 in 12 bits, which is 27; no range is checked. A
-# min_speed of 0 is not sent at all. On Python 3.11, which it says to support, it is not even imported. A table of registers
-# answers here as the driver does, each as wide as the driver's.
+# Expected: run(max_steps_per_second) runs at 15 625 steps/s, or is an error. What happens: it sends 2^20 as a speed of
+# 20 bits, which is 0, and set_speed_limits(max_speed=15625) sends 1024 as a limit of 10 bits, also 0; 15 624 steps/s
+# are right. An acceleration of 60 000 steps/s² is sent as 4123 in 12 bits, which is 27; no range is checked. A
+# min_speed of 0 is not sent at all. On Python 3.11, which it says to support, it is not even imported. A table of
+# registers answers here as the driver does, each as wide as the driver's.
 # For us: read each setting back after it is sent.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
