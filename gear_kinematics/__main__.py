@@ -10,6 +10,7 @@ import signal
 import sys
 import time
 from collections.abc import Callable, Collection
+from contextlib import suppress
 from importlib import import_module
 from itertools import takewhile
 from math import inf
@@ -111,7 +112,7 @@ def _run(
     os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
     _open_closed_streams()
     try:
-        return load()()
+        return _flushed(program, load())
     except KeyboardInterrupt:
         return interrupted
     except SharedMemoryError as error:
@@ -127,8 +128,26 @@ def _run(
         _handle(stop_signals, signal.SIG_IGN)
 
 
+def _flushed(program: str, run: Callable[[], int]) -> int:
+    """Run a program and write out what it printed, with one line where that fails."""
+    try:
+        code = run()
+    except SystemExit as end:  # of argparse, after --help
+        code = int(end.code or 0)
+    try:
+        sys.stdout.flush()
+    except OSError as error:
+        sys.stdout = open(os.devnull, 'w')  # noqa: PTH123, SIM115, for the interpreter's last flush
+        if not isinstance(error, BrokenPipeError) and code != _UNUSABLE:  # not yet reported
+            with suppress(OSError):
+                print(f'{program}: {error}', file=sys.stderr)
+            code = _UNUSABLE
+    return code
+
+
 def _answer(text: str) -> int:
-    sys.stdout.write(text)
+    with suppress(OSError):  # without a buffer, as for --help
+        sys.stdout.write(text)
     return 0
 
 

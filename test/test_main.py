@@ -3,6 +3,7 @@
 
 import json
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -265,6 +266,26 @@ def test_a_node_opens_nothing_in_place_of_a_closed_stream(tmp_path):
 def test_an_error_that_cannot_be_said_has_its_exit_code():
     with Path('/dev/full').open('w') as full:
         assert gearkin('validate', 'nowhere', stderr=full).returncode == 2
+
+
+@pytest.mark.parametrize(
+    ('program', 'argument'),
+    [
+        ('gearkin', '--version'),
+        ('gearkin', '--help'),
+        ('gearkin', 'describe'),
+        ('gear_simulator', '--help'),
+    ],
+)
+def test_what_cannot_be_printed_is_one_line_and_a_closed_pipe_none(program, argument):
+    buffered = {name: text for name, text in os.environ.items() if name != 'PYTHONUNBUFFERED'}
+    command = f'{shlex.quote(sys.executable)} -c "$0" {argument}'
+    code = f'import sys; from gear_kinematics.__main__ import {program} as p; sys.exit(p())'
+    full = finished(['sh', '-c', f'{command} > /dev/full', code], env=buffered)
+    said = f'{program}: [Errno 28] No space left on device\n'
+    assert (full.returncode, full.stderr) == (2, said)
+    closed = finished(['bash', '-o', 'pipefail', '-c', f'{command} | :', code], env=buffered)
+    assert (closed.returncode, closed.stderr) == (0, '')
 
 
 # What is not installed.
