@@ -33,7 +33,8 @@ _ASSUMED = 'could not be determined, and is assumed to be multi_turn'
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--topic', metavar='NAME', help="the driver's topic, if there are several")
-    parser.add_argument('--joint', metavar='NAME', help="the rotor's joint, if there are several")
+    text = "the rotor's joint, if there are several; with --arm those of all its motors"
+    parser.add_argument('--joint', metavar='NAME', nargs='+', default=[], help=text)
     add_known_ratio(
         parser,
         'ratio of the gear, such as -19 or 1457/26; negative if the output turns '
@@ -41,15 +42,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         'shoulder=-101 elbow=-51',
         several=True,
     )
-    text = 'set up all joints of the topic as actuators of an arm, named like the joints'
+    text = 'set up all joints of the topic, or those given, as actuators named like them'
     arguments.group(parser, 'gear').add_argument('--arm', action='store_true', help=text)
     add_new_config(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
     path = Path(options.output)
-    if options.arm and (options.actuator or options.joint):
-        raise ValueError('--arm sets up all joints: leave out --actuator and --joint')
+    if options.arm and options.actuator:
+        raise ValueError('--arm names actuators like their joints: leave out --actuator')
     if not options.arm:
         check_new(path, options.actuator)
     check_targets(options, {} if path.exists() else {'-o': options.output})
@@ -62,9 +63,11 @@ def run(options: argparse.Namespace) -> ExitCode:
     list_drivers(drivers, Console())
     joints = [Channel(driver.topic, joint) for driver in drivers for joint in driver.joints]
     if options.arm:
-        chosen = joints_of_arm(joints, options.topic or '')
+        chosen = joints_of_arm(joints, options.topic or '', options.joint)
+    elif len(options.joint) > 1:
+        raise ValueError('--joint takes several joints only with --arm')
     else:
-        given = Channel(options.topic or '', options.joint or '')
+        given = Channel(options.topic or '', *(options.joint or ['']))
         chosen = [choose_joint(joints, given, 'rotor', '; gearkin init --arm sets up all')]
     topic = chosen[0].topic
     ratios = _ratios(options, [channel.joint for channel in chosen])
@@ -125,6 +128,7 @@ def _ratios(options: argparse.Namespace, joints: Sequence[str]) -> dict[str, Gea
             if not can_ask():
                 example = f'{joint}=-19' if options.arm else '-19'
                 remedy = f'Give it, such as --ratio {example} or --teeth 80/76'
+                remedy += '; if it is no motor, name the motors by --joint' * options.arm
                 raise ValueError(f'what is the ratio of {gear}? {remedy}')
             again = f' (Enter: {before})' if before else ''
             question = (

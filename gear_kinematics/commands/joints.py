@@ -10,7 +10,7 @@ from typing import Literal
 from gear_kinematics.commands.output import complain
 from gear_kinematics.measurement.commissioning.analysis import Channel
 from gear_kinematics.report.document import printable
-from gear_kinematics.wire.nearest import listed, nearest
+from gear_kinematics.wire.nearest import among, listed, nearest
 from gear_kinematics.wire.topics import OUTPUT_ENCODER, ROTOR_STATE, TOPICS, base_name
 
 
@@ -64,9 +64,18 @@ def choose_joint(
     raise ValueError(f'{answer!r} is not a number from 1 to {len(found)}')
 
 
-def joints_of_arm(joints: Sequence[Channel], topic: str) -> list[Channel]:
-    """Return an arm's rotor joints: all on the given or only topic; ValueError without one."""
+def joints_of_arm(
+    joints: Sequence[Channel], topic: str, names: Sequence[str] = ()
+) -> list[Channel]:
+    """Return an arm's rotor joints: those named, or all, on the given or only topic with them.
+
+    Raises ValueError if there is no such topic, or it lacks a joint that is named.
+    """
     found = _candidates(joints, Channel(topic, ''), ROTOR_STATE)
+    known = [joint.joint for joint in found]
+    if unknown := [name for name in names if name not in known]:
+        raise ValueError(f'no joint {unknown[0]!r}{among(unknown[0], known)}')
+    found = [joint for joint in found if not names or joint.joint in names]
     if len(topics := {joint.topic for joint in found}) == 1:
         return found
     there = listed(topics or {joint.topic for joint in joints}) or 'none with joints'

@@ -629,6 +629,7 @@ ROTOR = f'which joint is the rotor? {JOINTS}'
         (['--joint', 'm11'], f"no joint 'm11'; did you mean `m1`? {JOINTS}"),
         (['--topic', 'motor/joint_state'], ROTOR),
         (['--topic', '/odd'], ROTOR),
+        (['--joint', 'm1', 'brake'], '--joint takes several joints only with --arm'),
         (
             ['--joint', 'm1'],
             'what is the ratio of the gear? Give it, such as --ratio -19 or --teeth 80/76',
@@ -720,7 +721,8 @@ def test_init_sets_up_all_motors_of_an_arm(listening, monkeypatch, capsys):
         (ARM, ['--ratio', 'shoulder=-3'], 'what is the ratio of the gear of wrist 1? Give it'),
         (ARM, ['--ratio', 'sholder=-3'], "no joint 'sholder'; did you mean `shoulder`?"),
         (ARM, ['--ratio', '-3', '-5'], 'one ratio for all joints, or one for each'),
-        (ARM, ['--joint', 'shoulder'], 'leave out --actuator and --joint'),
+        (ARM, ['--actuator', 'shoulder'], 'leave out --actuator'),
+        (ARM, ['--joint', 'sholder', '2'], "no joint 'sholder'; did you mean `shoulder`?"),
         (DRIVERS[1:], ['--ratio', '3'], 'which topic has the joints of the arm?'),
         (
             [DRIVERS[0], DriverTopic('/b', ('m2',), 9.0)],
@@ -737,6 +739,19 @@ def test_init_writes_no_arm_that_is_not_known(
     assert main(['init', '--arm', *arguments]) == 2
     assert cause in capsys.readouterr().err
     assert not list(listening.iterdir())
+
+
+def test_init_leaves_out_what_is_no_motor(listening, monkeypatch, capsys):
+    others = DriverTopic('/hand', ('finger',), 100.0)
+    monkeypatch.setattr(drivers, 'listen', lambda: [*ARM, others])
+    arm = ['init', '--arm', '--ratio', 'shoulder=-101', '--joint']
+    assert main([*arm, 'shoulder', '2']) == 2
+    assert '--ratio 2=-19 or --teeth 80/76; if it is no motor, name the motors by --joint' in (
+        capsys.readouterr().err
+    )
+    assert main([*arm, 'shoulder']) == 0
+    made = load_actuators(listening / 'actuator.yaml')
+    assert [each.rotor_joint for each in made.values()] == ['shoulder']
 
 
 def test_init_asks_for_the_ratio_of_each_joint(listening, monkeypatch, capsys):
