@@ -123,7 +123,7 @@ def _tdms(path: Path) -> TableFile:
                 if start := known.get('wf_start_time'):
                     begin = begin or start
                     times += (start - begin) / np.timedelta64(1, 's')
-            unit = str(known.get('unit_string', ''))
+            unit = str(known.get('unit_string') or known.get('NI_UnitDescription', ''))
             found.append((group.name, channel.name, channel[:], unit, times))
     return _of_channels(found)
 

@@ -769,6 +769,19 @@ def test_other_formats(tmp_path, gear, reference, name):
         read(path, gear, given)
 
 
+def test_units_of_daqmx_are_read(tmp_path, gear, reference):
+    nptdms = pytest.importorskip('nptdms')
+    _, angle, torque = reference('ramps')
+    channels = [
+        nptdms.ChannelObject('Bench', name, values, properties={'NI_UnitDescription': unit})
+        for name, values, unit in (('Angle', DEG * angle, 'Deg'), ('Torque', torque, 'Volts'))
+    ]
+    with nptdms.TdmsWriter(tmp_path / 'r.tdms') as writer:
+        writer.write_segment(channels)
+    with pytest.raises(RecordingError, match='Torque is in volts: convert it to one of N·m'):
+        read(tmp_path / 'r.tdms', gear)
+
+
 def test_a_file_of_matlab_without_numbers_is_refused(tmp_path, gear):
     pytest.importorskip('scipy.io').savemat(tmp_path / 'r.mat', {'name': 'bench 3'})
     with pytest.raises(RecordingError, match='no columns of numbers: save the vectors of a time'):
