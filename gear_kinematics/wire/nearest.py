@@ -12,7 +12,10 @@ _COMPARED = 1000  # names; a bag can have tens of thousands
 def nearest(name: str, known: Iterable[str]) -> str:
     """Ask whether the nearest known name is meant, as the end of a message; '' if none is near."""
     names = list(known)[:_COMPARED]
-    matches = get_close_matches(name, names, n=1)
+    part = name.strip('/')  # of the full name of a node or topic
+    matches = [other for other in names if part and part in other.split('/')]
+    if len(matches) != 1:
+        matches = get_close_matches(name, names, n=1)
     if not matches:
         folded = {other.casefold(): other for other in names}
         matches = [folded[other] for other in get_close_matches(name.casefold(), folded, n=1)]

@@ -5,6 +5,7 @@ import pytest
 
 from gear_kinematics.wire.nearest import among, listed
 
+GEARS = ('/left/gear', '/right/gear', '/right_arm/gear')
 KNOWN = ('rotor_joint', 'rotor_zero', 'output_joint')
 
 
@@ -15,6 +16,10 @@ KNOWN = ('rotor_joint', 'rotor_zero', 'output_joint')
         ('', KNOWN, '; there are: output_joint, rotor_joint, rotor_zero'),
         ('ROTOR_ZERO', KNOWN, '; did you mean `rotor_zero`? there are: output_joint, rotor_join'),
         ('nothing_like_it', KNOWN, '; there are: output_joint, rotor_joint, rotor_zero'),
+        ('/left', GEARS, '; did you mean `/left/gear`? there are: /left/gear, /right/gear, '),
+        ('right', GEARS, '; did you mean `/right/gear`? there are: '),
+        ('gear', GEARS, '; there are: /left/gear, '),
+        ('/', GEARS, '; there are: /left/gear, '),
         ('m', (), '; there are none'),
         ('m', [f'{k:02}' for k in range(12)], '; there are: 00, 01, 02, 03, 04, 05, 06, 07, 08, '),
     ],
