@@ -35,12 +35,12 @@ def message_type(name: str) -> Any:
 
 
 class PublishingNode(Node):  # type: ignore[misc]  # rclpy has no types
-    """A node with publishers of serialised messages, which warns at most once a second."""
-
-    _next_warning = 0.0
-    """s of a steady clock. The logger's own throttle takes 0.3 ms for each text that it drops."""
+    """A node with publishers of serialised messages, with a warning a second for each subject."""
 
     def __init__(self, name: str, **options: Any) -> None:
+        # By subjects, s of a steady clock. The logger's own throttle takes 0.3 ms for each text
+        # that it drops.
+        self._next_warnings: dict[str, float] = {}
         self.outputs: dict[str, Publisher] = {}  # the publishers by topic
         self._senders: dict[str, Callable[[bytes], None]] = {}
         super().__init__(name, **options)
@@ -106,7 +106,11 @@ class PublishingNode(Node):  # type: ignore[misc]  # rclpy has no types
             left = max(0.0, deadline - time.monotonic())
             publisher.wait_for_all_acked(Duration(seconds=left))
 
-    def _warn(self, text: str) -> None:
-        if time.monotonic() >= self._next_warning:
+    def _warn(self, text: str, subject: str = '') -> None:
+        if self._may_warn(subject):
             self.get_logger().warning(text)
-            self._next_warning = time.monotonic() + _WARNING_PERIOD  # after logging, not before
+            # After logging, not before.
+            self._next_warnings[subject] = time.monotonic() + _WARNING_PERIOD
+
+    def _may_warn(self, subject: str) -> bool:
+        return time.monotonic() >= self._next_warnings.get(subject, 0.0)

@@ -283,16 +283,19 @@ def test_status_is_named_after_the_node_and_found_by_the_aggregator(node, monkey
     assert all(part in name for part in analyzer['contains'] for name in names)
 
 
-def test_rejected_input_is_warned_about_at_most_once_a_second(make, monkeypatch, capfd):
+def test_rejected_input_is_warned_about_once_a_second_for_each_cause(make, monkeypatch, capfd):
     node, now = make('warned'), 1000.0
     monkeypatch.setattr(time, 'monotonic', lambda: now)
     warnings = []
     for _ in range(30):
         now += 0.1
         node._on_rotor_state(b'')
-        warnings.append(capfd.readouterr().err.count('rotor_state rejected: not a JointState'))
-    assert sum(warnings) == 3
-    assert warnings[0] == warnings[10] == warnings[20] == 1
+        node._on_rotor_state(rotor_bytes(1, ['rotor'], []))
+        said = capfd.readouterr().err
+        causes = ('not a JointState', 'position missing')
+        warnings.append([said.count(f'rotor_state rejected: {cause}') for cause in causes])
+    assert [sum(each) for each in zip(*warnings, strict=True)] == [3, 3]
+    assert warnings[0] == warnings[10] == warnings[20] == [1, 1]
 
 
 @pytest.mark.parametrize('kind', ['events', 'single_threaded'])
