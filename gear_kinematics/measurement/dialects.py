@@ -339,7 +339,8 @@ def _joint_state(row: Sequence[str]) -> tuple[list[str], dict[str, str], dict[st
 
 def _long(frame: Any, point: str, key: str, value: str, units: Mapping[str, str]) -> TableFile:
     """Return the series of a table with a row for each value, or each joint, which has several."""
-    clock = likeliest(frame.columns).get('time')
+    filled = frame.columns[2 * frame.count() > len(frame)]  # not the stamps of no headers
+    clock = likeliest(filled).get('time')
     unit = units.get(clock) or meaning(clock).unit if clock else ''
     if nanoseconds := nanoseconds_of(clock or '', [*frame]):
         seconds, rest = (numbers(frame[name], point) for name in (clock, nanoseconds))

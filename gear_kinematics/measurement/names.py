@@ -23,7 +23,7 @@ _VOCABULARY = {
     'tiempo tout xtime ts zeitstempel horodatage 时间 x',
     'filling': 'header receive log measured actual act filtered raw field data value values '
     'feedback state states axis angular rotary present sensor abs side in ist host pi ros system '
-    'unix epoch fb fbk ave estimate scalars date datum utc wall application plc prg gvl',
+    'unix epoch fb fbk ave estimate scalars date datum utc wall application main plc prg gvl',
 }
 """Words in names by kind, the likeliest first. The input is the rotor if a quantity is said, too.
 The filling may accompany all others; any other word shows a command, a speed or the like."""

@@ -250,6 +250,11 @@ ENCODERS = {
     'texts among the values': lambda t, r, o: 'time,topic,value\n' + ''.join(
         f'{at:.2f},rotor,{rotor:.5f}\n{at:.2f},output,{out:.5f}\n{at:.2f},state,idle\n'
         for at, rotor, out in zip(t, r, o, strict=True)),
+    'no stamps, of Foxglove': lambda t, r, o: (
+        'elapsed time,receive time,header.stamp,topic,value\n' + ''.join(
+        f'{at:.2f},{at + 1764230000:.2f},,/{topic}.data,{value:.5f}\n'
+        for topic, values in (('MAIN.rotor', r), ('MAIN.output', o))
+        for at, value in zip(t, values, strict=True))),
     'slices and units of Foxglove': lambda t, r, o: 'timestamp,message path,value\n' + ''.join(
         f'{at + 1764230000:.2f},/{topic}.position[:]{{0}}@degrees,{DEG * value:.5f}\n'
         for topic, values in (('rotor', r), ('output', o))
