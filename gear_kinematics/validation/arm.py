@@ -6,6 +6,7 @@ joints of its actuator from them. What is left to judge is the order of the join
 belong together in a message, and which fields of it are empty.
 """
 
+import math
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -20,10 +21,11 @@ from gear_kinematics.validation.fields import Array, Occurrences
 from gear_kinematics.validation.load_topics import LoadTopic
 from gear_kinematics.validation.matching import WINDOW
 from gear_kinematics.validation.output_topics import JointStateTopic
-from gear_kinematics.validation.report import BagReport, Finding
+from gear_kinematics.validation.report import BagReport, Finding, InputReport
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validator import Validator
 from gear_kinematics.wire.batches import FIELDS, JointStateBatch
+from gear_kinematics.wire.cdr import SECOND
 
 _BITS = 63  # number of bits of a positive int64
 _Fault = tuple[int | None, FindingCause, str, str]
@@ -171,13 +173,17 @@ class ArmValidator:
 
     def reports(self, error: str | None, lost: Mapping[str, int]) -> list[BagReport]:
         """Return the report on each actuator; see `Validator.report`."""
-        return [
-            replace(
-                validator.report(error, lost).adding(*self._findings(k)),
-                actuator=validator.task.parameters.actuator,
-            )
-            for k, validator in enumerate(self._validators)
-        ]
+        reports = [each.report(error, lost) for each in self._validators]
+        last = max(_end(each.rotor) for each in reports)
+        found = []
+        for k, (validator, report) in enumerate(zip(self._validators, reports, strict=True)):
+            parameters, findings = validator.task.parameters, [*self._findings(k)]
+            early = last - _end(report.rotor)
+            if parameters.input_timeout < early < math.inf:
+                values = {'rotor': report.rotor, 'seconds': early}
+                findings.append(Finding(FindingCause.STOPPED, values=values))
+            found.append(replace(report.adding(*findings), actuator=parameters.actuator))
+        return found
 
     def report(self, task: Task, reports: Sequence[BagReport]) -> BagReport:
         """Return the report on the arm, from those on its actuators."""
@@ -202,3 +208,10 @@ class ArmValidator:
     def _findings(self, actuator: int | None = None) -> Iterator[Finding]:
         for topic, joined in self._joined.items():
             yield from joined.findings(topic, actuator)
+
+
+def _end(rotor: InputReport | None) -> float:
+    """Return the last stamp of a rotor, s; -inf if it is unknown, as after a clock reset."""
+    if rotor is None or rotor.first_stamp is None or rotor.resets:
+        return -math.inf
+    return rotor.first_stamp / SECOND + rotor.duration

@@ -91,6 +91,7 @@ class FindingCause(Enum):
     BEYOND_LIMITS = '{rotor.beyond_limits}'
     OUTSIDE = '{rotor.outside}'
     SET_BACK = '{rotor.set_back}'
+    STOPPED = '{rotor.joint} stopped {seconds:.1f} s before other joints of {rotor.topic}'
     OF_OTHERS = '{messages} of {rotor.topic} for other joints, which is no fault'
     ZERO_STAMPS = (
         "{messages} of {rotor.topic} without a stamp: outputs have the node's time, and are "

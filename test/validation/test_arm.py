@@ -3,10 +3,22 @@
 
 import json
 import math
+from itertools import compress
 
 import jsonschema
 import pytest
-from arm_recordings import OUTPUT, RATIOS, ROTOR, Joints, config, recording
+from arm_recordings import (
+    OUTPUT,
+    RATIOS,
+    ROTOR,
+    START,
+    STEP,
+    Joints,
+    config,
+    inputs,
+    output,
+    recording,
+)
 from blocked_bags import BAGS, gearkin_here, refusal
 from shipped_bags import JOINT_STATE, write_bag
 from validating import feed
@@ -15,6 +27,7 @@ from gear_kinematics.parameters.arm import load_actuators
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation import Task, explain
 from gear_kinematics.validation.arm import ArmValidator
+from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.validate_bag import of_arm, validate
 from gear_kinematics.validation.validator import Validator
 
@@ -189,6 +202,26 @@ def test_actuators_with_the_same_error_are_named_in_one_clause(tmp_path):
     why = 'no outputs in it: gearkin compute writes a bag with them'
     assert judged(tmp_path, recording(edit=wrist)).error == f'shoulder, elbow: {why}'
     assert judged(tmp_path, recording(edit=lambda *_: [])).error == why
+
+
+@pytest.mark.parametrize(('last', 'expected'), [(100, 1.196), (200, None)])
+def test_a_motor_that_stops_before_the_others_is_told_and_fails_nothing(tmp_path, last, expected):
+    messages = []
+    for stamp, rotors in inputs(400):
+        sent = [name != 'wrist' or stamp <= START + last * STEP for name in rotors.names]
+        state = Joints(*([*compress(values, sent)] for values in rotors))
+        if state.names:
+            messages.append((ROTOR, stamp + 1000, state.encode(stamp)))
+            messages.append((OUTPUT, stamp + 2000, output(state).encode(stamp)))
+    report = judged(tmp_path, messages)
+    told = {
+        each.actuator: finding.values['seconds']
+        for each in report.actuators
+        for finding in each.findings
+        if finding.cause is FindingCause.STOPPED
+    }
+    assert report.passed
+    assert told == ({'wrist': pytest.approx(expected)} if expected else {})
 
 
 def test_the_command_reports_each_actuator_and_narrows_to_one(tmp_path):
