@@ -27,9 +27,8 @@ from gear_kinematics.measurement.cells import (
     numbers,
     weight,
 )
-from gear_kinematics.measurement.columns import likeliest, nanoseconds_of
 from gear_kinematics.measurement.names import known_units, meaning
-from gear_kinematics.wire.cdr import SECOND
+from gear_kinematics.measurement.series import series_of
 
 _MOST_ROWS = 1_000_000  # 15 minutes at 1 kHz; a row takes up to 250 bytes besides those of pandas
 _HEAD, _BLOCK = 2**16, 2**17  # bytes that show the dialect; characters that are read at a time
@@ -143,7 +142,9 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
             frame = pd.read_csv(file.handle, dtype=str, **how)
         named = frame['key'].str.endswith('.Variable', na=False)
         key = frame['time'].where(named).ffill()
-        return _long(frame.assign(key=key)[frame['key'].isna()], '.', 'key', 'value', {})
+        return loaded(
+            *series_of(frame.assign(key=key)[frame['key'].isna()], '.', 'key', 'value', {})
+        )
     layout = _layout(lines)
 
     def read(places: Sequence[int], every: int, kind: Any = None) -> Any:
@@ -170,7 +171,7 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
     if keys:
         frame = read(range(len(lower)), 1).set_axis(layout.names, axis=1)
         value = layout.names[lower.index(_VALUE)] if topics else ''
-        return _long(frame, layout.point, keys[0], value, layout.units)
+        return loaded(*series_of(frame, layout.point, keys[0], value, layout.units))
     elements = elements_of(layout.names, sample)
     arrays = {element.place for element in elements.values()}
     names = [name for k, name in enumerate(layout.names) if k not in arrays] + [*elements]
@@ -335,25 +336,3 @@ def _joint_state(row: Sequence[str]) -> tuple[list[str], dict[str, str], dict[st
     kinds = {2.0: ('{} velocity or effort',), 3.0: ('{} velocity', '{} effort')}.get(fields, ())
     names += [kind.format(joint) for kind in kinds for joint in joints]
     return names, dict.fromkeys(joints, 'rad'), {}
-
-
-def _long(frame: Any, point: str, key: str, value: str, units: Mapping[str, str]) -> TableFile:
-    """Return the series of a table with a row for each value, or each joint, which has several."""
-    filled = frame.columns[2 * frame.count() > len(frame)]  # not the stamps of no headers
-    clock = likeliest(filled).get('time')
-    unit = units.get(clock) or meaning(clock).unit if clock else ''
-    if nanoseconds := nanoseconds_of(clock or '', [*frame]):
-        seconds, rest = (numbers(frame[name], point) for name in (clock, nanoseconds))
-        frame[clock], unit = seconds * SECOND + rest, 'ns'
-    others = [name for name in frame if name not in {key, clock, ''} and frame[name].ndim == 1]
-    columns, clocks, known = {}, dict[str, str](), dict[str, str]()
-    for joint, series in frame.groupby(key, sort=False):
-        for column in [value] if value else others:
-            name = str(joint) if value else f'{joint} {column}'
-            columns[name] = numbers(series[column], point)
-            known |= {name: units[column]} if column in units and not value else {}
-            clocks |= {name: f'{clock} of {joint}'} if clock else {}
-        if clock:
-            columns[own := f'{clock} of {joint}'] = numbers(series[clock], point)
-            known[own] = unit
-    return loaded(columns, known, clocks)

@@ -1,0 +1,45 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Tables with a row for each value: their series."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from gear_kinematics.measurement.cells import numbers
+from gear_kinematics.measurement.columns import likeliest, nanoseconds_of
+from gear_kinematics.measurement.names import meaning
+from gear_kinematics.wire.cdr import SECOND
+
+
+def series_of(
+    frame: Any, point: str, key: str, value: str, units: Mapping[str, str]
+) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
+    """Divide a table with a row for each value, or for each joint, which has several values.
+
+    Args:
+        frame: the columns as pandas reads them.
+        point: the decimal point.
+        key: the column that says which series, or which joint, a row is of.
+        value: the column of the values; empty if all other columns have some.
+        units: units by column.
+
+    Returns:
+        Columns, their units, and the columns of their times, by the name of the series.
+    """
+    filled = frame.columns[2 * frame.count() > len(frame)]  # not the stamps of no headers
+    clock = likeliest(filled).get('time')
+    unit = units.get(clock) or meaning(clock).unit if clock else ''
+    if nanoseconds := nanoseconds_of(clock or '', [*frame]):
+        seconds, rest = (numbers(frame[name], point) for name in (clock, nanoseconds))
+        frame[clock], unit = seconds * SECOND + rest, 'ns'
+    others = [name for name in frame if name not in {key, clock, ''} and frame[name].ndim == 1]
+    columns, clocks, known = {}, dict[str, str](), dict[str, str]()
+    for joint, series in frame.groupby(key, sort=False):
+        for column in [value] if value else others:
+            name = str(joint) if value else f'{joint} {column}'
+            columns[name] = numbers(series[column], point)
+            known |= {name: units[column]} if column in units and not value else {}
+            clocks |= {name: f'{clock} of {joint}'} if clock else {}
+        if clock:
+            columns[own := f'{clock} of {joint}'] = numbers(series[clock], point)
+            known[own] = unit
+    return columns, known, clocks
