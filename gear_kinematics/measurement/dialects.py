@@ -27,7 +27,7 @@ from gear_kinematics.measurement.cells import (
     numbers,
     weight,
 )
-from gear_kinematics.measurement.names import known_units, meaning
+from gear_kinematics.measurement.names import known_units, meaning, usual_unit
 from gear_kinematics.measurement.series import series_of
 
 _MOST_ROWS = 1_000_000  # 15 minutes at 1 kHz; a row takes up to 250 bytes besides those of pandas
@@ -40,6 +40,8 @@ _TYPES = re.compile(r'(?i)[iuf]\d+|(float|double|u?int)\d*|(type|interp|blockpat
 """Cells of rows between names and numbers that give types, as INCA and Simulink write them."""
 _FRAMES = re.compile(r'\s*\(\d+\.\d+\)\s+\w+\s+[0-9A-F]+#|;\$FILEVERSION|date \w{3} \w{3} \d')
 """Beginnings of CAN bus logs of candump, PCAN-View and CANoe."""
+_ANGLES = re.compile(r'(?i)\b(deg(ree)?s?|rev(olution)?s?|turns)\b(?!/)')
+"""Units of angles in titles and comments, such as `# angles in degrees`."""
 _CODESYS = '[key]; [value]'
 """Beginning of a trace of CODESYS, whose variables are below each other."""
 _NO_NAMES = re.compile(r'(?i)[-+|:=\s]*|sep=.*\s*')
@@ -66,6 +68,8 @@ class TableFile(NamedTuple):
     """First values as written, by name."""
     load: Callable[[Sequence[str]], tuple[dict[str, Any], int]]
     """Returns columns by name as numbers or datetime64, with one row in n; and that n."""
+    remark: str = ''
+    """A unit of angles in the lines above the names, if any."""
 
 
 def loaded(
@@ -89,6 +93,7 @@ class _Layout(NamedTuple):
     names: list[str]
     units: dict[str, str]
     clocks: dict[str, str]
+    remark: str = ''
 
 
 class _Rows(io.TextIOBase):
@@ -195,7 +200,7 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
     units = layout.units | {
         name: 'rad' for name, one in elements.items() if isinstance(one.key, str)
     }
-    return TableFile(names, units, layout.clocks, first, load)
+    return TableFile(names, units, layout.clocks, first, load, layout.remark)
 
 
 def _encoding(head: bytes) -> str:
@@ -254,7 +259,9 @@ def _layout(lines: Sequence[str]) -> _Layout:
             found[0][0] = 'time'  # the index of pandas
     else:
         found = _joint_state(row) or ([str(k + 1) for k in range(len(row))], {}, {})
-    return _Layout(separator, point, start, row, *found)
+    titles = (line for line in above if len(cells_of(line.lstrip('#%/ '), separator)) < len(row))
+    said = _ANGLES.search(' '.join(titles))
+    return _Layout(separator, point, start, row, *found, usual_unit(said[0]) if said else '')
 
 
 def _score(lines: Sequence[str], separator: str, point: str) -> float:

@@ -136,7 +136,7 @@ class _Samples:
 
     def __init__(self, table: TableFile, sources: Sources, ratio: Fraction) -> None:
         """Read the columns; ValueError if they are missing or contain no numbers."""
-        self._sources, self._ratio = sources, ratio
+        self._sources, self._ratio, self._remark = sources, ratio, table.remark
         self.remarks, self.faults = list[Observed](), list[Observed]()
         self.found = find_columns(table.names, sources, table.units, table.clocks)
         clock = self.found.pop('time', None)
@@ -264,20 +264,21 @@ class _Samples:
         numbers = np.round(values / column.scale, 6)  # as they are in the table
         moved, whole = np.abs(np.diff(values)), bool(np.all(numbers == np.round(numbers)))
         says = meaning(column.name)
-        raw = 'raw' in says.words
         if not step:
             if whole and len(np.unique(values)) > _WHOLE:
                 return 'has whole numbers', 'Nmm'
-            return ('is raw', 'N·m') if raw else None
+            return ('is raw', 'N·m') if 'raw' in says.words else None
         if not (says.role or column.unit):
             likely = 'rad' if np.ptp(numbers) < TURN else 'deg'
             return 'does not say that it is an angle', 'counts' if whole else likely
         if whole and np.ptp(values) > TURN:
             return 'has whole numbers, such as counts', 'counts'
-        if raw:
+        if 'raw' in says.words:
             return 'is raw', 'rev'
         if column.borrowed:
             return None
+        if self._remark:
+            return f'has no unit, and a line above the names says {self._remark}', self._remark
         if _HALF_TURN < np.max(moved, initial=0.0) <= np.ptp(values) <= 2.0 * _HALF_TURN:
             return 'has turns of 360, such as degrees', 'deg'
         if unit := other_unit(values, step).partition(':')[0]:

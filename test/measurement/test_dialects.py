@@ -481,6 +481,8 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
          'motor raw is raw: give its unit with --angle-unit'),
         (lambda t, r, o: written([t, r * REV, o * DEG], 'time,motor (raw),output [deg]', '{:.5f}'),
          'raw: give its unit as in --rotor-column .motor .raw. .rev'),
+        (lambda t, r, o: written([t, r, o], f'# angles in degrees, bench 3\n{NAMES}'),
+         'rotor has no unit, and a line above the names says deg: give its unit'),
         (lambda t, _, o: written([t, 1e-3 * o, o], 'time,angle,torque [MN·m]'), 'is not known'),
         (lambda t, r, o: written(
             [t, r, o], NAMES,
