@@ -287,6 +287,7 @@ ENCODERS = {
         ',Units: deg,,Units: deg\n,Interp: linear,,Interp: linear', 2 * ['{:.16f}', '{:.5f}']),
     'INCA': plain('sampleCount\t1320\ntime\tMotorPos\\ETKC:1\tOutputPos\\ETKC:1\n'
         's\tdeg\tdeg\nf8\tf8\tf8', '\t', angle=DEG),
+    'no units of angles above': plain(f'# rev 3, 25 deg C, 6 degrees of freedom\n{NAMES}'),
     'over midnight': plain(time=lambda v: moment(' ')(v + 15 * 3600 - 20)[11:]),
     'whole seconds': plain('time_s,rotor,output', time='{:.0f}'),
     'minutes': lambda t, r, o: written(
