@@ -141,10 +141,13 @@ class BagWriter:
                 if not self.keeps:
                     raise
                 error = error or unfinished
-            if error is None or self.keeps:
+            # Of a first chunk that is cut off, nothing can be read.
+            readable = not isinstance(self._file, McapWriter) or self._file.chunks
+            if error is None or (self.keeps and readable):
                 self._partial.rename(self.path)
             if self.keeps and isinstance(error, BagError):
-                raise BagError(f'{error}; what was written before is kept') from error
+                kept = 'what was written before' if readable else 'nothing'
+                raise BagError(f'{error}; {kept} is kept') from error
 
     def add_file(self, name: str, content: bytes) -> None:
         """Put another file into the folder; raises BagError if it cannot be written."""

@@ -79,10 +79,12 @@ def test_an_interruption_leaves_nothing(recorded, tmp_path, storage, compression
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize('step', ['write', 'close'])
+@pytest.mark.parametrize('step', ['write', 'close', 'close_chunk'])
 def test_a_bag_keeps_what_was_written_before_the_disk_was_full(
     recorded, tmp_path, monkeypatch, step
 ):
+    first = step == 'close_chunk'  # which is cut off, so that nothing can be read
+
     def full(*_):
         raise OSError(28, 'No space left on device')
 
@@ -92,15 +94,18 @@ def test_a_bag_keeps_what_was_written_before_the_disk_was_full(
                 writer.add_topic(topic, kind)
             writer.keeps = True
             writer.write_all(recorded)
-            writer._file.close_chunk()
+            if not first:
+                writer._file.close_chunk()
             monkeypatch.setattr(writer._file, step, full)
             writer.write_all(recorded[:1])
 
     with pytest.raises(BagError) as raised:
         write()
-    words = 'No space left on device; what was written before is kept'
+    words = f'No space left on device; {"nothing" if first else "what was written before"} is kept'
     assert str(raised.value) == f'{tmp_path}/bag: {words}'
-    assert [each.name for each in tmp_path.iterdir()] == ['bag']
+    assert [each.name for each in tmp_path.iterdir()] == ([] if first else ['bag'])
+    if first:
+        return
     read = list[Message]()
     with Bag(tmp_path / 'bag') as bag, suppress(DamagedBagError):
         read.extend(bag.messages(bag.topics))
