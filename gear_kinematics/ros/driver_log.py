@@ -42,17 +42,19 @@ class DriverLog:
 
     def _warn_of_missing(self) -> None:
         """Warn once of each joint of an arm that has been missing for too long beside others."""
-        lacking = defaultdict[str, dict[str, str]](dict)  # joints by actuators, by what is there
+        # Joints by actuators, by how they are missing and what is there.
+        lacking = defaultdict[tuple[str, str], dict[str, str]](dict)
         for name, each in self._inputs.items():
             own, before = each.received - each.of_others, self._own[name]
             lacks = name and each.of_others and own == before
             self._own[name], self._lacking[name] = own, self._lacking[name] + 1 if lacks else 0
             if self._lacking[name] == max(2, math.ceil(each.parameters.input_timeout)):
                 joint, there = each.parameters.rotor_joint, self._joints()
-                hint = '; other joints are still heard' if joint in there else among(joint, there)
-                lacking[hint][name] = repr(joint)
-        for hint, joints in lacking.items():
-            text = f'no joint {", ".join(joints.values())} on {self._topic}{hint}'
+                stopped = 'no more messages of', '; other joints are still heard'
+                how = stopped if joint in there else ('no joint', among(joint, there))
+                lacking[how][name] = repr(joint)
+        for (what, hint), joints in lacking.items():
+            text = f'{what} {", ".join(joints.values())} on {self._topic}{hint}'
             self._log.warning(labelled(', '.join(joints), text))
 
     def _faults(self) -> dict[tuple[str, Condition, float], Fact]:
