@@ -40,7 +40,7 @@ _MOST_BEYOND = 2.0  # times the limit: speeds at which a driver may repeat readi
 _LONGEST_REPEAT = 1.0  # s, for which a driver repeats a reading while the rotor turns on
 _REPEATED = 0.05  # of the way meanwhile: what it may differ by from that at a steady speed
 _STEADY = 0.25  # of the speed: what it may change by meanwhile
-_LEAST_MOTION = 0.01  # rad between two readings of a rotor that moves
+_LEAST_MOTION = 1e-4  # rad between two readings of a rotor that moves
 
 
 class Belief(Enum):

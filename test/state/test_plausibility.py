@@ -195,7 +195,7 @@ def test_a_jump_within_a_long_gap_that_no_speed_explains_is_named(gap):
 
 
 @pytest.mark.parametrize(('rate', 'speed', 'period'), [
-    (10, 1.0, TURN), (10, -15.0, TURN), (20, 20.0, TURN), (50, -5.0, TURN), (50, 80.0, TURN),
+    (10, 1.0, TURN), (10, -15.0, TURN), (50, 0.3, TURN), (20, 20.0, TURN), (50, -5.0, TURN), (50, 80.0, TURN),
     (100, 100.0, TURN), (200, 300.0, TURN), (1000, -5.0, TURN), (1000, 300.0, TURN),
     (200, 100.0, 25.0), (1000, -100.0, 8.0 * math.pi),
 ])  # fmt: skip
