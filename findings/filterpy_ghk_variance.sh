@@ -5,7 +5,7 @@
 # VRF() of a GHKFilter gives the variances of angle, speed and acceleration for a noise of the readings of 1,
 # VRF_prediction() that of the predicted angle. Expected: those of the noise that comes out of the filter. What
 # happens, at 100 Hz with the gains of critical_damping_parameters(0.8, 3): a negative variance of the angle; 0.0089
-# for the speed, which lacks the division by the square of the step, where 178 is right; and 0.45 for the prediction,
+# for the speed, which is not divided by the square of the step, where 178 is right; and 0.45 for the prediction,
 # where 0.55 is right. VRF() of a GHFilter is right. And batch_filter() of a GHKFilter ignores its gain k and its
 # acceleration: of a shaft that speeds up with 30 rad/s², whose speed update() finds exactly, it gives a speed that is
 # 1.2 rad/s too low. None of these is a warning.
