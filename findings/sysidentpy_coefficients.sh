@@ -1,6 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# sysidentpy 0.9.0: a simulated joint that should end at 0.5 rad/s grows beyond 1e20 if its terms are reordered.
+# sysidentpy 0.9.0: a simulated joint that should end at 0.5 rad/s grows beyond 1e20 if its terms and coefficients are
+# given in another order.
 #
 # SimulateNARMAX.simulate() takes a model's terms and their coefficients. Expected: each coefficient belongs to the
 # term at its place. What happens: the terms are sorted, first the outputs, then the inputs, each by age, and the
