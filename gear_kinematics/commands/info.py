@@ -102,7 +102,9 @@ def _parts(summary: Summary, *, verbose: bool) -> Iterator[str]:
         kind = f' {topic.type},' if verbose else ''
         yield f'{topic.part} {topic.name}{joints}{kind} {often}'.lstrip()
         if topic.of_others:
-            yield f'{topic.of_others} messages on {topic.name} are of other joints'
+            verb = 'is' if topic.of_others == 1 else 'are'
+            these = counted(topic.of_others, 'message')
+            yield f'{these} on {topic.name} {verb} of other joints'
     if summary.unclear:
         yield summary.unclear
     if others := len(summary.topics) - len(shown):

@@ -26,6 +26,19 @@ def test_a_bag_is_a_line(capsys):
     assert told.err == ''
 
 
+@pytest.mark.parametrize(('others', 'said'), [(1, '1 message '), (2, '2 messages ')])
+def test_messages_of_other_joints_are_counted(others, said, tmp_path, capsys):
+    own = [(ROTOR, 10**9 + k, rotor_bytes(10**9 + k, position=[0.1])) for k in range(20)]
+    more = [
+        (ROTOR, 10**9 + 20 + k, rotor_bytes(10**9 + 20 + k, ['wheel'], position=[0.1]))
+        for k in range(others)
+    ]
+    write_bag(tmp_path / 'bag', own + more, {ROTOR: JOINT_STATE})
+    assert main(['info', str(tmp_path / 'bag'), '--joint', 'rotor']) == 0
+    verb = 'is' if others == 1 else 'are'
+    assert f'; {said}on {ROTOR} {verb} of other joints;' in capsys.readouterr().out
+
+
 def test_a_terminal_breaks_no_word(capsys):
     narrow = {**ENVIRONMENT, 'COLUMNS': '40'}
     with Terminal() as terminal:
