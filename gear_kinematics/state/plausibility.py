@@ -7,13 +7,12 @@ motion that the last believed reading only hid, or one beyond the limits, or as 
 """
 
 import math
-from enum import Enum
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_kinematics.state.belief import BELIEVED, Belief, Jump
 from gear_kinematics.state.motion import (
     COARSEST,
     EQUAL,
@@ -40,25 +39,8 @@ _MOST_BEYOND = 2.0  # times the limit: speeds at which a driver may repeat readi
 _LONGEST_REPEAT = 1.0  # s, for which a driver repeats a reading while the rotor turns on
 _REPEATED = 0.05  # of the way meanwhile: what it may differ by from that at a steady speed
 _STEADY = 0.25  # of the speed: what it may change by meanwhile
+_FEW_STEPS = 3.0  # between readings: what a drive whose clock begins anew may turn meanwhile
 _LEAST_MOTION = 1e-4  # rad between two readings of a rotor that moves
-
-
-class Belief(Enum):
-    """The verdict on a reading."""
-
-    BELIEVED = 'believed'
-    IMPLAUSIBLE = 'implausible'
-    JUMP = 'jump'
-
-
-BELIEVED = Belief.BELIEVED  # an attribute of an enum is slow for what each message takes
-
-
-class Jump(NamedTuple):
-    """A step of the readings that the rotor did not make."""
-
-    stamp: int  # ns, of the first reading behind it
-    size: float  # rad, as far as it was not expected; of a single-turn encoder, within its range
 
 
 _UNKNOWN = math.nan, 0, 0.0, 0
@@ -121,6 +103,19 @@ class Plausibility:
         position, changed, step, span = self._last
         self._last = position, changed - time, step, span
         self._stamp -= time
+
+    def is_elsewhere(self, position: float, stamp: int) -> bool:
+        """Return whether a restarted drive does not go on near the last position, and note it.
+
+        A stamp, ns, of the time since its start does not show how long that took.
+        """
+        before, _, step, _ = self._last
+        moved = self._wrapped(position - before)
+        if not abs(moved) > _FEW_STEPS * abs(step) + self.noise:
+            return False
+        self.jumps += 1
+        self.jump = Jump(stamp, moved)
+        return True
 
     def judge(self, position: float, stamp: int) -> Belief:
         """Take the next reading, rad, with a stamp, ns, not before the last believed one."""

@@ -11,9 +11,10 @@ import numpy as np
 from gear_kinematics.kinematics import RotorPosition, RotorSample, RotorTurns, split_turns
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.parameters import PARAMETERS, NodeParameters
+from gear_kinematics.state.belief import BELIEVED, Belief
 from gear_kinematics.state.disorder import Bursts, Disorder, order
 from gear_kinematics.state.effort_field import EffortField
-from gear_kinematics.state.plausibility import BELIEVED, Belief, Plausibility
+from gear_kinematics.state.plausibility import Plausibility
 from gear_kinematics.state.rotor_samples import RotorSamples, Row
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.state.velocity_field import VelocityField
@@ -33,6 +34,7 @@ _new = tuple.__new__  # faster than RotorSample(...)
 _ENCODERS = {name for name in PARAMETERS if name.startswith(('rotor_', 'output_encoder_'))}
 _ENCODERS -= {'rotor_effort_factor'}
 """Parameters on which the turns depend that an absolute encoder at the output has found."""
+_UPTIME = 10**8 * SECOND  # ns, 3 years: stamps below are the time since a start, no date
 
 
 def _limits(parameters: NodeParameters) -> tuple[float, float, float]:
@@ -47,8 +49,7 @@ class RotorInput:
         self.received = 0
         self.rejected: Counter[str] = Counter()
         self.of_others = 0  # messages of other joints only, as of a shared /joint_states
-        self.duplicates = 0
-        self.zero_stamps = 0
+        self.duplicates = self.zero_stamps = 0
         self.unnormalised_stamps = 0  # stamps with a second or more of nanoseconds, normalised
         self.resets = 0
         self.missing_joint = ''  # which joints the first message without the rotor's has
@@ -289,7 +290,7 @@ class RotorInput:
         if last is None:
             self._leave_others()
         elif stamp <= last[0]:  # its stamp, by the fastest way
-            self._check_order(stamp, last.stamp)
+            self._check_order(stamp, last.stamp, position)
         if self.disorder.stamps and last:
             time = self.disorder.set_back(last.stamp, stamp)
             self.turns.set_back(time)
@@ -333,7 +334,7 @@ class RotorInput:
             return TURN * unwrapped.turns + unwrapped.angle
         return position
 
-    def _check_order(self, stamp: int, last: int) -> None:
+    def _check_order(self, stamp: int, last: int, position: float) -> None:
         if stamp == last:
             self.duplicates += 1
         elif last - stamp <= CLOCK_RESET:
@@ -343,5 +344,7 @@ class RotorInput:
             self.resets += 1
             self.disorder.note_reset(self.received, last, stamp)
             self.turns.reset()
+            if stamp < _UPTIME < last and self.plausibility.is_elsewhere(position, stamp):
+                self.turns.lose()
             self.plausibility.reset()
             self.velocity_field.restart()

@@ -194,6 +194,28 @@ def test_a_jump_within_a_long_gap_that_no_speed_explains_is_named(gap):
     assert not rotor.referenced
 
 
+@pytest.mark.parametrize(('before', 'size', 'lost'), [
+    (1_700_000_000, -50.0, True), (1_700_000_000, 0.0, False), (500, -50.0, False),
+])  # fmt: skip
+def test_a_drive_elsewhere_whose_stamps_become_the_time_since_its_start_has_jumped(
+    before, size, lost
+):
+    data = [
+        rotor_bytes(start * SECOND + k * SECOND // 100, position=[zero + 0.5 * k])
+        for start, zero in ((before, 0.0), (1, 50.0 + size))
+        for k in range(100)
+    ]
+    rotor, whole = RotorInput(MULTI), RotorInput(MULTI)
+    for each in data:
+        rotor.accept(each, int)
+    whole.accept_batch(data, [*range(len(data))])
+    jumped = Condition.JUMPED(angle=pytest.approx(size, abs=0.6), time=1.0)
+    for each in (rotor, whole):
+        assert each.resets == 1
+        assert each.referenced is not lost
+        assert each.plausibility.jumped == (jumped if lost else None)
+
+
 @pytest.mark.parametrize(('rate', 'speed', 'period'), [
     (10, 1.0, TURN), (10, -15.0, TURN), (50, 0.3, TURN), (20, 20.0, TURN), (50, -5.0, TURN), (50, 80.0, TURN),
     (100, 100.0, TURN), (200, 300.0, TURN), (1000, -5.0, TURN), (1000, 300.0, TURN),
