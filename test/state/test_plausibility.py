@@ -217,9 +217,9 @@ def test_a_drive_elsewhere_whose_stamps_become_the_time_since_its_start_has_jump
 
 
 @pytest.mark.parametrize(('rate', 'speed', 'period'), [
-    (10, 1.0, TURN), (10, -15.0, TURN), (50, 0.3, TURN), (20, 20.0, TURN), (50, -5.0, TURN), (50, 80.0, TURN),
-    (100, 100.0, TURN), (200, 300.0, TURN), (1000, -5.0, TURN), (1000, 300.0, TURN),
-    (200, 100.0, 25.0), (1000, -100.0, 8.0 * math.pi),
+    (10, 1.0, TURN), (10, -15.0, TURN), (20, 20.0, TURN), (50, -5.0, TURN), (50, 80.0, TURN),
+    (50, 0.3, TURN), (100, 100.0, TURN), (200, 300.0, TURN), (1000, -5.0, TURN),
+    (1000, 300.0, TURN), (200, 100.0, 25.0), (1000, -100.0, 8.0 * math.pi),
 ])  # fmt: skip
 def test_positions_that_wrap_are_named_after_three_wraps(rate, speed, period):
     count = math.ceil(4.2 * period / abs(speed) * rate)
