@@ -104,7 +104,7 @@ def parameters(*names: str) -> list:
         return asking.parameters_of(AsyncParameterClient(asking.node, NODE), *names)
 
 
-LOST = r'messages? missing|messages? of /\S+ without any output|ends [\d.]+ s before'
+LOST = r'messages?( of \S+)? missing|messages? of /\S+ without any output|ends [\d.]+ s before'
 JUDGED = rf'verdict: (passed|failed: [^;]*({LOST})[^;]*); \d+ inputs, \d+ outputs compared, '
 """What is said of a recording without a wrong number, which may lack what a busy machine lost."""
 
