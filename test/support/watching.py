@@ -86,15 +86,17 @@ def node(folder: Path, name: str = NODE):
 
 
 @contextlib.contextmanager
-def driving(rate: int = 200):
-    """Run the drivers, at a rate in Hz: each message takes all who hear it processor time."""
+def driving(rate: int = 200, late: str = 'left out'):
+    """Run the drivers, at a rate in Hz: each message takes all who hear it processor time.
+
+    To a node, `late` readings that are sent would look like a clock set back.
+    """
     seconds = np.arange(4 * rate) / rate
     rotor = 60.0 * np.sin(math.tau * seconds / 4.0)
     angle = rotor / RATIO
     output = angle + 1e-4 * np.sin(4.0 * angle)  # rad, the transmission error
     readings, every = np.stack([seconds, rotor, output], 1), rate // ENCODER_RATE
-    # Late ones would look like a clock set back.
-    with played(readings, MOTOR, ENCODER, every, 'left out'):
+    with played(readings, MOTOR, ENCODER, every, late):
         yield
 
 

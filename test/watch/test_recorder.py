@@ -11,9 +11,22 @@ from unittest.mock import MagicMock
 
 import pytest
 from blocked_bags import refusal
+from live import Participant
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.qos import ReliabilityPolicy as Offer
-from watching import DEADLINE, ENCODER, JUDGED, MOTOR, NAMESPACE, NODE, driving, gearkin, node
+from sensor_msgs.msg import JointState
+from watching import (
+    DEADLINE,
+    ENCODER,
+    ENCODER_RATE,
+    JUDGED,
+    MOTOR,
+    NAMESPACE,
+    NODE,
+    driving,
+    gearkin,
+    node,
+)
 
 from gear_kinematics.bag import Bag
 from gear_kinematics.commands.cli import main
@@ -36,9 +49,12 @@ def test_what_a_node_hears_and_publishes_is_recorded_as_it_is_named(tmp_path, ca
         recording.wait_for('waiting for a gear_state_publisher')
         beside.enter_context(node(tmp_path))
         recording.wait_for('recording /diagnostics')
-        with driving(rate=1000):
+        with contextlib.closing(Participant('listening')) as listening, driving(1000, 'sent'):
             for topic in (ENCODER, MOTOR, f'{NAMESPACE}/output_state'):
                 recording.wait_for(f'recording .*{topic}')
+            heard = []  # a line of the summary has a rate only after some messages
+            listening.node.create_subscription(JointState, ENCODER, heard.append, 10)
+            listening.wait_until(lambda: len(heard) > ENCODER_RATE, 'a second of the encoder')
             capsys.readouterr()
     assert recording.process.returncode == 0
     assert re.search(rf' {ENCODER}: \d+ messages, [1-9]\d+ Hz\n', recording.text())
