@@ -19,6 +19,7 @@ from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import Rejection
 
 _BEYOND_ANY_GEAR = 0.1  # rad
+_APART = 0.1  # s, between the newest stamps of both encoders, which the transport does not explain
 _MOST_REPEATED, _ALL_REPEATED = 0.5, 0.95
 """Shares of stamps from which repeated ones are a fault: if turns depend on them, or else."""
 
@@ -173,7 +174,7 @@ class EncoderMonitor(DriverMonitor):
     def __init__(self, encoder: OutputEncoder) -> None:
         super().__init__()
         self._encoder = encoder
-        self._reported, self._compared = -math.inf, 0
+        self._reported, self._compared, self._apart = -math.inf, 0, 0.0
 
     def report(self, now: float, driver: DriverFacts) -> GearReport | None:
         """Report on the time since the last report, until now; None before the first message."""
@@ -186,14 +187,13 @@ class EncoderMonitor(DriverMonitor):
         compared, silent = soon or matched != self._compared, age > parameters.input_timeout
         if not soon:
             self._reported, self._compared = now, matched
+            self._apart, encoder.least_apart = encoder.least_apart / SECOND, math.inf
 
         facts = []
         if silent:
             facts.append(Condition.NO_ENCODER(age=age))
         elif not compared:
             facts.append(Condition.NOT_COMPARED())
-        grown = self._growth({**encoder.rejected, 'lost': driver.lost})
-        facts += self._losses(grown, encoder.rejected, driver)
         # Without new samples, the statistics are out of date.
         error = encoder.window.statistics() if compared and not silent else ErrorStatistics()
         found = error.reversals
@@ -224,6 +224,12 @@ class EncoderMonitor(DriverMonitor):
             explained = None if fit.explained is None else 100.0 * fit.explained
             values['explained by the calibration (%)'] = explained
             values['outside the interval (%)'] = 100.0 * fit.outside
+        reference = encoder.reference
+        unexplained = reference and reference.decision and not reference.rotor.referenced
+        if (facts or unexplained) and _APART < self._apart < math.inf:
+            facts.insert(0, Condition.CLOCKS_APART(apart=self._apart))
+        grown = self._growth({**encoder.rejected, 'lost': driver.lost})
+        facts += self._losses(grown, encoder.rejected, driver)
         faulty = any(fact.condition.level for fact in facts)
         if compared and not (faulty or encoder.direction_checked):
             facts.append(Condition.DIRECTION_NOT_CHECKED())

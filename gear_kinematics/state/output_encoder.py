@@ -38,6 +38,8 @@ class OutputEncoder:
         """Counts the measured angles that were compared and, by cause, those that were not."""
         self._turn_reference = reference
         self.direction_checked = False  # whether both encoders moved in the same sense
+        self.least_apart = math.inf  # ns, between new stamps of both since the last report
+        self._latest: RotorSample | None = None
         self.parameters = parameters
         self.configure(parameters)
 
@@ -77,7 +79,10 @@ class OutputEncoder:
             self.rejected[str(rejection)] += 1
             raise
         stamp = stamp or now()
-        if latest and abs(stamp - latest[0]) > self._farthest:  # its stamp, by the fastest way
+        apart = abs(stamp - latest[0]) if latest else 0  # its stamp, by the fastest way
+        if latest and latest is not self._latest:  # the old stamp of a silent rotor tells nothing
+            self._latest, self.least_apart = latest, min(self.least_apart, apart)
+        if apart > self._farthest:
             self.comparison.unmatched['no rotor state of about the same time'] += 1
             return ()
         angle = measured_angle(self.parameters, position)

@@ -167,6 +167,11 @@ class Condition(Enum):
     # The transmission error
     NO_ENCODER = WARN, 'no output_encoder for {age:.1f} s', _DRIVER
     NOT_COMPARED = WARN, 'no rotor angle of the same time', _CLOCKS
+    CLOCKS_APART = (
+        WARN,
+        'the newest stamps of rotor_state and output_encoder are at least {apart:.2g} s apart',
+        'First check that both drivers stamp by one clock: angles of other times do not agree.',
+    )
     TOO_LARGE = (
         WARN,
         _PEAK_TO_PEAK,

@@ -38,7 +38,7 @@ class Bench:
 
     def measure(self, stamp, position, *, joint='shaft'):
         self.gear.encoder_monitor.last_input = NOW
-        return self.encoder.accept(rotor_bytes(stamp, [joint], [position]), int)
+        return self.gear.encoder(rotor_bytes(stamp, [joint], [position]), int)
 
     def report(self, at=NOW):
         return self.gear.report(at, self.connections).get('transmission error')
@@ -163,8 +163,44 @@ def test_encoder_whose_stamps_are_not_the_rotors_is_a_warning(bench):
         bench.measure(START - 5 * SECOND + k * MS, 0.0)
         bench.turn(START + k * MS, 0.0)
     report = bench.report()
-    assert report.facts == [Condition.NOT_COMPARED()]
-    assert report.values['not compared: no ideal angle before'] == 3
+    assert report.facts == [Condition.CLOCKS_APART(apart=4.999), Condition.NOT_COMPARED()]
+    assert report.values['not compared: no rotor state of about the same time'] == 3
+
+
+@pytest.mark.parametrize('late', [-0.3, 0.12, 0.3])
+def test_clocks_that_are_apart_are_named_before_the_fault_that_they_feign(late):
+    """Interrupted turning at 2 rad/s, with stamps of the encoder that are off."""
+    bench = Bench(replace(SETTINGS, transmission_error_window=0.5))
+    for k in range(1, 3001):
+        angle = 0.002 * min(k, max(1000, k - 1000))
+        bench.turn(START + k * MS, -19.0 * angle)
+        bench.measure(START + k * MS + round(late * SECOND), angle)
+        if k == 1900:
+            apart, *faults = bench.facts()
+            assert apart == Condition.CLOCKS_APART(apart=pytest.approx(abs(late), abs=1e-9))
+            assert {each.condition for each in faults} == {Condition.SLIPPED}
+    bench.report()
+    assert [each.condition for each in bench.facts(NOW + 1.0)][1:] == [Condition.SLIPPED]
+
+
+def test_clocks_are_named_where_turns_are_not_found_for_it():
+    settings = replace(SETTINGS, rotor_encoder='single_turn', transmission_error_max_gap=0.01)
+    bench = Bench(replace(settings, output_encoder_reference='absolute'))
+    for k in range(1, 1001):
+        angle = 0.8 * math.sin(0.001 * k)
+        bench.turn(START + k * MS, math.remainder(-19.0 * angle, math.tau))
+        bench.measure(START + (k - 300) * MS, angle)
+    assert bench.facts() == [Condition.CLOCKS_APART(apart=0.3)]
+
+
+def test_clocks_are_not_named_where_the_rotor_falls_silent_or_both_send_seldom(bench):
+    for k in range(1, 30):
+        bench.turn(START + 90 * k * MS, 0.0)
+        bench.measure(START + 90 * k * MS + 85 * MS, 0.0)
+    assert bench.facts() == [UNCHECKED]
+    for k in range(1, 9):
+        bench.measure(START + 2700 * MS + 100 * k * MS, 0.0)
+    assert bench.facts(NOW + 1.0) == [Condition.NOT_COMPARED()]
 
 
 @pytest.mark.parametrize(('explained', 'fits'), [(0.4, False), (0.999, True)])

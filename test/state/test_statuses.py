@@ -27,6 +27,7 @@ VALUES = {
     'doubt': Condition.VELOCITIES_ARE(meaning='0'),
     'factor': 9.5493,
     'delay': 0.0604,
+    'apart': 0.302,
     'size': 0.3,
     'which': [
         Condition.BEYOND_SPEED(speed=900.04),
