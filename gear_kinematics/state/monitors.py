@@ -19,7 +19,6 @@ from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import Rejection
 
 _BEYOND_ANY_GEAR = 0.1  # rad
-_APART = 0.1  # s, between the newest stamps of both encoders, which the transport does not explain
 _MOST_REPEATED, _ALL_REPEATED = 0.5, 0.95
 """Shares of stamps from which repeated ones are a fault: if turns depend on them, or else."""
 
@@ -138,7 +137,7 @@ class InputMonitor(DriverMonitor):
         if not rotor_input.referenced:
             if lost := rotor_input.why_lost:
                 yield lost
-            yield _not_referenced(reference)
+            yield _not_referenced(reference, self._encoder.clocks_apart)
         elif wrong := (reference and reference.disagreement) or _outside(rotor_input):
             yield wrong
         yield from self._losses(grown, rotor_input.rejected, driver)
@@ -174,7 +173,7 @@ class EncoderMonitor(DriverMonitor):
     def __init__(self, encoder: OutputEncoder) -> None:
         super().__init__()
         self._encoder = encoder
-        self._reported, self._compared, self._apart = -math.inf, 0, 0.0
+        self._reported, self._compared = -math.inf, 0
 
     def report(self, now: float, driver: DriverFacts) -> GearReport | None:
         """Report on the time since the last report, until now; None before the first message."""
@@ -187,7 +186,6 @@ class EncoderMonitor(DriverMonitor):
         compared, silent = soon or matched != self._compared, age > parameters.input_timeout
         if not soon:
             self._reported, self._compared = now, matched
-            self._apart, encoder.least_apart = encoder.least_apart / SECOND, math.inf
 
         facts = []
         if silent:
@@ -224,10 +222,8 @@ class EncoderMonitor(DriverMonitor):
             explained = None if fit.explained is None else 100.0 * fit.explained
             values['explained by the calibration (%)'] = explained
             values['outside the interval (%)'] = 100.0 * fit.outside
-        reference = encoder.reference
-        unexplained = reference and reference.decision and not reference.rotor.referenced
-        if (facts or unexplained) and _APART < self._apart < math.inf:
-            facts.insert(0, Condition.CLOCKS_APART(apart=self._apart))
+        if facts and (apart := encoder.clocks_apart):
+            facts.insert(0, apart)
         grown = self._growth({**encoder.rejected, 'lost': driver.lost})
         facts += self._losses(grown, encoder.rejected, driver)
         faulty = any(fact.condition.level for fact in facts)
@@ -245,14 +241,14 @@ def _outside(rotor_input: RotorInput) -> Fact | None:
     return range_fault(parameters, TURN * turns + rest, parameters.transmission_error_limit)
 
 
-def _not_referenced(reference: TurnReference | None) -> Fact:
+def _not_referenced(reference: TurnReference | None, apart: Fact | None) -> Fact:
     """Return why the turns are not known."""
     if not reference:
         return Condition.NOT_REFERENCED()
     if not (decision := reference.decision):
         why = Condition.NO_SAMPLES(count=SAMPLES)
-    elif decision.outside:
-        why = decision.outside
+    elif found := apart or decision.outside:
+        why = found
     else:
         known = decision.budget < decision.margin
         which = Condition.UNEXPLAINED if known else Condition.AMBIGUOUS

@@ -2,17 +2,18 @@
 """The encoder at the output shaft, and the transmission error during operation."""
 
 import math
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from gear_kinematics.correction.corrector import Correction
 from gear_kinematics.correction.error_window import ErrorWindow
-from gear_kinematics.correction.transmission_error import ErrorSample, TransmissionError
+from gear_kinematics.correction.transmission_error import SAMPLES, ErrorSample, TransmissionError
 from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.slip import SlipWatch
+from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.state.turn_reference import TurnReference
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import (
@@ -21,6 +22,8 @@ from gear_kinematics.wire.joint_reader import (
     JointReader,
     RejectedInputError,
 )
+
+_APART = SECOND // 10  # ns, between the newest stamps of both encoders: few transports take longer
 
 
 def measured_angle(parameters: NodeParameters, position: Any) -> Any:
@@ -38,7 +41,7 @@ class OutputEncoder:
         """Counts the measured angles that were compared and, by cause, those that were not."""
         self._turn_reference = reference
         self.direction_checked = False  # whether both encoders moved in the same sense
-        self.least_apart = math.inf  # ns, between new stamps of both since the last report
+        self._apart = deque[int](maxlen=SAMPLES)  # ns, between the newest stamps of both encoders
         self._latest: RotorSample | None = None
         self.parameters = parameters
         self.configure(parameters)
@@ -62,6 +65,13 @@ class OutputEncoder:
         self.reference = self._turn_reference if parameters.absolute else None
         self._segment: int | None = None
 
+    @property
+    def clocks_apart(self) -> Fact | None:
+        """By how much the clocks of both encoders differ, if no delay explains it."""
+        least = min(self._apart, default=0)
+        longest = max(_APART, self.parameters.longest_delay_ns)
+        return Condition.CLOCKS_APART(apart=least / SECOND) if least > longest else None
+
     def accept(
         self, data: JointMessage, now: Callable[[], int], latest: RotorSample | None = None
     ) -> Sequence[ErrorSample]:
@@ -81,7 +91,8 @@ class OutputEncoder:
         stamp = stamp or now()
         apart = abs(stamp - latest[0]) if latest else 0  # its stamp, by the fastest way
         if latest and latest is not self._latest:  # the old stamp of a silent rotor tells nothing
-            self._latest, self.least_apart = latest, min(self.least_apart, apart)
+            self._latest = latest
+            self._apart.append(apart)
         if apart > self._farthest:
             self.comparison.unmatched['no rotor state of about the same time'] += 1
             return ()
@@ -104,7 +115,7 @@ class OutputEncoder:
         if samples and not self.direction_checked:
             self._check_direction(samples[-1])
         if self.reference and samples:
-            samples = self.reference.follow(samples)
+            samples = self.reference.follow(samples, lambda: self.clocks_apart)
         for sample in samples:
             self.window.add(sample)
             self.slip_watch.add(sample)

@@ -10,7 +10,7 @@ terms, the output angle within its turn, 2π k D/N + a D/N modulo 2π, takes |N|
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -194,10 +194,13 @@ class TurnReference:
         """Whether the latest block could tell whether the count is right."""
         return self.decision is not None and self.decision.budget < self.decision.margin
 
-    def follow(self, samples: Sequence[ErrorSample]) -> Sequence[ErrorSample]:
+    def follow(
+        self, samples: Sequence[ErrorSample], doubt: Callable[[], object] = lambda: None
+    ) -> Sequence[ErrorSample]:
         """Take the next errors of the present count; returns the errors of known turns.
 
-        It can begin a new segment, whose errors are yet to come.
+        No turns are found while there is a doubt that the errors are of one time. The next errors
+        can begin a new segment, whose errors are yet to come.
         """
         referenced = self.rotor.referenced
         for sample in samples:
@@ -207,7 +210,8 @@ class TurnReference:
                 if decision.disagreement or decision.budget < decision.margin:
                     self.disagreement = decision.disagreement
                 if decision.unambiguous:
-                    if not referenced and decision.budget <= _ALIKE * self._refuted:
+                    alike = decision.budget <= _ALIKE * self._refuted
+                    if not referenced and alike and not doubt():
                         self._refer(decision)
                         return ()
                 elif decision.refuted:

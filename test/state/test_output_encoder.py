@@ -183,14 +183,20 @@ def test_clocks_that_are_apart_are_named_before_the_fault_that_they_feign(late):
     assert [each.condition for each in bench.facts(NOW + 1.0)][1:] == [Condition.SLIPPED]
 
 
-def test_clocks_are_named_where_turns_are_not_found_for_it():
-    settings = replace(SETTINGS, rotor_encoder='single_turn', transmission_error_max_gap=0.01)
+@pytest.mark.parametrize(('late', 'longest', 'found'), [
+    (0.3, 0.01, False), (-0.12, 0.01, False), (0.12, 0.15, True), (0.09, 0.01, True),
+])  # fmt: skip
+def test_no_turns_are_found_by_clocks_that_are_apart(late, longest, found):
+    """At rest, where stamps do not matter: a motion would tell other turns."""
+    settings = replace(SETTINGS, rotor_encoder='single_turn', transmission_error_max_gap=longest)
     bench = Bench(replace(settings, output_encoder_reference='absolute'))
     for k in range(1, 1001):
-        angle = 0.8 * math.sin(0.001 * k)
-        bench.turn(START + k * MS, math.remainder(-19.0 * angle, math.tau))
-        bench.measure(START + (k - 300) * MS, angle)
-    assert bench.facts() == [Condition.CLOCKS_APART(apart=0.3)]
+        bench.gear.rotor(rotor_bytes(START + k * MS, position=[0.0]), int)
+        bench.measure(START + k * MS + round(late * SECOND), 0.0)
+    assert bench.gear.referenced is found
+    why = Condition.CLOCKS_APART(apart=abs(late))
+    facts = bench.gear.report(NOW, bench.connections)['rotor input'].facts
+    assert (Condition.NOT_FOUND(why=why) in facts) is not found
 
 
 def test_clocks_are_not_named_where_the_rotor_falls_silent_or_both_send_seldom(bench):
