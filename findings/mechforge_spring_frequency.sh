@@ -1,13 +1,13 @@
 #!/bin/bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# mechforge 0.1.0: a preload spring that surges at 351 Hz is given 2.8 Hz, and the bearing that it asks for is too small.
+# mechforge 0.1.0: a spring that surges at 351 Hz is given 2.8 Hz, and the bearing it asks for at 99 % is too small.
 #
 # Of a helical spring between two plates, the lowest frequency is half the root of stiffness over the mass of its active
-# coils: 350.8 Hz for a wire of 2 mm, a diameter of 16 mm, 8 coils and 80 GPa. What happens: natural_frequency is 2.77 Hz,
-# 126 times too low, as a factor of 1000 goes into a root and the other one is 32 instead of 2. The stiffness is right.
-# For a bearing, C_required does not depend on the reliability, although the life does: at 99 % it is 44.8 kN, with which
-# the bearing would live for 1680 of the 8000 hours that are desired; 75.4 kN are right. From 99 % on, the life stays that
-# of 99 %. The equations in its documentation are those of the stiffness, the stress and the basic life.
+# coils: 350.8 Hz for a wire of 2 mm, a diameter of 16 mm, 8 coils and 80 GPa. What happens: natural_frequency is
+# 2.77 Hz, 126 times too low, as a factor of 1000 goes into a root, in which 32 stands for 2. The stiffness is right.
+# For a bearing, C_required does not depend on the reliability, although the life does: at 99 % it is 44.8 kN, with
+# which the bearing would live for 1680 of the 8000 hours that are desired; 75.4 kN are right. Above 99 % the life stays
+# that of 99 %. Its documentation gives equations of the stiffness, the stress and the basic life only.
 # For us: compute the frequency from spring_rate, and divide the life that is desired by the factor of the reliability.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
@@ -15,7 +15,8 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 python3 -m venv "$folder/venv"
-"$folder/venv/bin/pip" install --quiet --disable-pip-version-check mechforge==0.1.0 numpy==2.4.6 scipy==1.17.1 pint==0.25.3
+"$folder/venv/bin/pip" install --quiet --disable-pip-version-check \
+    mechforge==0.1.0 numpy==2.4.6 scipy==1.17.1 pint==0.25.3
 timeout 100 "$folder/venv/bin/python" -W ignore - <<'PYTHON'
 import math
 
