@@ -40,8 +40,12 @@ _TYPES = re.compile(r'(?i)[iuf]\d+|(float|double|u?int)\d*|(type|interp|blockpat
 """Cells of rows between names and numbers that give types, as INCA and Simulink write them."""
 _FRAMES = re.compile(r'\s*\(\d+\.\d+\)\s+\w+\s+[0-9A-F]+#|;\$FILEVERSION|date \w{3} \w{3} \d')
 """Beginnings of CAN bus logs of candump, PCAN-View and CANoe."""
-_ANGLES = re.compile(r'(?i)\b(deg(ree)?s?|revolutions?|turns)\b(?!/| *[CFK]\b| of\b)')
-"""Units of angles in titles and comments, such as `# angles in degrees`, but not in `25 deg C`."""
+_ANGLES = re.compile(
+    r'(?i)(?:(?<!\d )|(?<=0\.1 )|(?<=0\.01 ))'
+    r'\b(deg(ree)?s?|revolutions?|turns)\b(?!/|\.? *([CFK]|celsius)\b|[ -]of\b| per\b)'
+)
+"""Units of angles in titles and comments, such as `# angles in degrees`, but not in `deg C`, or of
+a single value as in `3 turns`."""
 _CODESYS = '[key]; [value]'
 """Beginning of a trace of CODESYS, whose variables are below each other."""
 _NO_NAMES = re.compile(r'(?i)[-+|:=\s]*|sep=.*\s*')

@@ -287,7 +287,10 @@ ENCODERS = {
         ',Units: deg,,Units: deg\n,Interp: linear,,Interp: linear', 2 * ['{:.16f}', '{:.5f}']),
     'INCA': plain('sampleCount\t1320\ntime\tMotorPos\\ETKC:1\tOutputPos\\ETKC:1\n'
         's\tdeg\tdeg\nf8\tf8\tf8', '\t', angle=DEG),
-    'no units of angles above': plain(f'# rev 3, 25 deg C, 6 degrees of freedom\n{NAMES}'),
+    'no units of angles above': plain(
+        '# rev 3 at 25 degrees Celsius\n# heat in deg. C\n# two degrees-of-freedom\n'
+        '# angles in rad, arm at 30 deg\n# 3 turns at 2 revolutions per minute\n'
+        f'# pace in degrees per second\n{NAMES}'),
     'over midnight': plain(time=lambda v: moment(' ')(v + 15 * 3600 - 20)[11:]),
     'whole seconds': plain('time_s,rotor,output', time='{:.0f}'),
     'minutes': lambda t, r, o: written(
@@ -483,6 +486,8 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         (lambda t, r, o: written([t, r * REV, o * DEG], 'time,motor (raw),output [deg]', '{:.5f}'),
          'raw: give its unit as in --rotor-column .motor .raw. .rev'),
         (lambda t, r, o: written([t, r, o], f'# angles in degrees, bench 3\n{NAMES}'),
+         'rotor has no unit, and a line above the names says deg: give its unit'),
+        (lambda t, r, o: written([t, r, o], f'# angles are in 0.1 deg\n{NAMES}'),
          'rotor has no unit, and a line above the names says deg: give its unit'),
         (lambda t, _, o: written([t, 1e-3 * o, o], 'time,angle,torque [MN·m]'), 'is not known'),
         (lambda t, r, o: written(
