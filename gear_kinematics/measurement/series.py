@@ -25,7 +25,9 @@ def series_of(
     Returns:
         Columns, their units, and the columns of their times, by the name of the series.
     """
-    filled = frame.columns[2 * frame.count() > len(frame)]  # not the stamps of no headers
+    wanted = [meaning(str(name)).role not in {'', 'time'} for name in frame[key]]
+    angles = frame[wanted] if any(wanted) else frame  # other topics may be without stamps
+    filled = frame.columns[2 * angles.count() > len(angles)]  # not the stamps of no headers
     clock = likeliest(filled).get('time')
     unit = units.get(clock) or meaning(clock).unit if clock else ''
     if nanoseconds := nanoseconds_of(clock or '', [*frame]):

@@ -255,6 +255,10 @@ ENCODERS = {
         f'{at:.2f},{at + 1764230000:.2f},,/{topic}.data,{value:.5f}\n'
         for topic, values in (('MAIN.rotor', r), ('MAIN.output', o))
         for at, value in zip(t, values, strict=True))),
+    'stamps of a few topics, of Foxglove': lambda t, r, o: 'header.stamp,topic,value\n' + ''.join(
+        f'{at + 1764230000:.2f},/rotor,{rotor:.5f}\n{at + 1764230000:.2f},/output,{out:.5f}\n'
+        f',/a/temperature,{at:.2f}\n,/b/temperature,{at:.2f}\n,/c/temperature,{at:.2f}\n'
+        for at, rotor, out in zip(t, r, o, strict=True)),
     'slices and units of Foxglove': lambda t, r, o: 'timestamp,message path,value\n' + ''.join(
         f'{at + 1764230000:.2f},/{topic}.position[:]{{0}}@degrees,{DEG * value:.5f}\n'
         for topic, values in (('rotor', r), ('output', o))
