@@ -161,7 +161,8 @@ def _role(
     keys = [word for word in words if _KINDS.get(word) != 'filling' and not word.isdigit()]
     kinds = {_KINDS.get(word) for word in keys}
     if not words and unit in TIME_UNITS:
-        return 'time', (9,)
+        coarse = TIME_UNITS[unit] > 1.0  # such as the hour beside seconds, or hours of operation
+        return 'time', (len(_KINDS) + 1 if coarse else 9,)
     if times := [word for word in keys if _KINDS.get(word) == 'time']:
         foreign = unit not in {'', *TIME_UNITS} or not FOREIGN.isdisjoint(words)
         if kinds == {'time', None} and _CERTAIN & {*times} and not foreign:  # such as loop_time
@@ -181,7 +182,8 @@ def _role(
         return none
     # A count of turns comes after the angle within a turn, and the state of a motor after both.
     # A torque at the output needs no ratio, and comes before that of the motor.
-    unsure = unit in FOREIGN, not quantity and unit in {'', 'rev'}, torque and rotor
+    foreign = unit in {*FOREIGN, *TIME_UNITS}
+    unsure = foreign, not quantity and unit in {'', 'rev'}, torque and rotor
     rank = (*unsure, len(words), *(_RANKS[word] for word in keys))
     return 'torque' if torque else 'rotor' if rotor else 'output' if output else 'angle', rank
 

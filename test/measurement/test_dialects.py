@@ -299,6 +299,9 @@ ENCODERS = {
     'whole seconds': plain('time_s,rotor,output', time='{:.0f}'),
     'minutes': lambda t, r, o: written(
         [t / 60.0, r, o], 'time_min,rotor_rad,output_rad', 3 * ['{:.7f}']),
+    'hours and minutes beside seconds': lambda t, r, o: written(
+        [0 * t + 14, 0 * t + 7, t, r, r - 1, o],
+        'hour,minute,second,motor position,motor position (min),output position', '{:.5f}'),
     'hours, and angles in German': lambda t, r, o: written(
         [t / 3600.0, r * DEG, o * DEG], 'Zeit [h];Winkel Motor [Grad];abtriebswinkel_grad',
         3 * ['{:.8f}'], ';'),
