@@ -299,6 +299,8 @@ class RotorInput:
             if verdict is Belief.IMPLAUSIBLE:
                 raise RejectedInputError(Rejection.IMPLAUSIBLE)
             self.turns.lose()
+            if self.plausibility.wraps.period:  # then no slope of the positions is a speed
+                self.velocity_field.restart()
         if stamp < (field := self.velocity_field).quiet_until:
             self.turns.update(position, stamp, velocity)
             field.add(velocity)

@@ -223,6 +223,18 @@ def test_turns_that_pass_while_a_single_turn_encoder_is_stuck_stay_unknown(setti
     assert rotor.turns.unknown_gaps == 2 * settings.single_turn
 
 
+@pytest.mark.parametrize('speed', [2.0, 40.0, 200.0])
+def test_right_velocities_do_not_contradict_positions_that_wrap_unexpectedly(speed):
+    rotor = RotorInput(SETTINGS)
+    for k in range(10_000):
+        position = [speed * k / 1000 % TURN]
+        message = rotor_bytes(SECOND + k * SECOND // 1000, position=position, velocity=[speed])
+        with suppress(RejectedInputError):
+            rotor.accept(message, int)
+    assert rotor.plausibility.jumps
+    assert rotor.velocity_field.in_recording is None
+
+
 @pytest.mark.parametrize(('velocity', 'stuck'), [
     (lambda t: 50.0 + 25.0 * math.sin(3.0 * t), True),
     (lambda t: 300.0 * math.exp(-10.0 * t), False),  # of a filter behind a rotor that stops
