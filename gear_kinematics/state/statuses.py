@@ -80,12 +80,12 @@ class Condition(Enum):
     POSITIONS_ARE = WARN, _VELOCITIES, 'Let the driver send positions of the rotor in rad.'
     VELOCITIES_LATE = (
         WARN,
-        'the velocities are {delay:.3f} s late',
+        'the velocities are about {delay:.2g} s late',
         'Let the driver filter them less, or send them with the position of the same time.',
     )
     POSITIONS_LATE = (
         WARN,
-        'the positions are {delay:.3f} s behind the velocities',
+        'the positions are about {delay:.2g} s behind the velocities',
         'Let the driver filter the positions less, or send measured velocities of the same time.',
     )
     POSITIONS_STAND = (
