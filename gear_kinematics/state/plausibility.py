@@ -40,7 +40,7 @@ _LONGEST_REPEAT = 1.0  # s, for which a driver repeats a reading while the rotor
 _REPEATED = 0.05  # of the way meanwhile: what it may differ by from that at a steady speed
 _STEADY = 0.25  # of the speed: what it may change by meanwhile
 _FEW_STEPS = 3.0  # between readings: what a drive whose clock begins anew may turn meanwhile
-_LEAST_MOTION = 1e-4  # rad between two readings of a rotor that moves
+_LEAST_MOTION = 0.01  # rad between two readings of a rotor that moves
 
 
 _UNKNOWN = math.nan, 0, 0.0, 0
