@@ -49,9 +49,8 @@ class RotorInput:
         self.received = 0
         self.rejected: Counter[str] = Counter()
         self.of_others = 0  # messages of other joints only, as of a shared /joint_states
-        self.duplicates = self.zero_stamps = 0
+        self.duplicates = self.zero_stamps = self.resets = 0
         self.unnormalised_stamps = 0  # stamps with a second or more of nanoseconds, normalised
-        self.resets = 0
         self.missing_joint = ''  # which joints the first message without the rotor's has
         self.last: RotorSample | None = None
         self.zero = split_turns(parameters.rotor_zero)  # zero in use; a reference can replace it
@@ -253,8 +252,7 @@ class RotorInput:
     def _one_by_one(
         self, rows: Array, stamps: Array, values: Array, received: Array, rejected: Array
     ) -> RotorSamples:
-        taken = list[Row]()
-        disordered = list[int]()
+        taken, disordered = list[Row](), list[int]()
         before = self.received
         for row, stamp, numbers, now in zip(
             rows.tolist(), stamps.tolist(), values.tolist(), received.tolist(), strict=True
