@@ -110,7 +110,7 @@ class Plausibility:
         A stamp, ns, of the time since its start does not show how long that took.
         """
         before, _, step, _ = self._last
-        moved = self._wrapped(position - before)
+        moved = position - before
         if not abs(moved) > _FEW_STEPS * abs(step) + self.noise:
             return False
         self.jumps += 1

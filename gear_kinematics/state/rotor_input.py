@@ -344,7 +344,9 @@ class RotorInput:
             self.resets += 1
             self.disorder.note_reset(self.received, last, stamp)
             self.turns.reset()
-            if stamp < _UPTIME < last and self.plausibility.is_elsewhere(position, stamp):
+            # Turns of positions that repeat are unknown then, wherever the drive starts.
+            known = stamp < _UPTIME < last and not self.plausibility.period
+            if known and self.plausibility.is_elsewhere(position, stamp):
                 self.turns.lose()
             self.plausibility.reset()
             self.velocity_field.restart()

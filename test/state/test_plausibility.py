@@ -216,6 +216,17 @@ def test_a_drive_elsewhere_whose_stamps_become_the_time_since_its_start_has_jump
         assert each.plausibility.jumped == (jumped if lost else None)
 
 
+def test_a_single_turn_encoder_has_not_jumped_where_its_drive_restarts():
+    rotor = RotorInput(SINGLE)
+    for start, zero in ((1_700_000_000, -2.0), (1, 0.0)):
+        for k in range(100):
+            stamp, position = start * SECOND + k * SECOND // 100, zero + 0.01 * k
+            rotor.accept(rotor_bytes(stamp, position=[position]), int)
+    assert rotor.resets == 1
+    assert not rotor.referenced
+    assert rotor.plausibility.jumped is None
+
+
 @pytest.mark.parametrize('rest', [5, 8, 15])
 def test_a_rotor_that_trembles_between_moves_by_a_turn_does_not_wrap(rest):
     generator = np.random.default_rng(rest)
