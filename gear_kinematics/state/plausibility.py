@@ -111,7 +111,8 @@ class Plausibility:
         """
         before, _, step, _ = self._last
         moved = position - before
-        if not abs(moved) > _FEW_STEPS * abs(step) + self.noise:
+        # Turns of positions that repeat are unknown then, wherever the drive starts.
+        if self.period or not abs(moved) > _FEW_STEPS * abs(step) + self.noise:
             return False
         self.jumps += 1
         self.jump = Jump(stamp, moved)

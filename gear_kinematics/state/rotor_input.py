@@ -344,9 +344,7 @@ class RotorInput:
             self.resets += 1
             self.disorder.note_reset(self.received, last, stamp)
             self.turns.reset()
-            # Turns of positions that repeat are unknown then, wherever the drive starts.
-            known = stamp < _UPTIME < last and not self.plausibility.period
-            if known and self.plausibility.is_elsewhere(position, stamp):
+            if stamp < _UPTIME < last and self.plausibility.is_elsewhere(position, stamp):
                 self.turns.lose()
             self.plausibility.reset()
             self.velocity_field.restart()
