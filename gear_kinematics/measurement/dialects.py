@@ -2,6 +2,7 @@
 """Tables as text in the dialects of test benches: where names, units and numbers are."""
 
 import codecs
+import csv
 import io
 import math
 import re
@@ -148,12 +149,12 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
     if lines and lines[0].startswith(_CODESYS):
         with opened(mode='r', compression='infer', encoding=encoding, errors='replace') as file:
             how: Any = {'sep': ';', 'names': ['key', 'time', 'value'], 'skipinitialspace': True}
+            how |= {'quoting': csv.QUOTE_NONE, 'on_bad_lines': 'skip'}  # for comments of any kind
             frame = pd.read_csv(file.handle, dtype=str, **how)
         named = frame['key'].str.endswith('.Variable', na=False)
         key = frame['time'].where(named).ffill()
-        return loaded(
-            *series_of(frame.assign(key=key)[frame['key'].isna()], '.', 'key', 'value', {})
-        )
+        rows = frame.assign(key=key)[frame['key'].isna()]
+        return loaded(*series_of(rows, '.', 'key', 'value', {}))
     layout = _layout(lines)
 
     def read(places: Sequence[int], every: int, kind: Any = None) -> Any:

@@ -305,7 +305,7 @@ ENCODERS = {
     'hours, and angles in German': lambda t, r, o: written(
         [t / 3600.0, r * DEG, o * DEG], 'Zeit [h];Winkel Motor [Grad];abtriebswinkel_grad',
         3 * ['{:.8f}'], ';'),
-    'CODESYS': lambda t, r, o: '[key]; [value]\nName; Application.Trace\nComment; \n' + ''.join(
+    'CODESYS': lambda t, r, o: '[key]; [value]\nName; App.Trace\nComment; "2; 5; 7\n' + ''.join(
         f'{k}.Variable; GVL.{name}\n{k}.Size; 8\n{k}.Data; \n'
         + ''.join(f'; {1e3 * at:.0f}; {v:.9g}\n' for at, v in zip(t, values, strict=True))
         for k, (name, values) in enumerate({'motorPos': r, 'oil': t, 'outputPos': o}.items())),
