@@ -2,7 +2,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # uncertaintylib 1.1.2: the torque of an arm at 100 turns of its shaft has an uncertainty of 0 N·m instead of 0.1 N·m.
 #
-# A torque is 10 N·m times the sine of an angle that is known to 0.01 rad. At whole turns the sine is near 0, so that the
+# A torque is 10 N·m times the sine of an angle that is known to 0.01 rad. At whole turns the sine is near 0, and the
 # torque is known to 0.1 N·m, however many turns there were. What happens: the derivative is a difference over one per
 # cent of the angle, which the documentation does not say. After 100 turns this is one whole turn and after 50 turns
 # half a turn, so that the derivative and the uncertainty are 0; after 30 turns it is 0.05 N·m, and after one turn it is
