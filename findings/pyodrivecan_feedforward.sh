@@ -5,8 +5,9 @@
 # The documentation of set_position() gives "Feedforward velocity" and "Feedforward torque" without a unit, where all
 # other methods take revolutions, revolutions per second and N·m. Expected: 2 turns/s and 3 N·m arrive. What happens:
 # they are packed as they are into two fields of 16 bits, whose unit in ODrive's CAN protocol is 0.001 turns/s and
-# 0.001 N·m; a feedforward of 0.5 is a struct.error. active_error and disarm_reason are only ever set: both remain
-# when the ODrive reports in its next message that it has no error. A virtual CAN bus takes the place of the drive.
+# 0.001 N·m; a feedforward of 0.5 is a struct.error. active_error, documented as the current error, is only ever set:
+# it remains when the ODrive reports in its next message that it has no error. So does disarm_reason, which is
+# documented as the last one. A virtual CAN bus takes the place of the drive.
 # For us: give both feedforwards as whole thousandths, and set active_error to None before each message.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
