@@ -4,7 +4,8 @@
 #
 # Of a helical spring between two plates, the lowest frequency is half the root of stiffness over the mass of its active
 # coils: 350.8 Hz for a wire of 2 mm, a diameter of 16 mm, 8 coils and 80 GPa. What happens: natural_frequency is
-# 2.77 Hz, 126 times too low, as a factor of 1000 goes into a root, in which 32 stands for 2. The stiffness is right.
+# 2.77 Hz, 126 times too low: the 1000 from mm to m is put under a root, where also 32 stands instead of 2. The
+# stiffness is right.
 # For a bearing, C_required does not depend on the reliability, although the life does: at 99 % it is 44.8 kN, with
 # which the bearing would live for 1680 of the 8000 hours that are desired; 75.4 kN are right. Above 99 % the life stays
 # that of 99 %. Its documentation gives equations of the stiffness, the stress and the basic life only.
