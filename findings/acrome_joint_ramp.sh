@@ -5,7 +5,7 @@
 # Ramp(vmax=1, amax=1), by which the library's program moves a joint, is to plan a turn of 0.2 rad in 0.25 s, which is
 # too short. Expected: a turn that keeps both limits and takes longer, as it does where the speed does not allow the
 # time (1 rad in 0.5 s takes 2 s). What happens: where only the acceleration does not allow it, the time is kept and
-# the limit is not, although an acceleration of 1 rad/s² is given as well. In 0.5 s it is 3.2 rad/s².
+# the limit is not, although an acceleration of 1 rad/s² is given as well. With a time of 0.5 s it is 3.2 rad/s².
 # For us: give no time to plan(), or one of at least 2 * sqrt(angle / acceleration).
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
