@@ -2,10 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # roslib 2.1.0 (npm): a joint 0.3 m above its parent is at 0 if two spaces stand between the numbers in its URDF.
 #
-# The numbers of an origin may be separated by any white space, which people use to align them in columns. Expected of
-# xyz="0  0  0.3" rpy="0  0  1.57": the same pose as with single spaces. What happens: UrdfModel splits the text at each
-# single space and takes the empty pieces as missing numbers, so that the origin is (0, 0, 0) and not turned, without a
-# warning. The same holds for a space before the first number. An axis with two spaces is an error.
+# People align the numbers of an origin in columns with more than one space, which urdfdom, the parser of ROS, skips.
+# Expected of xyz="0  0  0.3" rpy="0  0  1.57": the same pose as with single spaces. What happens: UrdfModel splits the
+# text at each single space and takes the empty pieces as missing numbers, so that the origin is (0, 0, 0) and not
+# turned, without a warning. The same holds for a space before the first number. An axis with two spaces is an error.
 # For us: put single spaces into the URDF before UrdfModel reads it: text.replace(/\s+/g, ' ').
 #
 # Exit code 0: still so. Needs node; installs the version into a temporary folder.
