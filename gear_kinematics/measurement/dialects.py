@@ -142,23 +142,23 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
         head = file.handle.read(_HEAD)
         size = len(head) + sum(map(len, iter(partial(file.handle.read, _BLOCK), b'')))
     encoding = _encoding(head)
+    decoded = partial(opened, mode='r', compression='infer', encoding=encoding, errors='replace')
     text = codecs.getincrementaldecoder(encoding)('replace').decode(head).rstrip('\0')
     lines = [*io.StringIO(text, newline=None)]
     if size > _HEAD and not (lines := lines[:-1]):
         raise ValueError(f'the first row is longer than {_HEAD} characters')
     if lines and lines[0].startswith(_CODESYS):
-        with opened(mode='r', compression='infer', encoding=encoding, errors='replace') as file:
+        with decoded() as file:
             how: Any = {'sep': ';', 'names': ['key', 'time', 'value'], 'skipinitialspace': True}
             how |= {'quoting': csv.QUOTE_NONE, 'on_bad_lines': 'skip'}  # for comments of any kind
             frame = pd.read_csv(file.handle, dtype=str, **how)
-        named = frame['key'].str.endswith('.Variable', na=False)
-        key = frame['time'].where(named).ffill()
+        key = frame['time'].where(frame['key'].str.endswith('.Variable', na=False)).ffill()
         rows = frame.assign(key=key)[frame['key'].isna()]
         return loaded(*series_of(rows, '.', 'key', 'value', {}))
     layout = _layout(lines)
 
     def read(places: Sequence[int], every: int, kind: Any = None) -> Any:
-        with opened(mode='r', compression='infer', encoding=encoding, errors='replace') as file:
+        with decoded() as file:
             for _ in range(layout.start):  # pandas would heed quotation marks in them
                 file.handle.readline()
             return pd.read_csv(

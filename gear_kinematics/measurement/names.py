@@ -177,13 +177,13 @@ def _role(
     torque, quantity = 'torque' in kinds, not kinds.isdisjoint({'angle', 'torque'})
     unclear = (torque and 'angle' in kinds) or (rotor and output and not torque)
     others = None in kinds or ('current' in kinds and not torque)
-    unsaid = kinds == {'input'} or (unit in {*FOREIGN, *TIME_UNITS} and not quantity)
+    of_others = unit in {*FOREIGN, *TIME_UNITS}
+    unsaid = kinds == {'input'} or (of_others and not quantity)
     if not keys or others or unclear or unsaid or '/' in unit or unit in _SPEEDS:
         return none
     # A count of turns comes after the angle within a turn, and the state of a motor after both.
     # A torque at the output needs no ratio, and comes before that of the motor.
-    foreign = unit in {*FOREIGN, *TIME_UNITS}
-    unsure = foreign, not quantity and unit in {'', 'rev'}, torque and rotor
+    unsure = of_others, not quantity and unit in {'', 'rev'}, torque and rotor
     rank = (*unsure, len(words), *(_RANKS[word] for word in keys))
     return 'torque' if torque else 'rotor' if rotor else 'output' if output else 'angle', rank
 

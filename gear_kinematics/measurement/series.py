@@ -25,8 +25,9 @@ def series_of(
     Returns:
         Columns, their units, and the columns of their times, by the name of the series.
     """
-    wanted = [meaning(str(name)).role not in {'', 'time'} for name in frame[key]]
-    angles = frame[wanted] if any(wanted) else frame  # other topics may be without stamps
+    wanted = [one for one in frame[key].unique() if meaning(str(one)).role not in {'', 'time'}]
+    # Other topics may be without stamps.
+    angles = frame[frame[key].isin(wanted)] if wanted else frame
     filled = frame.columns[2 * angles.count() > len(angles)]  # not the stamps of no headers
     clock = likeliest(filled).get('time')
     unit = units.get(clock) or meaning(clock).unit if clock else ''
