@@ -261,10 +261,10 @@ class GearStatePublisher(PublishingNode):
             if str(rejection) == Rejection.JOINT_MISSING not in actuator.state.input.rejected:
                 return  # a message of another driver on a shared topic, and no input
             actuator.state.monitor.last_input = time.monotonic()
+        of, detail = f' of {name}' if name else '', rejection.detail
         # Not one for each actuator: all of an arm can lack the same.
-        if self._may_warn(subject := f'{topic} rejected: {rejection}'):
-            of, detail = f' of {name}' if name else '', rejection.detail
-            self._warn(f'{topic}{of} rejected: {rejection}{detail and f": {detail}"}', subject)
+        subject = f'{topic} rejected: {rejection}'
+        self._warn(f'{topic}{of} rejected: {rejection}{detail and f": {detail}"}', subject)
 
     def _report(self) -> None:
         for driver in self._drivers:

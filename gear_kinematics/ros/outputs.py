@@ -107,10 +107,7 @@ class PublishingNode(Node):  # type: ignore[misc]  # rclpy has no types
             publisher.wait_for_all_acked(Duration(seconds=left))
 
     def _warn(self, text: str, subject: str = '') -> None:
-        if self._may_warn(subject):
+        if time.monotonic() >= self._next_warnings.get(subject, 0.0):
             self.get_logger().warning(text)
             # After logging, not before.
             self._next_warnings[subject] = time.monotonic() + _WARNING_PERIOD
-
-    def _may_warn(self, subject: str) -> bool:
-        return time.monotonic() >= self._next_warnings.get(subject, 0.0)

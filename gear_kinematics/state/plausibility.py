@@ -41,8 +41,6 @@ _REPEATED = 0.05  # of the way meanwhile: what it may differ by from that at a s
 _STEADY = 0.25  # of the speed: what it may change by meanwhile
 _FEW_STEPS = 3.0  # between readings: what a drive whose clock begins anew may turn meanwhile
 _LEAST_MOTION = 0.01  # rad between two readings of a rotor that moves
-
-
 _UNKNOWN = math.nan, 0, 0.0, 0
 
 
