@@ -64,7 +64,7 @@ class GearState:
         self.input = RotorInput(parameters)
         self.output_encoder = OutputEncoder(parameters, TurnReference(self.input))
         self.monitor = InputMonitor(self.input, self.output_encoder)
-        self.encoder_monitor = EncoderMonitor(self.output_encoder)
+        self.encoder_monitor = EncoderMonitor(self.input, self.output_encoder)
         self.preload_monitor: PreloadMonitor | None = None  # if the preload is reported on
 
     def apply(self, parameters: NodeParameters, calibration: Calibration | None) -> None:

@@ -170,9 +170,9 @@ class InputMonitor(DriverMonitor):
 class EncoderMonitor(DriverMonitor):
     """Monitors the encoder at the output, and the transmission error."""
 
-    def __init__(self, encoder: OutputEncoder) -> None:
+    def __init__(self, rotor: RotorInput, encoder: OutputEncoder) -> None:
         super().__init__()
-        self._encoder = encoder
+        self._rotor, self._encoder = rotor, encoder
         self._reported, self._compared = -math.inf, 0
 
     def report(self, now: float, driver: DriverFacts) -> GearReport | None:
@@ -191,7 +191,8 @@ class EncoderMonitor(DriverMonitor):
         if silent:
             facts.append(Condition.NO_ENCODER(age=age))
         elif not compared:
-            facts.append(Condition.NOT_COMPARED())
+            known = self._rotor.referenced or parameters.absolute
+            facts.append(Condition.NOT_COMPARED() if known else Condition.UNREFERENCED())
         # Without new samples, the statistics are out of date.
         error = encoder.window.statistics() if compared and not silent else ErrorStatistics()
         found = error.reversals

@@ -167,6 +167,7 @@ class Condition(Enum):
     # The transmission error
     NO_ENCODER = WARN, 'no output_encoder for {age:.1f} s', _DRIVER
     NOT_COMPARED = WARN, 'no rotor angle of the same time', _CLOCKS
+    UNREFERENCED = WARN, 'none while the turns of the rotor are unknown', _HOME
     CLOCKS_APART = (
         WARN,
         'the newest stamps of rotor_state and output_encoder are at least {apart:.2g} s apart',

@@ -167,6 +167,16 @@ def test_encoder_whose_stamps_are_not_the_rotors_is_a_warning(bench):
     assert report.values['not compared: no rotor state of about the same time'] == 3
 
 
+def test_clocks_are_not_blamed_where_the_turns_are_unknown():
+    gear = GearState(replace(SETTINGS, rotor_encoder='single_turn'))
+    for k in range(3):
+        for accept, joint in (gear.rotor, 'rotor'), (gear.encoder, 'shaft'):
+            accept(rotor_bytes(START + k * MS, [joint], [0.0]), int)
+    gear.encoder_monitor.last_input = NOW
+    facts = gear.report(NOW, Connections(DriverFacts(since=NOW - 1.0)))['transmission error'].facts
+    assert facts == [Condition.UNREFERENCED()]
+
+
 @pytest.mark.parametrize('late', [-0.3, 0.12, 0.3])
 def test_clocks_that_are_apart_are_named_before_the_fault_that_they_feign(late):
     """Interrupted turning at 2 rad/s, with stamps of the encoder that are off."""
