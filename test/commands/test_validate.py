@@ -33,7 +33,7 @@ from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.commands.cli import main
 from gear_kinematics.wire.batches import FIELDS
 
-SERVO, SINGLE_TURN = BAGS / 'servo_point_to_point', BAGS / 'single_turn_encoder'
+SERVO = BAGS / 'servo_point_to_point'
 CONFIG = CONFIGS / 'actuator.yaml'
 SAMPLES = 300
 CORRECTED = ('corrected_state', 'corrected_interval')
@@ -124,22 +124,6 @@ def test_all_shipped_bags_pass_each_with_its_own_config():
         'servo_point_to_point': str(CONFIG),
         'single_turn_encoder': 'bags/single_turn_encoder/actuator.yaml',
     }
-
-
-@pytest.mark.slow
-def test_the_config_beside_the_file_of_a_bag_is_used_unless_another_is_given():
-    file = SINGLE_TURN / 'single_turn_encoder_0.mcap'
-    done = gearkin_here('validate', '-v', file)
-    assert done.returncode == 0, done.stdout
-    assert f'{file}: config: {SINGLE_TURN / "actuator.yaml"};' in done.stdout
-    done = gearkin_here('validate', '-v', file, '--config', CONFIG)
-    assert done.returncode == 1
-    assert f'{file}: config: {CONFIG};' in done.stdout
-
-
-def test_a_bag_that_is_given_twice_is_validated_once(bags):
-    done = gearkin_here('validate', 'good', './good', 'good/', 'g*d', cwd=bags)
-    assert (done.returncode, done.stdout.count('verdict')) == (0, 1)
 
 
 @pytest.mark.parametrize(('name', 'options', 'code'), [

@@ -34,8 +34,7 @@ FOREIGN = [
     serialize_message(message)
     for message in (String(data='rotor'), PoseArray(poses=[Pose()] * 4), Imu())
 ]
-MUTATIONS, BATCH = 6_000, 20  # hostile payloads
-COUNT = 40_000  # of them into the node
+COUNT = 40_000  # hostile payloads
 VALID_EVERY, WAIT_EVERY = 20, 500  # of them; the node's queue holds four times as many
 STEP = SECOND // 1000
 PROBES = START // 2  # ns
@@ -135,17 +134,6 @@ class Payloads:
 
 def stamped(data: bytes, stamp: int) -> bytes:
     return data[:4] + struct.pack('<iI' if data[1] else '>iI', *divmod(stamp, SECOND)) + data[12:]
-
-
-@pytest.mark.slow
-def test_mutated_messages_are_read_as_rclpy_reads_them():
-    messages, payloads = harness('messages'), Payloads(seed=2)
-    taken = 0
-    for _ in range(MUTATIONS // BATCH):
-        batch = [payloads.hostile() for _ in range(BATCH)]
-        messages.check(messages.SEPARATOR.join(batch))
-        taken += sum(messages.reference_joint_state(data) is not None for data in batch)
-    assert 0.1 * MUTATIONS < taken < 0.9 * MUTATIONS
 
 
 LIMITS = {'max_rotor_speed': 1e6, 'max_rotor_acceleration': 1e9}
