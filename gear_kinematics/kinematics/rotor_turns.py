@@ -170,27 +170,20 @@ class RotorTurns:
     goes on from the nearest period.
     """
 
-    def __init__(
-        self,
-        *,
-        period: float,
-        max_speed: float,
-        max_acceleration: float,
-        longest_silence: float = 0.0,
-    ) -> None:
+    def __init__(self, *, period: float, max_speed: float, max_acceleration: float) -> None:
         """Start with no position.
 
         Args:
             period: rad after which the encoder's position repeats, TURN for once a turn; 0: never.
             max_speed: rad/s, the greatest speed of the rotor.
             max_acceleration: rad/s², the greatest acceleration of the rotor.
-            longest_silence: time without a sample, ns, after which a multi-turn encoder may have
-                restarted, so that its turns are unknown at the start, too; 0: it never does.
         """
         self.period = period
         self.max_speed = max_speed
         self.max_acceleration = max_acceleration
-        self.longest_silence = longest_silence
+        self.longest_silence = 0.0
+        """Time without a sample, ns, after which a multi-turn encoder may have restarted, so that
+        its turns are unknown at the start, too; 0: it never does."""
         self._lost = False
         self.unknown_gaps = 0
         """Number of gaps in which the rotor could have turned half a period or more unseen."""
