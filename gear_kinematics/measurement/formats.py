@@ -5,7 +5,7 @@ A table becomes a recording in steps, each in a module of its own: `open_table` 
 reader; `dialects` finds names, units and numbers in a text, whose `cells` are numbers, times or
 arrays, and `series` divides those with a row for each value; `names` has the words and units in
 names, by which `columns` chooses, or `advice` proposes columns; `clocks` gives the rows their
-times; and `tables` decides which rows are used.
+times; `assumed_units` doubts units that are not given; and `tables` decides which rows are used.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping

@@ -12,7 +12,8 @@ import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.measurement.advice import advice, rising
-from gear_kinematics.measurement.clocks import FASTEST, MOST, are_no_times, stamps, with_unit
+from gear_kinematics.measurement.assumed_units import against, differ_as_degrees
+from gear_kinematics.measurement.clocks import are_no_times, stamps, with_unit
 from gear_kinematics.measurement.columns import (
     Column,
     ColumnsError,
@@ -22,11 +23,9 @@ from gear_kinematics.measurement.columns import (
     nanoseconds_of,
 )
 from gear_kinematics.measurement.dialects import TableFile
-from gear_kinematics.measurement.encoder_range import count_wraps, other_unit, signed, unwrapped
+from gear_kinematics.measurement.encoder_range import signed, unwrapped
 from gear_kinematics.measurement.encoder_step import Step, find_step
 from gear_kinematics.measurement.formats import open_table
-from gear_kinematics.measurement.gate import output_by_rotor
-from gear_kinematics.measurement.names import meaning
 from gear_kinematics.measurement.recording import (
     Array,
     Encoders,
@@ -45,11 +44,6 @@ _SHOWN = 1500  # characters of an error, which may quote a long file
 _LEAST = 1e-30
 """Smaller numbers are taken as 0, so that no squares or inverses underflow later."""
 _GAP = 5  # greatest gap, in usual intervals of the rotor's samples, that is interpolated
-_HALF_TURN = 180.0  # degrees: least jump of a single-turn encoder
-_BLOCKS, _LIKE = 10, (0.08, 1.0)
-"""Number of parts of a recording; error of the output within a part that shows degrees, rad."""
-_WHOLE = 50  # number of different whole numbers that are no coincidence
-_FEWEST, _ROWS = 10, 10_000  # least number of samples of a part; greatest number in all
 
 
 def read_table(
@@ -245,8 +239,10 @@ class _Samples:
                 of_output = role == 'output'
                 known = self._sources.output_counts if of_output else self._sources.rotor_counts
                 steps[role] = Step(TURN / known, seen=False) if known else self._shown[role]
-            if against := self._against(role, steps.get(role)):
-                cause, unit = against
+            values, stamp = self.series[role].values[role], self.series[role].stamp
+            timed = stamp if self.timed else None
+            if found := against(column, values, timed, steps.get(role), self._remark):
+                cause, unit = found
                 such = f'{column.name} [{unit}]'
                 if role != 'torque' and not column.borrowed:
                     how, example = 'with --angle-unit', {'unit': unit}
@@ -254,40 +250,6 @@ class _Samples:
                     how, example = f'as in --{role}-column {shlex.quote(such)}', {role: such}
                 raise ColumnsError(f'{column.name} {cause}: give its unit {how}', **example)
         return steps
-
-    def _against(self, role: str, step: Step | None) -> tuple[str, str] | None:
-        """Return what shows that numbers without a unit have another, and a likely one."""
-        column, stamp = self.found[role], self.series[role].stamp
-        if column.unit and not column.borrowed:
-            return None
-        values = self.series[role].values[role]
-        numbers = np.round(values / column.scale, 6)  # as they are in the table
-        moved, whole = np.abs(np.diff(values)), bool(np.all(numbers == np.round(numbers)))
-        says = meaning(column.name)
-        if not step:
-            if whole and len(np.unique(values)) > _WHOLE:
-                return 'has whole numbers', 'Nmm'
-            return ('is raw', 'N·m') if 'raw' in says.words else None
-        if not (says.role or column.unit):
-            likely = 'rad' if np.ptp(numbers) < TURN else 'deg'
-            return 'does not say that it is an angle', 'counts' if whole else likely
-        if whole and np.ptp(values) > TURN:
-            return 'has whole numbers, such as counts', 'counts'
-        if 'raw' in says.words:
-            return 'is raw', 'rev'
-        if column.borrowed:
-            return None
-        if self._remark:
-            return f'has no unit, and a line above the names says {self._remark}', self._remark
-        if _HALF_TURN < np.max(moved, initial=0.0) <= np.ptp(values) <= 2.0 * _HALF_TURN:
-            return 'has turns of 360, such as degrees', 'deg'
-        if unit := other_unit(values, step).partition(':')[0]:
-            return f'has positions in {unit}', 'rev' if 'turns' in unit else 'deg'
-        if self.timed and (moving := moved > 0.0).any():
-            seconds = np.maximum(np.diff(stamp)[moving], 1) / SECOND
-            if (speed := np.quantile(moved[moving] / seconds, MOST)) > FASTEST:
-                return f'has speeds of {speed:.3g} a second, as in degrees', 'deg'
-        return None
 
     def locked(self, period: float) -> Loading:
         """Return the angles under torque; ValueError if the shaft turns."""
@@ -322,8 +284,7 @@ class _Samples:
         both = Encoders(motion, self.timed, before, share, output[inside], *steps_of_both)
         if not (self.found['rotor'].unit or self.found['output'].unit):
             turned = self.unwrapped('rotor', period) if self._sources.as_recorded else rotor
-            error = _error(both.at_measured(turned), both.measured)
-            if min(_LIKE) < error < max(_LIKE):
+            if differ_as_degrees(both.at_measured(turned), both.measured):
                 names = (self.found[role].name for role in ('output', 'rotor'))
                 raise ColumnsError(
                     f'{" differs from ".join(names)} by more than gears do in rad, as in degrees: '
@@ -331,19 +292,3 @@ class _Samples:
                     unit='deg',
                 )
         return both
-
-
-def _error(rotor: Array, output: Array) -> float:
-    """Return the usual error of the output against the rotor within a part, rad."""
-    output = np.unwrap(output) if count_wraps(output, TURN) else output
-    every = max(1, len(rotor) // _ROWS)
-    rotor, output = rotor[::every], output[::every]
-    ratio = output_by_rotor(rotor, output)
-    if ratio is None or len(rotor) < _FEWEST * _BLOCKS:
-        return 0.0
-    parts = np.array_split(np.stack([output - ratio * rotor, np.gradient(rotor)]), _BLOCKS, axis=1)
-    parts = [part - [[np.median(part[0])], [0.0]] for part in parts]
-    error, speed = np.concatenate(parts, axis=1)
-    delay = error @ speed / max(speed @ speed, _LEAST)
-    spreads = [np.ptp(np.quantile(e - delay * v, (1.0 - MOST, MOST))) for e, v in parts]
-    return float(np.median(spreads))

@@ -1,0 +1,83 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Evidence against the unit that is assumed for a column without one."""
+
+import numpy as np
+
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.measurement.clocks import FASTEST, MOST
+from gear_kinematics.measurement.columns import Column
+from gear_kinematics.measurement.encoder_range import count_wraps, other_unit
+from gear_kinematics.measurement.encoder_step import Step
+from gear_kinematics.measurement.gate import output_by_rotor
+from gear_kinematics.measurement.names import meaning
+from gear_kinematics.measurement.recording import Array
+from gear_kinematics.wire.cdr import SECOND
+
+_HALF_TURN = 180.0  # degrees: least jump of a single-turn encoder
+_BLOCKS, _LIKE = 10, (0.08, 1.0)
+"""Number of parts of a recording; error of the output within a part that shows degrees, rad."""
+_WHOLE = 50  # number of different whole numbers that are no coincidence
+_FEWEST, _ROWS = 10, 10_000  # least number of samples of a part; greatest number in all
+
+
+def against(
+    column: Column, values: Array, stamp: Array | None, step: Step | None, remark: str
+) -> tuple[str, str] | None:
+    """Return what shows that numbers without a unit have another, and a likely one.
+
+    Args:
+        column: the column, whose numbers times its scale are the values.
+        values: (n,), rad or N·m.
+        stamp: (n,), ns; None if times were not recorded.
+        step: of the encoder; None for a torque.
+        remark: the unit in the lines above the names, if any.
+    """
+    if column.unit and not column.borrowed:
+        return None
+    numbers = np.round(values / column.scale, 6)  # as they are in the table
+    moved, whole = np.abs(np.diff(values)), bool(np.all(numbers == np.round(numbers)))
+    says = meaning(column.name)
+    if not step:
+        if whole and len(np.unique(values)) > _WHOLE:
+            return 'has whole numbers', 'Nmm'
+        return ('is raw', 'N·m') if 'raw' in says.words else None
+    if not (says.role or column.unit):
+        likely = 'rad' if np.ptp(numbers) < TURN else 'deg'
+        return 'does not say that it is an angle', 'counts' if whole else likely
+    if whole and np.ptp(values) > TURN:
+        return 'has whole numbers, such as counts', 'counts'
+    if 'raw' in says.words:
+        return 'is raw', 'rev'
+    if column.borrowed:
+        return None
+    if remark:
+        return f'has no unit, and a line above the names says {remark}', remark
+    if _HALF_TURN < np.max(moved, initial=0.0) <= np.ptp(values) <= 2.0 * _HALF_TURN:
+        return 'has turns of 360, such as degrees', 'deg'
+    if unit := other_unit(values, step).partition(':')[0]:
+        return f'has positions in {unit}', 'rev' if 'turns' in unit else 'deg'
+    if stamp is not None and (moving := moved > 0.0).any():
+        seconds = np.maximum(np.diff(stamp)[moving], 1) / SECOND
+        if (speed := np.quantile(moved[moving] / seconds, MOST)) > FASTEST:
+            return f'has speeds of {speed:.3g} a second, as in degrees', 'deg'
+    return None
+
+
+def differ_as_degrees(rotor: Array, output: Array) -> bool:
+    """Return whether the output differs from the rotor by more than gears do in rad.
+
+    The angles, (n,) each, are taken as rad, and the rotor's are unwrapped. What counts is the
+    usual error within a part of the recording.
+    """
+    output = np.unwrap(output) if count_wraps(output, TURN) else output
+    every = max(1, len(rotor) // _ROWS)
+    rotor, output = rotor[::every], output[::every]
+    ratio = output_by_rotor(rotor, output)
+    if ratio is None or len(rotor) < _FEWEST * _BLOCKS:
+        return False
+    parts = np.array_split(np.stack([output - ratio * rotor, np.gradient(rotor)]), _BLOCKS, axis=1)
+    parts = [part - [[np.median(part[0])], [0.0]] for part in parts]
+    error, speed = np.concatenate(parts, axis=1)
+    delay = error @ speed / max(speed @ speed, np.finfo(float).tiny)
+    spreads = [np.ptp(np.quantile(e - delay * v, (1.0 - MOST, MOST))) for e, v in parts]
+    return bool(min(_LIKE) < np.median(spreads) < max(_LIKE))
