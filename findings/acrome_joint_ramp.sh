@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# acrome-joint 0.0.2: a joint whose limit is 1 rad/s² is to speed up with 20 rad/s² where a time is given for its turn.
+# acrome-joint 0.0.2: where a time is given for a turn, it is planned with 20 rad/s², although the limit is 1 rad/s².
 #
 # Ramp(vmax=1, amax=1), by which the library's program moves a joint, is to plan a turn of 0.2 rad in 0.25 s, which is
 # too short. Expected: a turn that keeps both limits and takes longer, as it does where the speed does not allow the

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# ahrs 1.3.3 (npm): at 100 Hz an arm that turned by 5.7° has turned by 57°, and one that lies exactly level is at NaN.
+# ahrs 1.3.3 (npm): at 100 Hz, a turn of an arm by 5.7° is found as 57°, and an arm that lies exactly level is at NaN.
 #
 # The README gives sampleInterval in Hz, but the filters take it as milliseconds: 100 is then 10 Hz, and rates turn
 # the orientation ten times too far; with 20, 20 ms. A time given to update() is right, and is kept for the later

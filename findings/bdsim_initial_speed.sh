@@ -1,6 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# bdsim 1.4.0: a derivative whose first value is given as 1 rad/s begins at 10 000 rad/s, with a pole at 100 rad/s.
+# bdsim 1.4.0: the speed of a shaft at 1 rad/s, whose first value is given as 1 rad/s, begins at 10 000 rad/s in its
+# derivative block.
 #
 # A shaft turns at 1 rad/s from 0 rad on, and the block DERIV with a pole of alpha = 100 rad/s takes its speed. Expected of
 # y0 = 1.0, the initial output: 1 rad/s at all times. What happens: 10 000 rad/s at first, and 451 rad/s after 31 ms, as the state

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# canml 0.1.14: a position is lost in a whole log if its .dbc names one value of it, and a motor at 2 rad/s turns at 1 rad/s.
+# canml 0.1.14: all positions of a log are NaN if the .dbc has a name for one of their values, and a motor at 2 rad/s is
+# read at 1 rad/s.
 #
 # An arm's .dbc names the raw value -32768 of a position "not available", as is usual; the log never has it. Expected of
 # load_blf(): the positions as numbers. What happens: each signal with a named value becomes a category of its names, so

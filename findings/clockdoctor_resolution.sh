@@ -1,6 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# clockdoctor 0.1.0: stamps in steps of 10 ms are warned of, but no longer if one message of another topic has no header.
+# clockdoctor 0.1.0: its warning of stamps in steps of 10 ms is gone as soon as one message of another topic has no
+# header.
 #
 # A driver sends a joint at 100 Hz with stamps that are cut to 10 ms, where its clock has no finer ones. Expected: the flag
 # "coarse_resolution", whatever else is in the recording. What happens: it is there in a recording of this topic alone. With

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# deepen-grade 0.4.1: a shaft that turns evenly for 300 s is idle all the time, one that stands still never, and two topics are one joint.
+# deepen-grade 0.4.1: a shaft that turns evenly for 300 s is called idle, one that stands still is not, and joints of
+# two topics are taken as one.
 #
 # Expected of its idle share: 0 % of a shaft that turns at 0.02 rad/s, and 100 % of one that stands still within one count of its encoder.
 # What happens: 100 % and 0 %. Its table of checks speaks of a normalized velocity, without saying by what: positions are divided by the

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# DynamicAxisControl 1.0.2: a move of 100 mm goes to 50 mm and back to 33 mm, and 25 turns/s of its motor are 40000.
+# DynamicAxisControl 1.0.2: a move of 100 mm goes to 50 mm and back to 33 mm, and its motor is given 40 000 turns/s
+# instead of 25.
 #
 # With 1 m/s and 1 m/s² a move needs 1000 mm to reach its speed. Expected of SyncLinearAxes() and LinearMotion(): a shorter one
 # ends where it is to end, with a lower speed in its middle. What happens: it brakes after a quarter of its way, but for as long

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# forge-robotics 0.2.0: a joint that rests for 6 of 10 s is static for 60 % of them at 0 rad, and for 0 % at 1 rad.
+# forge-robotics 0.2.0: of a joint that rests for 6 of 10 s, the static share is 60 % where it rests at 0 rad, and 0 %
+# at 1 rad.
 #
 # Expected of its "static detection", said to be the share of time in which the robot is not moving: 0.6 in each of three recordings of a
 # joint and its goal that rest for 6 of 10 s. What happens: 0.6 where it rests at 0 rad, and 0 where it rests at 1 rad, before or after

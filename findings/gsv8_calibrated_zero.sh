@@ -1,6 +1,7 @@
 #!/bin/bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# gsv8-ethercat 0.1.0: a torque sensor, zeroed and then calibrated with 10 N·m, reads 15 N·m with them, 5 N·m without.
+# gsv8-ethercat 0.1.0: a torque sensor that is zeroed and then calibrated with 10 N·m reads 15 N·m under this load and 5
+# N·m without it.
 #
 # Its README zeroes all channels without a load and then calibrates a channel with a known load. Expected: 0 without the
 # load and the known value under it. What happens: a reading is raw * scale + offset, and zeroing sets the offset for

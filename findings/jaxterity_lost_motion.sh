@@ -1,7 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# jaxterity 1.2.0: a joint without any lost motion has 4.6 mrad, between 3.8 and 5.4 mrad at 95 %, from the noise of its
-# encoder.
+# jaxterity 1.2.0: of a joint without any lost motion it finds 4.6 mrad, which is its encoder's noise, with an interval
+# that excludes 0.
 #
 # reversal_lost_motion() of a sweep up and back, 4000 samples of an encoder of 4096 counts a turn with a noise of 3
 # counts. It is documented to be "the median signed gap" of the two directions. Expected without any lost motion: about

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# johnny-five 2.1.0: an arm with an MPU-6050 that turned by 91° has turned by 48°.
+# johnny-five 2.1.0: with an MPU-6050, a turn of an arm by 91° is found as 48°.
 #
 # The rate of a Gyro is right, 90° a second. Its angle, as in gyro.yaw.angle, is the sum of the rates divided by 100, whatever the
 # time between two samples. An Arduino with Firmata sends them each 19 ms, unless samplingInterval() is changed, so that

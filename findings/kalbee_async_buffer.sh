@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# kalbee 1.0.0: a shaft that turns at 1 rad/s has -2.1 rad/s after 10 s, and by two encoders 0.5 rad/s.
+# kalbee 1.0.0: a shaft that turns at 1 rad/s is estimated at -2.1 rad/s after 10 s, and with two encoders at 0.5 rad/s.
 #
 # AsyncSensorBuffer takes measurements that come late or at several rates, around a filter "(e.g. KalmanFilter)". A shaft
 # starts at a known angle of 0 and turns at 1 rad/s; an ideal encoder is read at 100 Hz. Expected at any time: 1 rad/s.

@@ -1,6 +1,7 @@
 #!/bin/bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# mechforge 0.1.0: a spring that surges at 351 Hz is given 2.8 Hz, and the bearing it asks for at 99 % is too small.
+# mechforge 0.1.0: a spring with a natural frequency of 351 Hz is given 2.8 Hz, and the load rating that a bearing needs
+# at 99 % is too low.
 #
 # Of a helical spring between two plates, the lowest frequency is half the root of stiffness over the mass of its active
 # coils: 350.8 Hz for a wire of 2 mm, a diameter of 16 mm, 8 coils and 80 GPa. What happens: natural_frequency is

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# melib 1.1.1: a ball bearing with a thrust factor of 1.6 is taken as one at its greatest thrust, with e of 0.44.
+# melib 1.1.1: for a ball bearing with a thrust factor Y of 1.6, the limit e is found as 0.44 instead of 0.27.
 #
 # dgbbrtfacs() interpolates in a table of thrust factors of deep groove ball bearings. In the iteration that its documentation
 # describes, Y is given and e is sought. But Y falls in the table, while numpy.interp() needs rising values: between two

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# NeuroLocoMiddleware 0.0.1: a low-pass of 0.5 s has 0.42 s in substeps, and the usual low-pass from its coefficients is
-# an error.
+# NeuroLocoMiddleware 0.0.1: a low-pass with a time constant of 0.5 s gets 0.42 s in substeps, and its usual
+# coefficients are an error.
 #
 # discretize_N_tustin(dt, N=5) is to take N steps of dt / N by Tustin's rule. Expected: the time constant of the other
 # rules. What happens: it takes N + 1 of them, so that the filter of a torque is 20 % too fast at N = 5, and twice as

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# PyTrinamic 0.2.26: a quality factor of 2 gives a quarter at the corner, not 2, and a simple low-pass rings on and on at its start.
+# PyTrinamic 0.2.26: a low-pass with a quality factor of 2 has a gain of 0.25 at its corner instead of 2, and one of
+# first order rings on and on.
 #
 # calculate_biquad_filter_coefficients() is for a TMC9660 or TMC4671. Expected of LowPassFilterSpec(500, q=2), whose q is a quality
 # factor: a gain of 2 at 500 Hz. What happens: it is taken as the damping, so that the gain is 0.25, and q=0.5, which is

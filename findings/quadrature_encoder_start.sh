@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# quadrature-encoder 0.2.1 (Rust): a shaft that stands still turns by one step, or is an error, at its first reading.
+# quadrature-encoder 0.2.1 (Rust): the first reading of a shaft that stands still is a step, or an error.
 #
 # Expected: new() reads both signals for its start, so that the position is 0 until the shaft turns. What happens:
 # what it reads is not given to its decoder, which always begins with both signals high. In steps of a quarter period

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# sorotraj 1.3.2: asked for 3.5 s and 0.5 s, a trajectory gives the angle at 0.5 s first, and one without a suffix fails at its end.
+# sorotraj 1.3.2: a trajectory that is asked for 3.5 s and 0.5 s at once gives the two angles in the opposite order.
 #
 # A joint goes from 0 to 1 rad in a prefix of 1 s, to 3 rad in 2 s, and back to 0 in a suffix of 1 s. Expected of the function of
 # get_traj_function() for the times [3.5, 0.5]: [1.5, 0.5] rad. What happens: [0.5, 1.5], since the values of prefix, main part and suffix

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# sosoru-jisu 1.0.0: a motor at 3000 rpm has 1500 rpm by its tacho, and its imbalance is at order 2 instead of 1.
+# sosoru-jisu 1.0.0: the tacho of a motor at 3000 rpm is read as 1500 rpm, and its imbalance is found at order 2 instead
+# of 1.
 #
 # A tacho gives one pulse a turn, an accelerometer 1 m/s² once a turn. Expected of get_tach_midpoints(): one time a turn. What
 # happens: pulses that come less than 30 ms after the one before are left out, which is said nowhere. From 2000 rpm on each second
