@@ -1,12 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# asammdf 8.8.28: to_dataframe() invents angles between the wraps of a single-turn encoder.
+# asammdf 8.8.28: to_dataframe() interpolates a single-turn encoder through its wraps, and shows values for times before a
+# channel began.
 #
-# A file holds the angle of a rotor every 0.1 s, which wraps at 2π, and the angle of an output in between.
-# The table has a row for each time of either. Floats are interpolated, through the wrap as well: between
-# 5.4 and 0.9168 rad it shows 3.1584 rad, where the rotor was at 0.0168. The output has its first
-# value, 1.0, also at 0.0 s, before it was measured. Counts, which are whole numbers, repeat the last one.
-# Expected: only what was measured, as use_interpolation=False gives it, with NaN elsewhere.
+# A file holds the angle of a rotor every 0.1 s, which wraps at 2π, and the angle of an output in between. The table has
+# a row for each time of either, and interpolation is documented to be on. What happens: between 5.4 and 0.9168 rad it
+# shows 3.1584 rad, where the rotor was at 0.0168. The output has its first value, 1.0, also at 0.0 s, before it was
+# measured. Counts, which are whole numbers, repeat the last one. With use_interpolation=False the table has only what
+# was measured, and NaN elsewhere.
 # For us: read each channel with its own times, MDF.get(name), and unwrap it before anything else.
 #
 # Exit code 0: still so. Installs asammdf into a temporary folder.
