@@ -87,7 +87,7 @@ def view_of(
     statuses = tuple(status_entry(s, time.monotonic()) for s in gear.statuses.values())
     percent = _number(_diagnostic(gear, 'preload', 'margin (% of the preload)'))
     margin = None if percent is None else percent / 100.0
-    values, arm = tuple(values_of(gear)), tuple(_angles(gear))
+    values, arm = tuple(values_of(gear)), tuple(_angles(gear, gears))
     view = replace(view, values=values, arm=arm, diagnostics=statuses, margin=margin)
     output, parameters = gear.joint(topics.OUTPUT_STATE), gear.parameters
     if state != 'connected' or not (output and parameters):
@@ -117,13 +117,21 @@ def _choice(gear: GearNode) -> Entry:
     return Entry(gear.label, f'{joint}, ratio {parameters.gear.gear_ratio}')
 
 
-def _angles(gear: GearNode) -> Iterator[Entry]:
-    """Give the output angle of each actuator of an arm, as in the latest message of this gear."""
+def _angles(gear: GearNode, gears: Collection[GearNode]) -> Iterator[Entry]:
+    """Give the output angle of each actuator of an arm, with its faults.
+
+    The angles are those of the latest message of this gear, and the faults those of all.
+    """
+    now, arm = time.monotonic(), {each.actuator: each for each in gears if each.name == gear.name}
     for name, parameters in gear.arm.items() if len(gear.arm) > 1 else ():
         if output := gear.joint(topics.OUTPUT_STATE, parameters.output_name):
             tone = _freshness(output, parameters)
-            old = f'{output.age:.1f} s ago' if tone else ''
-            yield Entry(name, _degrees(output.position, 1), old, tone)
+            detail = f'{output.age:.1f} s ago' if tone else ''
+            statuses = arm[name].statuses.values() if name in arm else ()
+            tones = {status_entry(status, now).tone for status in statuses}
+            if not tone and (faults := tones - {''}):
+                detail, tone = ('error', 'bad') if 'bad' in faults else ('warning', 'notable')
+            yield Entry(name, _degrees(output.position, 1), detail, tone)
         else:
             yield Entry(name, 'none', tone='stale')
 

@@ -290,14 +290,16 @@ def test_another_node_is_shown_when_chosen_or_when_the_first_has_ended(monkeypat
 
 
 def test_all_angles_of_an_arm_are_in_a_row():
+    names = {'shoulder': 'lift', 'elbow': 'bend', 'hand': 'turn', 'wrist': 'roll'}
     arm = {
         name: replace(NodeParameters.load(), actuator=name, output_joint=joint, gear_ratio='-3')
-        for name, joint in {'shoulder': 'lift', 'elbow': 'bend', 'hand': 'turn'}.items()
+        for name, joint in names.items()
     }
     arm = {name: replace(each, frame_prefix=f'{name}_') for name, each in arm.items()}
     joints = {
         'lift': JointValue(0.5 * math.pi, None, 0.001),
         'bend': JointValue(-1e-9, None, 90.0),
+        'roll': JointValue(0.1, None, 0.001),
     }
     gear = gear_node(
         arm=arm,
@@ -305,16 +307,21 @@ def test_all_angles_of_an_arm_are_in_a_row():
         parameters=arm['shoulder'],
         joint=lambda topic, name='lift': joints.get(name) if topic == 'output_state' else None,
     )
-    view = view_of(gear, [gear])
-    assert view.arm == (
+    fault = Status('rotor input', 2, 'not referenced', {}, time.monotonic())
+    others = [
+        gear_node(actuator=name, statuses={'rotor input': fault}) for name in ('hand', 'wrist')
+    ]
+    view = view_of(gear, [gear, *others])
+    assert view.arm[3] == Entry('wrist', '5.7°', 'error', 'bad')
+    assert view.arm[:3] == (
         Entry('shoulder', '90.0°'),
         Entry('elbow', '0.0°', '90.0 s ago', 'stale'),
         Entry('hand', 'none', tone='stale'),
     )
     label = '/left/gear_state_publisher shoulder'
-    assert (view.node, [node.name for node in view.nodes]) == (label, [label])
+    assert (view.node, view.nodes[0].name) == (label, label)
     said = line(rows_of(view))
-    angles = 'shoulder 90.0°   elbow 0.0° (90.0 s ago)   hand none'
+    angles = 'shoulder 90.0°   elbow 0.0° (90.0 s ago)   hand none   wrist 5.7° (error)'
     assert said.startswith(f'{label} connected; all {angles}; ')
     terminal = Console(file=io.StringIO(), force_terminal=True, width=200)
     both = replace(view, nodes=(*view.nodes, Entry('/left/gear_state_publisher elbow', '')))
