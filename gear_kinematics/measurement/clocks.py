@@ -4,6 +4,7 @@
 import shlex
 from bisect import bisect_right
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,7 +114,7 @@ def stamps(
         times = times - _FILETIME
     if times.dtype.kind == 'M':
         readable = ~np.isnat(times)
-        stamp = times.astype(np.int64)
+        stamp = times.astype('datetime64[ns]').astype(np.int64)
     else:
         readable = np.abs(times * clock.scale) < _DATES[1]  # NaN compares false
         factor = clock.scale * SECOND
@@ -168,8 +169,8 @@ def _restore(stamp: Array) -> Iterator[tuple[int, int]]:
     """
     steps = np.diff(stamp)
     usual = np.median(steps[steps > 0]) if np.any(steps > 0) else 0
-    for k in (1 + np.flatnonzero(steps < 0)).tolist():
-        before, again = stamp[k - 1], stamp[k:]
+    for k, end in pairwise([*(1 + np.flatnonzero(steps < 0)).tolist(), len(stamp)]):
+        before, again = stamp[k - 1], stamp[k:end]
         passed = np.flatnonzero(again > before)
         rise = np.diff(again[: passed[0] + 1 if len(passed) else len(again)])
         if len(rise) >= _FEWEST_AGAIN and rise.min() >= 0 and rise.max() <= _LONGEST_STEP * usual:

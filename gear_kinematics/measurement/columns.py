@@ -3,7 +3,7 @@
 
 import re
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -123,6 +123,23 @@ def find_columns(
         for role in ROLES
         if role in found
     }
+
+
+def own_clocks(names: Sequence[str], columns: Iterable[Column]) -> dict[str, str]:
+    """Find the columns of times that those of values may have of their own, by name of the latter.
+
+    It is that of the same side of the gear, or the last one before the values.
+    """
+    times = {name: meaning(name) for name in names if meaning(name).role == 'time'}
+    found = {}
+    for column in columns:
+        side = meaning(column.name)[4:6]
+        same = [one for one, says in times.items() if says[4:6] == side and any(side)]
+        before = [*filter(times.get, names[: names.index(column.name)])]
+        sure = [one for one in before if not times[one].unsure]
+        if same or sure:
+            found[column.name] = (same or sure)[-1]
+    return found
 
 
 def likeliest(header: Sequence[str]) -> dict[str, str]:

@@ -294,7 +294,7 @@ def _names(
     alike = [row[:width] for row in rows if row[2:width] and len({*row[:width:2]}) == 1]
     pairs = {row[0].lower(): row[1::2] for row in alike}
     for key, names in pairs.items():
-        if key not in _CLOCKS and meaning(key).role != 'time':
+        if len({*names}) < len(names) or (key not in _CLOCKS and meaning(key).role != 'time'):
             continue
         unit = _CLOCKS.get(key, meaning(key).unit)
         unit = 'filetime' if key == 'name' and _FILETIME.fullmatch(first) else unit

@@ -23,7 +23,8 @@ _VOCABULARY = {
     'tiempo tout xtime ts zeitstempel horodatage 时间 x',
     'filling': 'header receive log measured actual act filtered raw field data value values '
     'feedback state states axis angular rotary present sensor abs side in ist host pi ros system '
-    'unix epoch fb fbk ave estimate scalars date datum utc wall application main plc prg gvl',
+    'unix epoch fb fbk ave estimate scalars signals date datum utc wall application main plc prg '
+    'gvl',
 }
 """Words in names by kind, the likeliest first. The input is the rotor if a quantity is said, too.
 The filling may accompany all others; any other word shows a command, a speed or the like."""
@@ -149,7 +150,7 @@ def meaning(name: str) -> Meaning:
     outputs = {word for word in kinds if kinds[word] == 'output'}
     output = bool(outputs - _EITHER if rotor else outputs)
     role, rank = _role(words, unit, rotor=rotor, output=output)
-    unsure = role == 'time' and not kinds.keys() <= _KINDS.keys()
+    unsure = role == 'time' and (rotor or output or not kinds.keys() <= _KINDS.keys())
     return Meaning(words, unit, role, rank, rotor, output, unsure)
 
 
@@ -171,6 +172,9 @@ def _role(
         first = 0 if keys == ['stamp'] and 'header' in words and not unit else len(words)
         if kinds == {'time'} and (keys != ['x'] or 'value' in words):
             return 'time', (first, _RANKS[keys[0]])
+        sure = unit in TIME_UNITS or (_CERTAIN & {*times} and not unit)
+        if sure and kinds in ({'time', 'rotor'}, {'time', 'output'}):  # such as motor_time
+            return 'time', (len(_KINDS), len(words))
         return none
     if unit in TORQUE_UNITS and 'angle' not in kinds:
         kinds.add('torque')  # as of load_Nm

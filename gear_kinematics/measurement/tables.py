@@ -21,11 +21,13 @@ from gear_kinematics.measurement.columns import (
     described,
     find_columns,
     nanoseconds_of,
+    own_clocks,
 )
 from gear_kinematics.measurement.dialects import TableFile
 from gear_kinematics.measurement.encoder_range import signed, unwrapped
 from gear_kinematics.measurement.encoder_step import Step, find_step
 from gear_kinematics.measurement.formats import open_table
+from gear_kinematics.measurement.names import meaning
 from gear_kinematics.measurement.recording import (
     Array,
     Encoders,
@@ -136,7 +138,13 @@ class _Samples:
         clock = self.found.pop('time', None)
         usual = clock.name if clock else ''
         clocks = {role: table.clocks.get(one.name, usual) for role, one in self.found.items()}
-        raw, clock = self._loaded(table, clock, {*clocks.values()})
+        own = own_clocks(table.names, self.found.values())
+        own = {} if table.clocks or sources.time or not clock else own
+        raw, clock = self._loaded(table, clock, {*clocks.values(), *own.values()})
+        clocks |= self._own(own, raw, usual, table)
+        if len({*clocks.values()}) == 1 and len(lengths := {*map(len, raw.values())}) > 1:
+            number = ' and '.join(map(str, sorted(lengths)))
+            raise ValueError(f'columns of {number} rows, without times of each')
         data = {role: raw[column.name] * column.scale for role, column in self.found.items()}
         usable = {role: np.abs(values) <= LARGEST_ANGLE for role, values in data.items()}  # no NaN
         if 'rotor' in self.found and 'torque' in self.found and not usable['torque'].any():
@@ -155,7 +163,8 @@ class _Samples:
         angles = (role for role in self.found if role != 'torque')
         self._shown = {role: find_step(self.series[role].values[role]) for role in angles}
         self.used = len(self.series['output' if 'output' in self.found else 'angle'].stamp)
-        self.said = [f'time [{clock.unit}] from {clock.name}' if clock else 'no times']
+        named = ' and '.join(dict.fromkeys([*clocks.values()] if own else [usual]))
+        self.said = [f'time [{clock.unit}] from {named}' if clock else 'no times']
         self.said += map(described, self.found, self.found.values())
         rows = min(map(np.count_nonzero, usable.values())) if together is None else len(together)
         self.said.append(f'{self.used} of {rows} rows')
@@ -169,9 +178,6 @@ class _Samples:
         raw, every = table.load(sorted(wanted - {''}))
         if every > 1:
             self.remarks.append(Observation.ROWS_THINNED(every=every))
-        if len(clocks) == 1 and len(lengths := {*map(len, raw.values())}) > 1:
-            number = ' and '.join(map(str, sorted(lengths)))
-            raise ValueError(f'columns of {number} rows, without times of each')
         if dates := [c.name for c in self.found.values() if raw[c.name].dtype.kind == 'M']:
             raise ValueError(f'{dates[0]} has dates in place of numbers')
         if clock and not self._sources.time:
@@ -184,6 +190,29 @@ class _Samples:
             raw[clock.name] = seconds * SECOND + nanoseconds
             clock = clock._replace(unit='ns', scale=1.0 / SECOND)
         return raw, clock
+
+    def _own(
+        self, own: dict[str, str], raw: dict[str, Array], usual: str, table: TableFile
+    ) -> dict[str, str]:
+        """Return the columns of times by role that belong to one column alone.
+
+        Either both encoders have their own times by name, or a column has numbers exactly where
+        its times have some, and elsewhere than the usual times.
+        """
+        found = {}
+        filled = {name: values == values for name, values in raw.items()}  # noqa: PLR0124, no NaN
+        for role, column in self.found.items():
+            times = own.get(column.name, usual)
+            if times != usual and (
+                meaning(usual).on_rotor != meaning(usual).on_output
+                or np.array_equal(filled[times], filled[column.name])
+                > np.array_equal(filled[usual], filled[column.name])
+            ):
+                units = {table.units.get(one) or meaning(one).unit for one in (times, usual)}
+                if len(units) > 1:
+                    raise ValueError(f'{times} and {usual} are not in the same unit')
+                found[role] = times
+        return found
 
     def _together(
         self, usable: dict[str, Array], clock: Column | None, clocks: dict[str, str]

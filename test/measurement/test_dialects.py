@@ -368,6 +368,18 @@ ENCODERS = {
     'counts of 16 bits': lambda t, r, o: written(
         [t, *in_counts(r) % 65536, o], 'time,rotor_counts,output_rad',
         ('{:.2f}', '{:.0f}', '{:.5f}')),
+    'times of each side': lambda t, r, o: written(
+        [t[:-1], r[:-1], t[1:], o[1:]], 'motor_time,motor_pos,output_time,output_pos', '{:.5f}'),
+    'times of each side in groups': lambda t, r, o: written(
+        [t[1:], r[1:], t[:-1], o[:-1]], 'Motor,,Load,\nTime (s),Angle (rad),Time (s),Angle (rad)',
+        '{:.5f}'),
+    'two rates, of catman': lambda t, r, o: written(
+        [np.repeat(t, 2)[:-1] + 0.02 * (np.arange(2 * len(t) - 1) % 2),
+         DEG * np.interp(np.arange(2 * len(t) - 1), 2.0 * np.arange(len(t)), r),
+         np.append(t, np.nan + t[1:]), DEG * np.append(o, np.nan + o[1:])],
+        'Zeit  1 - Schnelle Messrate [s];Winkel Motor [°];'
+        'Zeit  2 - Standardmessrate [s];Winkel Abtrieb [°]', '{:.5f}', ';').replace('nan', ''),
+    'a clock that begins again, twice': lambda t, r, o: written([t % 20.0, r, o], NAMES),
     'a row from the future': lambda t, r, o: written([moved(t, (200, 40.0)), r, o], NAMES),
     'rows from past and future': lambda t, r, o: written(
         [moved(t, (200, 40.0), (201, 40.0), (700, 1.0)), r, o], NAMES),
@@ -684,6 +696,14 @@ def parquet_of_times(path, time, rotor, output):
     return Sources()
 
 
+def timeseries(path, time, rotor, output):
+    """As structures of MATLAB, of which the second is sampled a moment later."""
+    io = pytest.importorskip('scipy.io')
+    io.savemat(path, {'motor': {'Time': time[:-1], 'Data': rotor[:-1]},
+                      'output': {'Time': time[1:], 'Data': output[1:]}})  # fmt: skip
+    return Sources()
+
+
 def scope(path, time, rotor, output):
     """As a scope of Simulink has it, a structure with time."""
     io = pytest.importorskip('scipy.io')
@@ -756,6 +776,15 @@ def tdms(path, time, rotor, output):
     return Sources()
 
 
+def tdms_with_dates(path, time, rotor, output):
+    nptdms = pytest.importorskip('nptdms')
+    dates = np.datetime64('2026-11-26') + np.round(1e6 * time).astype('timedelta64[us]')
+    columns = {'Time': dates, 'Rotor [rad]': rotor, 'Output [rad]': output}
+    with nptdms.TdmsWriter(path) as writer:
+        writer.write_segment([nptdms.ChannelObject('Log', *one) for one in columns.items()])
+    return Sources()
+
+
 def mf4(path, time, rotor, output):
     """One in a hundred readings of each encoder is wrong, and marked as invalid."""
     asammdf = pytest.importorskip('asammdf')
@@ -773,6 +802,7 @@ def mf4(path, time, rotor, output):
 
 FORMATS = {'parquet': parquet, 'mat': mat, '7.3.mat': hdf5, 'tdms': tdms, 'mf4': mf4}
 FORMATS |= {'index.parquet': parquet_of_times, 'scope.mat': scope, 'ascii.mat': ascii_mat}
+FORMATS |= {'dates.tdms': tdms_with_dates, 'timeseries.mat': timeseries}
 FORMATS |= {'unnamed.mat': scope_without_labels, 'dspace.mat': control_desk}
 FORMATS |= {'xlsx': workbook, **dict.fromkeys(('csv.gz', 'tsv.zst', 'TXT.zip', 'log'), text)}
 
@@ -783,6 +813,7 @@ def test_other_formats(tmp_path, gear, reference, name):
     given = FORMATS[name](path, *reference('encoders'))
     recording = read(path, gear, given)
     assert recording.encoders.timed
+    assert recording.encoders.duration == pytest.approx(52.76, abs=0.05)
     assert_measured(recording, gear)
     path.write_bytes(b'nothing at all')
     with pytest.raises(RecordingError, match=f'{re.escape(name)}: '):
