@@ -1,14 +1,16 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# accel-stepper 0.1.0 (Rust): at a constant speed a motor trembles on the spot, and a new goal behind it reverses it at full speed.
+# accel-stepper 0.1.0 (Rust): at a constant speed a motor trembles on the spot, and a new goal behind it reverses it at
+# full speed.
 #
-# It is a port of the Arduino library of this name. Expected after 1 s at a constant speed of 100 steps/s: 100 steps, and -100 at
-# -100 steps/s. What happens: the direction of a step is not that of the speed, but that from the position to the goal, and forward
-# needs a goal that is ahead. From a goal of 0 the motor steps back and forth between -1 and 0. Expected of a goal behind a motor
-# that runs at 500 steps/s with an acceleration of 100 steps/s²: it runs on for 1250 steps until it stands. What happens: its next
-# step goes back, one period of 2 ms later, and its speed goes from 500 to -500 steps/s.
-# For us: a motor loses its steps there, which looks like a slipped coupling. Give a goal far ahead for a constant speed, and a
-# goal behind only at standstill.
+# It is a port of the Arduino library of this name. Expected after 1 s at a constant speed of 100 steps/s: 100 steps,
+# and -100 at -100 steps/s. What happens: the direction of a step is not that of the speed, but that from the position
+# to the goal, and forward needs a goal that is ahead. From a goal of 0 the motor steps back and forth between -1 and 0.
+# Expected of a goal behind a motor that runs at 500 steps/s with an acceleration of 100 steps/s²: it runs on for 1250
+# steps until it stands. What happens: its next step goes back, one period of 2 ms later, and its speed goes from 500 to
+# -500 steps/s.
+# For us: a motor loses its steps there, which looks like a slipped coupling. Give a goal far ahead for a constant
+# speed, and a goal behind only at standstill.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.
 set -eu

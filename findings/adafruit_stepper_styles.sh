@@ -1,15 +1,18 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# adafruit-circuitpython-motor 3.5.0: a step forward after two half steps turns the motor back by 1.5 steps, without PWM.
+# adafruit-circuitpython-motor 3.5.0: a step forward after two half steps turns the motor back by 1.5 steps, without
+# PWM.
 #
-# Expected of onestep() with another style than before: a step forward that may be shorter than usual, to align with the pattern
-# of the style, as its documentation says and as a motor with microsteps does. What happens with microsteps=None: one number
-# counts full steps and half steps alike and is looked up in the table of the new style, of 4 or 8 patterns. After two INTERLEAVE
-# steps a SINGLE step forward switches on the coil that is 1.5 steps back, and a DOUBLE step the one that is 2 steps away, where
-# the direction is left to chance. With 16 microsteps, a SINGLE step after 9 of them is 1.44 steps, not less than 1.
+# Expected of onestep() with another style than before: a step forward that may be shorter than usual, to align with the
+# pattern of the style, as its documentation says and as a motor with microsteps does. What happens with
+# microsteps=None: one number counts full steps and half steps alike and is looked up in the table of the new style, of
+# 4 or 8 patterns. After two INTERLEAVE steps a SINGLE step forward switches on the coil that is 1.5 steps back, and a
+# DOUBLE step the one that is 2 steps away, where the direction is left to chance. With 16 microsteps, a SINGLE step
+# after 9 of them is 1.44 steps, not less than 1.
 # For us: keep to one style, or step until the pattern of both styles is the same.
 #
-# Exit code 0: still so. Installs the version into a temporary folder, where three modules stand in for CircuitPython's own.
+# Exit code 0: still so. Installs the version into a temporary folder, where three modules stand in for CircuitPython's
+# own.
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -2,10 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # ahrs 1.3.3 (npm): at 100 Hz, a turn of an arm by 5.7° is found as 57°, and an arm that lies exactly level is at NaN.
 #
-# The README gives sampleInterval in Hz, but the filters take it as milliseconds: 100 is then 10 Hz, and rates turn
-# the orientation ten times too far; with 20, 20 ms. A time given to update() is right, and is kept for the later
-# updates without one. Where the measured gravity is exactly along z, as in a simulation, Madgwick divides a correction of
-# 0 by its length of 0, and all angles stay NaN from then on; Mahony does not. The Python package of this name is another one.
+# The README gives sampleInterval in Hz, but the filters take it as milliseconds: 100 is then 10 Hz, and rates turn the
+# orientation ten times too far; with 20, 20 ms. A time given to update() is right, and is kept for the later updates
+# without one. Where the measured gravity is exactly along z, as in a simulation, Madgwick divides a correction of 0 by
+# its length of 0, and all angles stay NaN from then on; Mahony does not. The Python package of this name is another
+# one.
 # For us: give update() the time between two samples.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

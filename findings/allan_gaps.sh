@@ -1,14 +1,15 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# allan 0.4.1 (Rust): of a motor's speed with 1 % of the readings missing, a deviation of 0.07 rad/s is found as 5 rad/s.
+# allan 0.4.1 (Rust): of a motor's speed with 1 % of the readings missing, a deviation of 0.07 rad/s is found as 5
+# rad/s.
 #
 # A motor at 100 rad/s with a white noise of 0.1 rad/s, 20 000 readings. Expected of Allan with DataType::Frequency: a
 # deviation of 0.1 rad/s over the root of tau, 0.0707 at tau 2, with and without gaps: a gap is marked by NaN, and
 # calculations that would span it are left out, "ensuring accurate results", says the documentation. What happens with
 # each hundredth reading NaN: it is 5.1 at tau 2, 4.4 at tau 4 and 3.0 at tau 10; at tau 1 it is right. The readings are
 # summed to a phase, and a gap adds nothing to it, so that the phase is 100 behind from there on. All calculations but
-# those at the gap itself take this as a jump. The documentation names the sum, and says that it matches the phase and is
-# fine for normal inputs. Given as angles, with DataType::Phase and the same gaps, the motor has the right values.
+# those at the gap itself take this as a jump. The documentation names the sum, and says that it matches the phase and
+# is fine for normal inputs. Given as angles, with DataType::Phase and the same gaps, the motor has the right values.
 # For us: subtract the mean speed before record(), or give it the angles.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

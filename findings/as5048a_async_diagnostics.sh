@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# as5048a-async 0.1.0 (Rust): an invalid angle is reported as valid, a weak magnet as good, and a sound encoder as never ready.
+# as5048a-async 0.1.0 (Rust): an invalid angle is reported as valid, a weak magnet as good, and a sound encoder as never
+# ready.
 #
-# The AS5048A has its four flags in the bits 8 to 11 of its register 0x3FFD: offset compensation finished, CORDIC overflow, field too
-# high, field too weak. What happens: they are looked for two bits higher up, in 10 to 13. A sound encoder, 0x0180, has not finished
-# its compensation. At a CORDIC overflow, 0x0380, where the datasheet says that angle and magnitude are not valid, is_valid() is true.
-# A magnet that is too weak, 0x0980, is reported as a CORDIC overflow, and magnetic_field_ok() is true; one that is too strong, 0x0580,
-# as a sound encoder that has finished its compensation. agc_value() is right.
+# The AS5048A has its four flags in the bits 8 to 11 of its register 0x3FFD: offset compensation finished, CORDIC
+# overflow, field too high, field too weak. What happens: they are looked for two bits higher up, in 10 to 13. A sound
+# encoder, 0x0180, has not finished its compensation. At a CORDIC overflow, 0x0380, where the datasheet says that angle
+# and magnitude are not valid, is_valid() is true. A magnet that is too weak, 0x0980, is reported as a CORDIC overflow,
+# and magnetic_field_ok() is true; one that is too strong, 0x0580, as a sound encoder that has finished its
+# compensation. agc_value() is right.
 # For us: take raw() and its bits 8 to 11; let no angle through while bit 9 is set.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

@@ -1,11 +1,12 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# as5048a 0.2.1 (Rust): an answer that the encoder marks as an error, or that was disturbed on its way, is read as an angle.
+# as5048a 0.2.1 (Rust): an answer that the encoder marks as an error, or that was disturbed on its way, is read as an
+# angle.
 #
-# Each answer of an AS5048A has a parity bit in bit 15, and in bit 14 a flag that the last transfer had an error. Expected:
-# angle() returns an error for both. What happens: both bits are cut off and the rest is returned as the angle. A line that
-# is torn off and reads all ones is the angle 16383, and one bit that flipped turns the shaft by up to half a turn. A bus
-# answers here as an encoder does.
+# Each answer of an AS5048A has a parity bit in bit 15, and in bit 14 a flag that the last transfer had an error.
+# Expected: angle() returns an error for both. What happens: both bits are cut off and the rest is returned as the
+# angle. A line that is torn off and reads all ones is the angle 16383, and one bit that flipped turns the shaft by up
+# to half a turn. A bus answers here as an encoder does.
 # For us: leave out readings that jump by more than the shaft can turn.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

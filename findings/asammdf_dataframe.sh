@@ -1,7 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# asammdf 8.8.28: to_dataframe() interpolates a single-turn encoder through its wraps, and shows values for times before a
-# channel began.
+# asammdf 8.8.28: to_dataframe() interpolates a single-turn encoder through its wraps, and shows values for times before
+# a channel began.
 #
 # A file holds the angle of a rotor every 0.1 s, which wraps at 2π, and the angle of an output in between. The table has
 # a row for each time of either, and interpolation is documented to be on. What happens: between 5.4 and 0.9168 rad it

@@ -1,12 +1,15 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# asammdf 8.8.28: a sample that is marked as invalid comes back in select(), iter_channels(), an MDF 3, and .mat and .hdf files.
+# asammdf 8.8.28: a sample that is marked as invalid comes back in select(), iter_channels(), an MDF 3, and .mat and
+# .hdf files.
 #
-# A shaft was recorded five times, and the encoder has marked the third reading, of 99 rad, as invalid. Expected: four samples, or
-# a mark, everywhere. What happens: get() gives four; select() and iter_channels() give 99 rad with the bits beside it; convert()
-# to MDF 3, which has no such bits, and export() to .mat and .hdf write 99 rad as any other sample, without a warning.
-# to_dataframe() and a .csv have 0.2 rad there, between its neighbours. mdfreader 4.3 reads 99 rad, too.
-# For us: gearkin leaves such samples out of an .mf4; otherwise call validate() of each channel before it is used or written.
+# A shaft was recorded five times, and the encoder has marked the third reading, of 99 rad, as invalid. Expected: four
+# samples, or a mark, everywhere. What happens: get() gives four; select() and iter_channels() give 99 rad with the bits
+# beside it; convert() to MDF 3, which has no such bits, and export() to .mat and .hdf write 99 rad as any other sample,
+# without a warning. to_dataframe() and a .csv have 0.2 rad there, between its neighbours. mdfreader 4.3 reads 99 rad,
+# too.
+# For us: gearkin leaves such samples out of an .mf4; otherwise call validate() of each channel before it is used or
+# written.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
 set -eu

@@ -1,11 +1,12 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# asammdf 8.8.28: a table of ranges is applied only at the upper end of each range, where the raw values are whole numbers.
+# asammdf 8.8.28: a table of ranges is applied only at the upper end of each range, where the raw values are whole
+# numbers.
 #
-# A channel stores the gear that is engaged in one byte; its conversion says a ratio of 10 for 0 to 2, 20 for 3 to 5, and 0
-# otherwise. ASAM MDF 4 has both ends belong to a range of whole numbers. Expected: 10, 10, 10, 20, 20, 20, 0.
-# What happens: 0, 0, 10, 0, 0, 20, 20, without a warning: even 6, which is in no range. mdfreader 4.3 reads the same file as
-# expected, and asammdf too where the raw values are floats.
+# A channel stores the gear that is engaged in one byte; its conversion says a ratio of 10 for 0 to 2, 20 for 3 to 5,
+# and 0 otherwise. ASAM MDF 4 has both ends belong to a range of whole numbers. Expected: 10, 10, 10, 20, 20, 20, 0.
+# What happens: 0, 0, 10, 0, 0, 20, 20, without a warning: even 6, which is in no range. mdfreader 4.3 reads the same
+# file as expected, and asammdf too where the raw values are floats.
 # For us: read the channel with raw=True and apply the table yourself, or save such a channel as floats.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -2,9 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # python-can 4.6.1, dbckit 1.1.1: all frames of an .asc whose times are relative get the same time.
 #
-# The head of a CANalyzer log says `timestamps absolute`, from the start of the measurement, or `timestamps relative`, each from
-# the event before it. Three frames of a drive, one every 10 ms. Expected: 0.01, 0.02, 0.03 s. What happens: both take
-# all times as absolute, python-can after it has read the word: 0.01, 0.01, 0.01 s. A speed by differences is then infinite.
+# The head of a CANalyzer log says `timestamps absolute`, from the start of the measurement, or `timestamps relative`,
+# each from the event before it. Three frames of a drive, one every 10 ms. Expected: 0.01, 0.02, 0.03 s. What happens:
+# both take all times as absolute, python-can after it has read the word: 0.01, 0.01, 0.01 s. A speed by differences is
+# then infinite.
 # For us: save such a log with absolute times, or sum its times up before it is decoded.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# asyncua 2.1.0: with a deadband of 0.1 rad a shaft that turns from 0 to 10 rad is not reported, and its encoder's fault neither.
+# asyncua 2.1.0: with a deadband of 0.1 rad a shaft that turns from 0 to 10 rad is not reported, and its encoder's fault
+# neither.
 #
-# OPC UA compares each sample with the last value that was put into the subscriber's queue, and takes no account of the deadband
-# where the status changes. Expected of deadband_monitor() at asyncua's server: a value each 0.1 rad or so, and the bad status.
-# What happens: each sample is compared with the one before it, so that steps of 0.05 rad are not reported, however far they
-# go: what the subscriber knows is wrong by 10 rad. A bad status is not reported at all, nor is the first good value
-# after it, although it is 5 rad off: both are a TypeError in the server's log. A subscriber without a deadband gets all.
+# OPC UA compares each sample with the last value that was put into the subscriber's queue, and takes no account of the
+# deadband where the status changes. Expected of deadband_monitor() at asyncua's server: a value each 0.1 rad or so, and
+# the bad status. What happens: each sample is compared with the one before it, so that steps of 0.05 rad are not
+# reported, however far they go: what the subscriber knows is wrong by 10 rad. A bad status is not reported at all, nor
+# is the first good value after it, although it is 5 rad off: both are a TypeError in the server's log. A subscriber
+# without a deadband gets all.
 # For us: subscribe without a deadband at a server of asyncua, and leave small changes out in the client.
 #
 # Exit code 0: still so. Installs the version into a temporary folder; server and client are on the loopback address.

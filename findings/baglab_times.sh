@@ -5,7 +5,8 @@
 # Ten messages of a joint, one a second. Expected of reindex_by_stamp(): the times of their headers. What happens: where
 # baglab-mcap-backend has read them, their seconds have 32 bits, in which the nanoseconds overflow, without a warning:
 # the times lie around 1970 and go back by 4.29 s after each fourth. backend='rosbags' gives the right ones.
-# delay_estimate() of a motion that follows its command by 50 ms is right around 0 rad, and 0 around 1 rad: the mean is not removed.
+# delay_estimate() of a motion that follows its command by 50 ms is right around 0 rad, and 0 around 1 rad: the mean is
+# not removed.
 # For us: use stamp_to_sec(), which is right with both; subtract the means before delay_estimate().
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

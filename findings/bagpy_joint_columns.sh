@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# bagpy 0.5: where a JointState has other joints or no velocities, its table has efforts as velocities, or a velocity as a position.
+# bagpy 0.5: where a JointState has other joints or no velocities, its table has efforts as velocities, or a velocity as
+# a position.
 #
-# Expected of message_by_topic(): a table with the columns position_0, position_1, velocity_0 and so on, each with its field of each
-# message. What happens: the columns are those of the first message, and the numbers of each later one are written side by side from
-# position_0 on, whatever their count. Where a driver sends no velocities for one message, its efforts of 5 and 6 N·m are the
-# velocities of 5 and 6 rad/s. Where a second driver on the topic has one joint, at 0.7 rad, 0.07 rad/s and 7 N·m, the second joint is
-# at 0.07 rad, and the first one turns at 7 rad/s. There is neither an error nor a warning.
+# Expected of message_by_topic(): a table with the columns position_0, position_1, velocity_0 and so on, each with its
+# field of each message. What happens: the columns are those of the first message, and the numbers of each later one are
+# written side by side from position_0 on, whatever their count. Where a driver sends no velocities for one message, its
+# efforts of 5 and 6 N·m are the velocities of 5 and 6 rad/s. Where a second driver on the topic has one joint, at 0.7
+# rad, 0.07 rad/s and 7 N·m, the second joint is at 0.07 rad, and the first one turns at 7 rad/s. There is neither an
+# error nor a warning.
 # For us: take only topics whose messages are all alike in length, or read them with rosbags by the names of the joints.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -1,11 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# bashar 2.0.0: a force of 1 N at the tip of an arm of 1 m needs 0.5 N·m by inverse_dynamics(), 1 N·m by forward_dynamics().
+# bashar 2.0.0: a force of 1 N at the tip of an arm of 1 m needs 0.5 N·m by inverse_dynamics(), 1 N·m by
+# forward_dynamics().
 #
-# A bar of 1 kg and 1 m turns in a level plane; its centre of mass is at 0.5 m. Expected: a force of 1 N across its tip needs a
-# torque of 1 N·m, and forward_dynamics() of what inverse_dynamics() gives returns the acceleration. What happens: both
-# take an Ftip, but one at the centre of mass of the last link, the other at the tip. The torque is 0.5 N·m; with it the bar
-# does not stand still, but is accelerated by -1.48 rad/s². With the centre of mass at the tip the two agree.
+# A bar of 1 kg and 1 m turns in a level plane; its centre of mass is at 0.5 m. Expected: a force of 1 N across its tip
+# needs a torque of 1 N·m, and forward_dynamics() of what inverse_dynamics() gives returns the acceleration. What
+# happens: both take an Ftip, but one at the centre of mass of the last link, the other at the tip. The torque is 0.5
+# N·m; with it the bar does not stand still, but is accelerated by -1.48 rad/s². With the centre of mass at the tip the
+# two agree.
 # For us: add the transposed jacobian_body() times the force to the torques of a free tip.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -3,9 +3,9 @@
 # bdsim 1.4.0: the speed of a shaft at 1 rad/s, whose first value is given as 1 rad/s, begins at 10 000 rad/s in its
 # derivative block.
 #
-# A shaft turns at 1 rad/s from 0 rad on, and the block DERIV with a pole of alpha = 100 rad/s takes its speed. Expected of
-# y0 = 1.0, the initial output: 1 rad/s at all times. What happens: 10 000 rad/s at first, and 451 rad/s after 31 ms, as the state
-# is set to -alpha y0 and not to -y0 / alpha, which is wrong by alpha². With alpha = 1 the two are equal.
+# A shaft turns at 1 rad/s from 0 rad on, and the block DERIV with a pole of alpha = 100 rad/s takes its speed. Expected
+# of y0 = 1.0, the initial output: 1 rad/s at all times. What happens: 10 000 rad/s at first, and 451 rad/s after 31 ms,
+# as the state is set to -alpha y0 and not to -y0 / alpha, which is wrong by alpha². With alpha = 1 the two are equal.
 # For us: give x0 = -y0 / alpha instead of y0; the speed is then 1 rad/s from the first value on.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -1,11 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# bdsim 1.4.0: an integral that has once reached its limit stays there for good, and a limit of 1 instead of 1.0 is none.
+# bdsim 1.4.0: an integral that has once reached its limit stays there for good, and a limit of 1 instead of 1.0 is
+# none.
 #
-# A PID block of a joint has P = 1, I = 1 and I_limit = 1.0; its error is 1 rad for 2 s and -1 rad for the next 4 s. Expected:
-# the integral grows to 1 within 1 s, falls from 2 s on and is -1 after 4 s, so the output at 5.5 s is -2. What happens: the
-# integral stays at 1.00 and the output is 0, as a block INTEGRATOR beyond its max has a rate of 0 whatever the sign of its
-# input. With I_limit = 1, a whole number, the integral goes to 2 without any limit, and the output at 2 s is 3 instead of 2.
+# A PID block of a joint has P = 1, I = 1 and I_limit = 1.0; its error is 1 rad for 2 s and -1 rad for the next 4 s.
+# Expected: the integral grows to 1 within 1 s, falls from 2 s on and is -1 after 4 s, so the output at 5.5 s is -2.
+# What happens: the integral stays at 1.00 and the output is 0, as a block INTEGRATOR beyond its max has a rate of 0
+# whatever the sign of its input. With I_limit = 1, a whole number, the integral goes to 2 without any limit, and the
+# output at 2 s is 3 instead of 2.
 # For us: a joint that was once blocked is pushed to one side ever after; limit the integral outside of the block.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

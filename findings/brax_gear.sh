@@ -1,12 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# Brax 0.14.2: of an MJCF, a gear ratio and a friction have no effect in any pipeline, an armature and a damping in one alone.
+# Brax 0.14.2: of an MJCF, a gear ratio and a friction have no effect in any pipeline, an armature and a damping in one
+# alone.
 #
-# A motor gives 0.01 N·m to a rotor of 0.01 kg·m². Expected after a second, as in MuJoCo 4.0.0: 0.5 rad/s with an output of
-# 4 kg·m² on a joint equality of -0.05, with a friction of 0.005 N·m, or with an armature of 0.01 kg·m²; 0.632 rad/s with
-# a damping of 0.01. What happens: 1 rad/s with equality and friction in the pipelines generalized, positional and
-# spring, without a warning about them, though other elements are refused with an error. Armature and damping are
-# right in generalized, and have no effect in the other two. Their angle jumps from half a turn to minus half a turn.
+# A motor gives 0.01 N·m to a rotor of 0.01 kg·m². Expected after a second, as in MuJoCo 4.0.0: 0.5 rad/s with an output
+# of 4 kg·m² on a joint equality of -0.05, with a friction of 0.005 N·m, or with an armature of 0.01 kg·m²; 0.632 rad/s
+# with a damping of 0.01. What happens: 1 rad/s with equality and friction in the pipelines generalized, positional and
+# spring, without a warning about them, though other elements are refused with an error. Armature and damping are right
+# in generalized, and have no effect in the other two. Their angle jumps from half a turn to minus half a turn.
 # For us: simulate a gear with MuJoCo's own MJX, which is right in each case.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

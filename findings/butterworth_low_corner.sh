@@ -1,12 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# butterworth 0.1.0 (Rust): a band-pass from 0.5 to 2 Hz at 1 kHz grows beyond 1e100, and a still shaft leaves its angle.
+# butterworth 0.1.0 (Rust): a band-pass from 0.5 to 2 Hz at 1 kHz grows beyond 1e100, and a still shaft leaves its
+# angle.
 #
 # The slow vibration of an arm, sampled at 1 kHz, and a shaft that stands at 100 rad, sampled at 10 kHz. Expected of a
-# band-pass of order 4 from 0.5 to 2 Hz: an amplitude of 1 for a vibration of amplitude 1 at 1 Hz, as from 5 to 20 Hz for
-# one at 10 Hz. What happens: it grows without end, as the filter is one polynomial of order 8, whose coefficients do not
-# have enough digits for such a corner. Filter::new() gives no error. Expected of a low-pass of order 4 at 1 Hz for the
-# still shaft, by bidirectional(): 100 rad. What happens: up to 0.4 rad away from it; at 1 kHz up to 0.06 mrad.
+# band-pass of order 4 from 0.5 to 2 Hz: an amplitude of 1 for a vibration of amplitude 1 at 1 Hz, as from 5 to 20 Hz
+# for one at 10 Hz. What happens: it grows without end, as the filter is one polynomial of order 8, whose coefficients
+# do not have enough digits for such a corner. Filter::new() gives no error. Expected of a low-pass of order 4 at 1 Hz
+# for the still shaft, by bidirectional(): 100 rad. What happens: up to 0.4 rad away from it; at 1 kHz up to 0.06 mrad.
 # For us: reduce the rate of the recording first, or filter with sections of order 2, as scipy.signal.sosfiltfilt().
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

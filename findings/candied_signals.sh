@@ -2,10 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # candied 2.2.0: a speed of -0.06 rad/s in Motorola order is read as -25.61, and a float of -1.5 rad as -1077936128 rad.
 #
-# A .dbc describes five signals: a position in Intel order, a speed in Motorola order, a float, and two signals that share
-# their bytes, an angle on page 0 and a load on page 1. What happens: signals of 16 bits in Motorola order are put together from
-# wrong bits; a float is read as a whole number, although its type is known to be float; both pages are read from each
-# frame; and a position beyond its range [-12.5|12.5] is read as the limit. All without an error; cantools 45.1.0 reads all right.
+# A .dbc describes five signals: a position in Intel order, a speed in Motorola order, a float, and two signals that
+# share their bytes, an angle on page 0 and a load on page 1. What happens: signals of 16 bits in Motorola order are put
+# together from wrong bits; a float is read as a whole number, although its type is known to be float; both pages are
+# read from each frame; and a position beyond its range [-12.5|12.5] is read as the limit. All without an error;
+# cantools 45.1.0 reads all right.
 # For us: candied reads whole numbers in Intel order on one page; read others with another library.
 #
 # Exit code 0: still so. Needs node; installs the versions into a temporary folder.

@@ -6,8 +6,9 @@
 # An arm's .dbc names the raw value -32768 of a position "not available", as is usual; the log never has it. Expected of
 # load_blf(): the positions as numbers. What happens: each signal with a named value becomes a category of its names, so
 # that all 100 positions are NaN. cantools decodes them as numbers, and a position whose values have no names is right.
-# Motor and output are sent at 100 Hz in a frame each. Expected of force_uniform_timing with 0.01 s: one row each 0.01 s. What
-# happens: the rows are numbered, and as each frame has a row of its own, 1 s takes 2 s, and each speed is halved.
+# Motor and output are sent at 100 Hz in a frame each. Expected of force_uniform_timing with 0.01 s: one row each 0.01
+# s. What happens: the rows are numbered, and as each frame has a row of its own, 1 s takes 2 s, and each speed is
+# halved.
 # For us: decode with cantools, or take the VAL_ lines out of the .dbc; leave force_uniform_timing off.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -1,12 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# cannon-es 0.20.0 (npm): a motor limited to 0.01 N·m has 10 N·m at 1000 steps a second, and a cylinder has 1.33 times its inertia.
+# cannon-es 0.20.0 (npm): a motor limited to 0.01 N·m has 10 N·m at 1000 steps a second, and a cylinder has 1.33 times
+# its inertia.
 #
-# A hinge about y joins a base and a cylindrical rotor of 20 kg and a radius of 0.1 m. Expected: an inertia of 0.1 kg·m². What happens:
-# 0.133 kg·m², that of a box round the cylinder. Expected of setMotorMaxForce(0.01): after 5 ms the rotor has 0.0005 rad/s. What
-# happens: 0.375 rad/s, as after 5 steps of 20 ms: the limit is one of the impulse of each step, so that the motor has 0.01 N·m·s
-# divided by the step. Expected of setMotorSpeed(1) of a rotor on its base: +1 rad/s about the axis of the hinge. What happens:
-# -1 rad/s if the base is the first body of the hinge.
+# A hinge about y joins a base and a cylindrical rotor of 20 kg and a radius of 0.1 m. Expected: an inertia of 0.1
+# kg·m². What happens: 0.133 kg·m², that of a box round the cylinder. Expected of setMotorMaxForce(0.01): after 5 ms the
+# rotor has 0.0005 rad/s. What happens: 0.375 rad/s, as after 5 steps of 20 ms: the limit is one of the impulse of each
+# step, so that the motor has 0.01 N·m·s divided by the step. Expected of setMotorSpeed(1) of a rotor on its base: +1
+# rad/s about the axis of the hinge. What happens: -1 rad/s if the base is the first body of the hinge.
 # For us: set inertia and invInertia by hand, give the greatest torque times the step, and the rotor as the first body.
 #
 # Exit code 0: still so. Needs node; installs the version into a temporary folder.

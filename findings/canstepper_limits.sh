@@ -1,15 +1,17 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# grafito-canstepper 0.2.3: an axis with a limit of 10 turns goes to 12 by two moves of 6, and anywhere before its first report.
+# grafito-canstepper 0.2.3: an axis with a limit of 10 turns goes to 12 by two moves of 6, and anywhere before its first
+# report.
 #
-# Expected of Axis(max_pos=10): move_by(6) and, before the axis is there, move_by(6) again are 12, so that the second is a
-# LimitViolation. What happens: the limit is compared with the last position that was reported plus the step, but the motor adds
-# the step to its goal, as the documentation of move_by() says: both are sent, and it goes to 12. As long as no position was
-# reported, nothing is compared, and move_by(1000) is sent. run(1) is never compared with the limits, and turns through them.
-# move_to(12) is refused, as is move_by(6) where the axis stands at 6.
+# Expected of Axis(max_pos=10): move_by(6) and, before the axis is there, move_by(6) again are 12, so that the second is
+# a LimitViolation. What happens: the limit is compared with the last position that was reported plus the step, but the
+# motor adds the step to its goal, as the documentation of move_by() says: both are sent, and it goes to 12. As long as
+# no position was reported, nothing is compared, and move_by(1000) is sent. run(1) is never compared with the limits,
+# and turns through them. move_to(12) is refused, as is move_by(6) where the axis stands at 6.
 # For us: keep the goal in the driver, and send move_to() alone.
 #
-# The motor is that of the package's own simulation, but turns with a speed. Exit code 0: still so. Installs the package.
+# The motor is that of the package's own simulation, but turns with a speed. Exit code 0: still so. Installs the
+# package.
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

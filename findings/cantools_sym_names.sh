@@ -2,8 +2,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # cantools 45.1.0: a DBC that is saved as SYM gives all signals of one name the type and factor of one of them.
 #
-# Expected: two drives' messages, each with its signal "position", stay what they are, or an error, as signals of a SYM file
-# have no message of their own. What happens: the first definition is written once for all, without a warning. A
+# Expected: two drives' messages, each with its signal "position", stay what they are, or an error, as signals of a SYM
+# file have no message of their own. What happens: the first definition is written once for all, without a warning. A
 # position of 4.56 in steps of 0.01 is read as 45.6 by the first drive's steps of 0.1, and a float of 1.5 as 106954752.
 # KCD, and a DBC that is saved again, keep each.
 # For us: convert no database of several drives to SYM; read them by their DBC.

@@ -2,9 +2,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # CasADi 3.8.2: just outside of its table, a 'bspline' interpolant is 0, and a 'linear' one is extrapolated.
 #
-# A table gives a factor between 0.8 and 1.2 over a turn, from 0 to 2π. At 2π both give 1.0. At 2π + 1e-9, where an angle
-# comes out of rounding or of a filter, 'bspline' gives 0.0 with a derivative of 0, without an error, and so at every
-# angle before 0. 'linear' goes on along its last line. numpy.interp keeps the last value.
+# A table gives a factor between 0.8 and 1.2 over a turn, from 0 to 2π. At 2π both give 1.0. At 2π + 1e-9, where an
+# angle comes out of rounding or of a filter, 'bspline' gives 0.0 with a derivative of 0, without an error, and so at
+# every angle before 0. 'linear' goes on along its last line. numpy.interp keeps the last value.
 # For us: bring the angle into the turn with a margin, or let the table of a periodic quantity reach over both ends.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -1,15 +1,17 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# circuitpython-serial-controlled-servo 0.1.3: each move of a servo takes away its angle limits, and a speed of -100 is 32868.
+# circuitpython-serial-controlled-servo 0.1.3: each move of a servo takes away its angle limits, and a speed of -100 is
+# 32868.
 #
-# A joint's SCS servo has angle limits of 300 and 700 in its registers 9 to 12. Expected of set_position(): the goal alone is
-# written. What happens: before each move, 1 and 1023 are written into the limits, since the mode that is kept for a servo is
-# looked up under the built-in function id instead of its number: not at the first move alone, as is meant, but at
-# every one. A goal of 1000 is then within the limits. speed() and load() give the bit of the sign, bit 15 of a speed and bit
-# 10 of a load, as part of the number. A servo on a UART answers here.
+# A joint's SCS servo has angle limits of 300 and 700 in its registers 9 to 12. Expected of set_position(): the goal
+# alone is written. What happens: before each move, 1 and 1023 are written into the limits, since the mode that is kept
+# for a servo is looked up under the built-in function id instead of its number: not at the first move alone, as is
+# meant, but at every one. A goal of 1000 is then within the limits. speed() and load() give the bit of the sign, bit 15
+# of a speed and bit 10 of a load, as part of the number. A servo on a UART answers here.
 # For us: check each goal against limits of your own, and take the sign off yourself.
 #
-# Exit code 0: still so. Installs the version into a temporary folder, where three modules stand in for CircuitPython's own.
+# Exit code 0: still so. Installs the version into a temporary folder, where three modules stand in for CircuitPython's
+# own.
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

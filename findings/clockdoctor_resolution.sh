@@ -3,11 +3,11 @@
 # clockdoctor 0.1.0: its warning of stamps in steps of 10 ms is gone as soon as one message of another topic has no
 # header.
 #
-# A driver sends a joint at 100 Hz with stamps that are cut to 10 ms, where its clock has no finer ones. Expected: the flag
-# "coarse_resolution", whatever else is in the recording. What happens: it is there in a recording of this topic alone. With
-# one std_msgs/Float64 beside it, the stamps of all topics get into one table of floats, since one has none, and are rounded to
-# multiples of 256 ns there: their resolution is then 0.000001 ms, and no flag is left, nor another word. The differences
-# of time are wrong by up to 128 ns.
+# A driver sends a joint at 100 Hz with stamps that are cut to 10 ms, where its clock has no finer ones. Expected: the
+# flag "coarse_resolution", whatever else is in the recording. What happens: it is there in a recording of this topic
+# alone. With one std_msgs/Float64 beside it, the stamps of all topics get into one table of floats, since one has none,
+# and are rounded to multiples of 256 ns there: their resolution is then 0.000001 ms, and no flag is left, nor another
+# word. The differences of time are wrong by up to 128 ns.
 # For us: gearkin keeps stamps as whole numbers; extract one topic for clockdoctor with --topic.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -1,13 +1,16 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# commons-math3 3.6.1 (Java): a vibration of 1 mrad at 16 Hz is fitted with 0.22 mrad at 16.6 Hz, one at 40 Hz with 0.013 mrad.
+# commons-math3 3.6.1 (Java): a vibration of 1 mrad at 16 Hz is fitted with 0.22 mrad at 16.6 Hz, one at 40 Hz with
+# 0.013 mrad.
 #
-# A cosine without noise and offset is sampled at 200 Hz for 2.5 s. Expected of HarmonicCurveFitter: its amplitude and frequency, as it
-# finds them up to 14 Hz. What happens: the frequency that it begins with comes from integrals by the trapezoidal rule, which take
-# 12 samples per period as a higher frequency; over 40 periods this is more than half a period too much, and the fit ends in a
-# side maximum. The amplitude falls with the frequency, down to 1.3 % at 5 samples per period. Neither an error nor anything in the
-# result tells so; with the right frequency as the start it is found.
-# For us: a transmission error looks small so. Begin the fit at the known order of the gear, or at the peak of a Fourier transform.
+# A cosine without noise and offset is sampled at 200 Hz for 2.5 s. Expected of HarmonicCurveFitter: its amplitude and
+# frequency, as it finds them up to 14 Hz. What happens: the frequency that it begins with comes from integrals by the
+# trapezoidal rule, which take 12 samples per period as a higher frequency; over 40 periods this is more than half a
+# period too much, and the fit ends in a side maximum. The amplitude falls with the frequency, down to 1.3 % at 5
+# samples per period. Neither an error nor anything in the result tells so; with the right frequency as the start it is
+# found.
+# For us: a transmission error looks small so. Begin the fit at the known order of the gear, or at the peak of a Fourier
+# transform.
 #
 # Exit code 0: still so. Needs a JDK and mvn; installs the versions into a temporary folder.
 set -eu

@@ -2,11 +2,12 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # commons-math3 3.6.1 (Java): a smoother that is to withstand outliers gives 10 NaN around a single one, or follows it.
 #
-# An encoder that stands still trembles by one count, and one of its 201 readings is 4096 counts too large. Expected of LoessInterpolator
-# with its 2 robust iterations: 1000 to 1001 counts everywhere. What happens: the bad reading spoils the first fit of its neighbours,
-# so that all of them are taken as outliers; where all weights in a window are 0, the result is 0/0. 10 values are NaN, 28 with
-# 4 iterations, without an error. On a shaft that turns evenly without any noise the opposite happens: the median of the residuals
-# is 0, which ends the iterations, and a reading that is 50 rad too large draws the result by 8.6 rad.
+# An encoder that stands still trembles by one count, and one of its 201 readings is 4096 counts too large. Expected of
+# LoessInterpolator with its 2 robust iterations: 1000 to 1001 counts everywhere. What happens: the bad reading spoils
+# the first fit of its neighbours, so that all of them are taken as outliers; where all weights in a window are 0, the
+# result is 0/0. 10 values are NaN, 28 with 4 iterations, without an error. On a shaft that turns evenly without any
+# noise the opposite happens: the median of the residuals is 0, which ends the iterations, and a reading that is 50 rad
+# too large draws the result by 8.6 rad.
 # For us: leave out a reading that differs from both of its neighbours before smoothing, and look for NaN after it.
 #
 # Exit code 0: still so. Needs a JDK and mvn; installs the versions into a temporary folder.

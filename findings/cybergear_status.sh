@@ -2,11 +2,12 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # cybergeardriver 0.2.0, robstride 0.1.0: a motor that is too hot has no fault, and one that runs is shown in reset.
 #
-# A CyberGear or RobStride motor reports its mode and its faults in the identifier of each feedback: a bit for each fault, and
-# two bits for the mode, 0 for reset, 1 for calibration, 2 for run. Here the motor runs, is too hot and is not calibrated.
-# Expected: these. What happens: cybergeardriver takes bytes for bits, so that it never sees a fault, and its mode is always 0.
-# robstride cuts one bit off from the faults and one from the mode: the motor is hot and in reset, and never uncalibrated, although
-# the package has a name for that. Positions, velocities and torques are right in both.
+# A CyberGear or RobStride motor reports its mode and its faults in the identifier of each feedback: a bit for each
+# fault, and two bits for the mode, 0 for reset, 1 for calibration, 2 for run. Here the motor runs, is too hot and is
+# not calibrated. Expected: these. What happens: cybergeardriver takes bytes for bits, so that it never sees a fault,
+# and its mode is always 0. robstride cuts one bit off from the faults and one from the mode: the motor is hot and in
+# reset, and never uncalibrated, although the package has a name for that. Positions, velocities and torques are right
+# in both.
 # For us: python-cybergear 0.1.2 reads all three; otherwise take the bits 16 to 23 of the identifier.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

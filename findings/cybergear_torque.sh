@@ -2,9 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # pycybergear 1.0.0: each command of motion has a torque of -12 N·m, whatever torque is given.
 #
-# Expected of send_motion_command(torque=0): the 16 bits of the identifier that carry the torque are 32767, which is 0 of ±12 N·m.
-# What happens: the torque is computed, but not sent. The address of the host, which is 0 unless given, is in its place, and
-# as a torque 0 is -12 N·m, all that a CyberGear has. A position of 13 rad, beyond the ±12.5 rad of the frame, is sent as -12.
+# Expected of send_motion_command(torque=0): the 16 bits of the identifier that carry the torque are 32767, which is 0
+# of ±12 N·m. What happens: the torque is computed, but not sent. The address of the host, which is 0 unless given, is
+# in its place, and as a torque 0 is -12 N·m, all that a CyberGear has. A position of 13 rad, beyond the ±12.5 rad of
+# the frame, is sent as -12.
 # For us: python-cybergear 0.1.2 and cybergeardriver 0.2.0 send the torque; keep positions within ±12.5 rad.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -2,10 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # dartpy 6.20.0: the mimic of a URDF takes its output along, but neither its inertia nor its load reaches the rotor.
 #
-# An output of 4 kg·m² is the mimic of a rotor of 0.01 kg·m², by -0.05. Expected: 0.01 N·m at the rotor turn it by 0.25 rad in
-# a second, and 0.2 N·m at the output turn it by -0.25 rad. What happens: 0.50 rad, as if there were no output, and 0 rad: the
-# output is a servo that follows the rotor, with the effort of its limit. It holds 5 N·m at the output, and lets the
-# output go under 20 N·m, while the rotor stands still. With setUseCouplerConstraint(True) at the output all is as expected.
+# An output of 4 kg·m² is the mimic of a rotor of 0.01 kg·m², by -0.05. Expected: 0.01 N·m at the rotor turn it by 0.25
+# rad in a second, and 0.2 N·m at the output turn it by -0.25 rad. What happens: 0.50 rad, as if there were no output,
+# and 0 rad: the output is a servo that follows the rotor, with the effort of its limit. It holds 5 N·m at the output,
+# and lets the output go under 20 N·m, while the rotor stands still. With setUseCouplerConstraint(True) at the output
+# all is as expected.
 # For us: call setUseCouplerConstraint(True) at each joint with a mimic, after loading.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

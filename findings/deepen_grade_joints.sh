@@ -3,12 +3,13 @@
 # deepen-grade 0.4.1: a shaft that turns evenly for 300 s is called idle, one that stands still is not, and joints of
 # two topics are taken as one.
 #
-# Expected of its idle share: 0 % of a shaft that turns at 0.02 rad/s, and 100 % of one that stands still within one count of its encoder.
-# What happens: 100 % and 0 %. Its table of checks speaks of a normalized velocity, without saying by what: positions are divided by the
-# range of the recording, and slower than 0.5 % of it per second is idle: every even motion of more than 200 s is, and the noise of a
-# joint at rest is a motion across its whole range. Expected of the messages of a motor and of its output on two topics: two joints. What
-# happens: their messages are put into one row under the name of the motor's joint, which therefore jumps from one angle to the other: the
-# share of its time near its ends falls from 18 % to 0 %, and its smoothness, the logarithm of a jerk, from -19 to -25.
+# Expected of its idle share: 0 % of a shaft that turns at 0.02 rad/s, and 100 % of one that stands still within one
+# count of its encoder. What happens: 100 % and 0 %. Its table of checks speaks of a normalized velocity, without saying
+# by what: positions are divided by the range of the recording, and slower than 0.5 % of it per second is idle: every
+# even motion of more than 200 s is, and the noise of a joint at rest is a motion across its whole range. Expected of
+# the messages of a motor and of its output on two topics: two joints. What happens: their messages are put into one row
+# under the name of the motor's joint, which therefore jumps from one angle to the other: the share of its time near its
+# ends falls from 18 % to 0 %, and its smoothness, the logarithm of a jerk, from -19 to -25.
 # For us: give it recordings of one topic, of a similar length and without rests; `gearkin validate` reads both topics.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# diozero-core 1.4.1 (Java): the second of two motors is the first one, and a stepper with two coils on at a time does not turn.
+# diozero-core 1.4.1 (Java): the second of two motors is the first one, and a stepper with two coils on at a time does
+# not turn.
 #
-# Expected of DualMotor.getMotorB(): the second motor. What happens: it is the first; setValues() drives both. Expected of a bipolar
-# stepper in the style DOUBLE, of the package `sandpit`: two neighbouring coils at each step, and after four steps one
-# period, as SINGLE and INTERLEAVE make it, only with more torque. What happens: at every other step both ends of one coil are on, which
-# brakes it, and between them the field goes half a period on, which may turn the rotor in either direction: it trembles on the spot. The
-# four steps point to -45°, nowhere, 135° and nowhere, in degrees of a period of which SINGLE makes a quarter per step.
+# Expected of DualMotor.getMotorB(): the second motor. What happens: it is the first; setValues() drives both. Expected
+# of a bipolar stepper in the style DOUBLE, of the package `sandpit`: two neighbouring coils at each step, and after
+# four steps one period, as SINGLE and INTERLEAVE make it, only with more torque. What happens: at every other step both
+# ends of one coil are on, which brakes it, and between them the field goes half a period on, which may turn the rotor
+# in either direction: it trembles on the spot. The four steps point to -45°, nowhere, 135° and nowhere, in degrees of a
+# period of which SINGLE makes a quarter per step.
 # For us: keep the two motors yourself, or a joint follows the wrong one; use SINGLE or INTERLEAVE.
 #
 # Exit code 0: still so. Needs a JDK and mvn; installs the versions into a temporary folder.

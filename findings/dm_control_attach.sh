@@ -2,10 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # dm_control 1.0.50: to attach a gear in radians to an arm in degrees makes the arm's limits of 90 degrees 90 rad.
 #
-# MJCF has angles in degrees unless its compiler says otherwise. An arm that leaves this default out has a joint from -90 to
-# 90 degrees. A gear with angle="radian" is attached to it: the arm takes over the gear's setting, nothing is converted, and
-# MuJoCo 4.0.0 reads ±90 rad from what dm_control writes, which is no limit any more. MuJoCo's own MjSpec.attach() converts.
-# Only an arm that states angle="degree" itself is refused as a conflict.
+# MJCF has angles in degrees unless its compiler says otherwise. An arm that leaves this default out has a joint from
+# -90 to 90 degrees. A gear with angle="radian" is attached to it: the arm takes over the gear's setting, nothing is
+# converted, and MuJoCo 4.0.0 reads ±90 rad from what dm_control writes, which is no limit any more. MuJoCo's own
+# MjSpec.attach() converts. Only an arm that states angle="degree" itself is refused as a conflict.
 # For us: state the unit of angle in every MJCF that is to be combined; that of `gearkin mjcf` is in radians.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

@@ -3,11 +3,12 @@
 # DynamicAxisControl 1.0.2: a move of 100 mm goes to 50 mm and back to 33 mm, and its motor is given 40 000 turns/s
 # instead of 25.
 #
-# With 1 m/s and 1 m/s² a move needs 1000 mm to reach its speed. Expected of SyncLinearAxes() and LinearMotion(): a shorter one
-# ends where it is to end, with a lower speed in its middle. What happens: it brakes after a quarter of its way, but for as long
-# as if it had reached the middle, turns round at 50 % and ends at 33 % of its way, moving back at 0.19 m/s.
-# The time is right, and so is a long move, and the shorter axis of SyncLinearAxes(). Both take metres for the speeds and mm for
-# the ways. The speed of the motor in turns, at 40 mm a turn, is multiplied by 40 by SyncLinearAxes(), instead of divided.
+# With 1 m/s and 1 m/s² a move needs 1000 mm to reach its speed. Expected of SyncLinearAxes() and LinearMotion(): a
+# shorter one ends where it is to end, with a lower speed in its middle. What happens: it brakes after a quarter of its
+# way, but for as long as if it had reached the middle, turns round at 50 % and ends at 33 % of its way, moving back at
+# 0.19 m/s. The time is right, and so is a long move, and the shorter axis of SyncLinearAxes(). Both take metres for the
+# speeds and mm for the ways. The speed of the motor in turns, at 40 mm a turn, is multiplied by 40 by SyncLinearAxes(),
+# instead of divided.
 # For us: take only the times, or use ruckig.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# dynamixel-control 0.2.4: an XL-330 gets its gains I and D exchanged, and each goal of an XL-320 sets its speed to 0, the greatest.
+# dynamixel-control 0.2.4: an XL-330 gets its gains I and D exchanged, and each goal of an XL-320 sets its speed to 0,
+# the greatest.
 #
-# The control table of the XL330 has the gains D, I and P of its position controller at 80, 82 and 84. Expected of update_PID(P=400, I=0,
-# D=80): 80 at address 80, and 0 at 82. What happens: D is written to 82 and I to 80. The servo gets an integral gain instead of its
-# damping, so that it swings around its goal. The control table of the XL-320 has a goal of two bytes at 30, then the speed of two bytes
-# at 32, where 0 is the greatest speed. Expected of a goal of 512: two bytes. What happens: four bytes, whose upper two set the speed to
-# 0: a servo that was set to turn slowly goes to its first goal at full speed.
+# The control table of the XL330 has the gains D, I and P of its position controller at 80, 82 and 84. Expected of
+# update_PID(P=400, I=0, D=80): 80 at address 80, and 0 at 82. What happens: D is written to 82 and I to 80. The servo
+# gets an integral gain instead of its damping, so that it swings around its goal. The control table of the XL-320 has a
+# goal of two bytes at 30, then the speed of two bytes at 32, where 0 is the greatest speed. Expected of a goal of 512:
+# two bytes. What happens: four bytes, whose upper two set the speed to 0: a servo that was set to turn slowly goes to
+# its first goal at full speed.
 # For us: give I as D and D as I for an XL-330; for an XL-320 send the goal with the Dynamixel SDK.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -1,13 +1,16 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# dynamixel 0.1.1 (Rust): a goal of 1.9 mrad is sent to a PRO servo as 0, and an MX-28 that is sent its own position creeps away.
+# dynamixel 0.1.1 (Rust): a goal of 1.9 mrad is sent to a PRO servo as 0, and an MX-28 that is sent its own position
+# creeps away.
 #
-# An M42-10-S260-R has 263187 counts per turn. Expected of a goal of 1.9 mrad: 80 counts. What happens: the goal is first cut off to
-# whole steps of 2 mrad, so that 0 is sent, and 131509 for a goal of π, 2 mrad short of the 131593 counts of half a turn. An MX-28
-# has 4096 counts per turn, 651.90 per rad. Expected: its goals and positions are scaled by that. What happens: goals by 651.09 and
-# positions by 652.23, and the goal is cut off towards the centre. A servo at 3000 counts that is sent its own position gets 2998,
-# then 2996, and it is at 2800 counts after 100 times: 17.6° away. The interface here is a servo that answers from its memory.
-# For us: to hold a servo, send a goal that was set once, not the position that was read; take counts for what has to be exact.
+# An M42-10-S260-R has 263187 counts per turn. Expected of a goal of 1.9 mrad: 80 counts. What happens: the goal is
+# first cut off to whole steps of 2 mrad, so that 0 is sent, and 131509 for a goal of π, 2 mrad short of the 131593
+# counts of half a turn. An MX-28 has 4096 counts per turn, 651.90 per rad. Expected: its goals and positions are scaled
+# by that. What happens: goals by 651.09 and positions by 652.23, and the goal is cut off towards the centre. A servo at
+# 3000 counts that is sent its own position gets 2998, then 2996, and it is at 2800 counts after 100 times: 17.6° away.
+# The interface here is a servo that answers from its memory.
+# For us: to hold a servo, send a goal that was set once, not the position that was read; take counts for what has to be
+# exact.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.
 set -eu

@@ -3,8 +3,9 @@
 # embedded-stepper 0.1.2 (Rust): a stepper whose speed is set to 0 makes all its steps at once.
 #
 # By its documentation set_speed(0) sets the speed to 0. Expected: step() then makes no step. What happens: a speed of 0
-# is stored as a pause of 0 between the steps, so that 200 steps are made without any pause, where they take 1 s at 60 rpm and
-# 60 s at 1 rpm. It is so before the first set_speed() too. The slower the speed, the longer the pause, and at 0 it is the fastest.
+# is stored as a pause of 0 between the steps, so that 200 steps are made without any pause, where they take 1 s at 60
+# rpm and 60 s at 1 rpm. It is so before the first set_speed() too. The slower the speed, the longer the pause, and at 0
+# it is the fastest.
 # For us: a stepper cannot follow that, so that it stands or loses steps, which looks like a slipped coupling.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

@@ -1,12 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# epicallypowerful 1.0.7: a stiffness of 50 N·m/rad is sent to an RS03, RS04 or RS06 as 500 N·m/rad, a damping of 2 as 40.
+# epicallypowerful 1.0.7: a stiffness of 50 N·m/rad is sent to an RS03, RS04 or RS06 as 500 N·m/rad, a damping of 2 as
+# 40.
 #
-# In the frames of these RobStride motors the gains have ranges of 0 to 5000 N·m/rad and 0 to 100 N·m·s/rad, in smaller motors of
-# 0 to 500 and 0 to 5. create_motion_message() scales all of them by the smaller ranges, although the class's own
-# kp_limits and kd_limits have the right ones. robstride-dynamics 0.0.1 sends the same gains in a frame that is right. A parameter
-# that is read, such as the position 0x7019, is taken as a big-endian integer: 1.5 rad is 49215. All motors
-# share one dictionary of such parameters.
+# In the frames of these RobStride motors the gains have ranges of 0 to 5000 N·m/rad and 0 to 100 N·m·s/rad, in smaller
+# motors of 0 to 500 and 0 to 5. create_motion_message() scales all of them by the smaller ranges, although the class's
+# own kp_limits and kd_limits have the right ones. robstride-dynamics 0.0.1 sends the same gains in a frame that is
+# right. A parameter that is read, such as the position 0x7019, is taken as a big-endian integer: 1.5 rad is 49215. All
+# motors share one dictionary of such parameters.
 # For us: give a tenth of the stiffness and a twentieth of the damping to such a motor, and read angles from its status.
 #
 # Exit code 0: still so. Installs the packages into a temporary folder.

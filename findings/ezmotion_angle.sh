@@ -2,11 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # EZMotionMMS2 1.0.2: a servo that stands at its goal of 1° is read at 0°, and so one degree less for 352 of 359 goals.
 #
-# These servos count 65536 a turn, and 1° is sent as 182 counts, which are 0.9998°. Expected of Read_Actual_Position(): 0.9998°.
-# What happens: the angle is cut off to a whole degree, so that 0 comes back and a goal is never seen to be reached. Back of
-# 0 the turns and the angle are taken from 65535 instead of 65536: -182 counts are 0 turns and 0°. Speeds are whole
-# rpm, so that an output of 0.9 rpm stands still. With limit=False a negative torque is an error. A table of registers answers
-# here as a servo does.
+# These servos count 65536 a turn, and 1° is sent as 182 counts, which are 0.9998°. Expected of Read_Actual_Position():
+# 0.9998°. What happens: the angle is cut off to a whole degree, so that 0 comes back and a goal is never seen to be
+# reached. Back of 0 the turns and the angle are taken from 65535 instead of 65536: -182 counts are 0 turns and 0°.
+# Speeds are whole rpm, so that an output of 0.9 rpm stands still. With limit=False a negative torque is an error. A
+# table of registers answers here as a servo does.
 # For us: read the register 0x6640 by Read_32bit_Reg(0x6640, True), in counts.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# falcon_mdf 0.7.2 (Rust): the difference of two encoders is valid where one of them is not, and counts are not interpolated.
+# falcon_mdf 0.7.2 (Rust): the difference of two encoders is valid where one of them is not, and counts are not
+# interpolated.
 #
-# Its series have a flag per sample, true for valid. Expected of the difference of an output and a rotor whose second sample is invalid:
-# the second sample is invalid. What happens: the flags of both are combined by "or", so that a sample is valid if either is; if
-# only one of both has flags, its flags are kept, and the difference is right. Expected of resample() with InterpolationMode::Linear
-# at a quarter of the time from 100 to 200 counts: 125, as documented for numeric channels. What happens: whole numbers hold their
-# last value, 100, without an error; the same numbers as F64 give 125. The power of a torque and a speed has the unit N·m instead of W.
+# Its series have a flag per sample, true for valid. Expected of the difference of an output and a rotor whose second
+# sample is invalid: the second sample is invalid. What happens: the flags of both are combined by "or", so that a
+# sample is valid if either is; if only one of both has flags, its flags are kept, and the difference is right. Expected
+# of resample() with InterpolationMode::Linear at a quarter of the time from 100 to 200 counts: 125, as documented for
+# numeric channels. What happens: whole numbers hold their last value, 100, without an error; the same numbers as F64
+# give 125. The power of a torque and a speed has the unit N·m instead of W.
 # For us: combine the flags by "and" yourself, and convert counts to angles before resampling.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

@@ -2,9 +2,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # fatpack 0.7.8: the greatest swing of a torque is not among its rainflow ranges if the record ends there.
 #
-# Expected: the ranges of -5, -2, -6, 3, -8 N·m hold the swing of 11 N·m from 3 to -8, as rainflow 3.2.0 (ASTM E1049) counts
-# it, half. What happens: the greatest range is 8.94. Ranges come from closed loops alone: what is left is appended
-# to itself, and the join takes the first and last extreme away where they lie in one direction. With a return
+# Expected: the ranges of -5, -2, -6, 3, -8 N·m hold the swing of 11 N·m from 3 to -8, as rainflow 3.2.0 (ASTM E1049)
+# counts it, half. What happens: the greatest range is 8.94. Ranges come from closed loops alone: what is left is
+# appended to itself, and the join takes the first and last extreme away where they lie in one direction. With a return
 # to 0 as last sample it is 11.0. All values are put into 64 classes first, so that a swing of 7 N·m is 7.03.
 # For us: the loads of an actuator end where the recording ends; append the first value before you count.
 #

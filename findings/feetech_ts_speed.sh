@@ -3,9 +3,9 @@
 # feetech-servo-ts 1.0.0 (npm): a speed of 60 rpm is 538 for an STS3215, which turns at 7.9 rpm then.
 #
 # An STS3215 has its speed in counts per second, of 4096 a turn: 60 rpm are 4096. helpers.rpmToSpeed(60) is 538 and
-# speedToRpm(4096) 456 rpm, by the scale of another servo, of 1023 for 114 rpm; clampSpeed() ends at 1023, 15 rpm. A speed
-# back has its sign in bit 15, so that readStatus() gives -50 as 32818, and a load of -100, with its sign in bit 10, as
-# 1124. By the README degrees go from 0 to 300; they go from 0 to 360. A port answers here as a servo does.
+# speedToRpm(4096) 456 rpm, by the scale of another servo, of 1023 for 114 rpm; clampSpeed() ends at 1023, 15 rpm. A
+# speed back has its sign in bit 15, so that readStatus() gives -50 as 32818, and a load of -100, with its sign in bit
+# 10, as 1124. By the README degrees go from 0 to 300; they go from 0 to 360. A port answers here as a servo does.
 # For us: take the raw speed by 2 π / 4096 rad/s.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

@@ -1,11 +1,12 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# fili 2.0.3 (npm): a shaft that stands at 100 rad is at 98.56 rad behind an FIR low-pass of order 10, and at 96.44 rad at order 4.
+# fili 2.0.3 (npm): a shaft that stands at 100 rad is at 98.56 rad behind an FIR low-pass of order 10, and at 96.44 rad
+# at order 4.
 #
-# The coefficients of FirCoeffs().lowpass() have a sum of 1. Expected of an FirFilter with them: a constant angle comes out as it
-# is once the filter is full. What happens: the last coefficient is never applied, as the memory of the filter has one value
-# less than it has coefficients. An angle is too small by the part of this coefficient, and a high-pass of order 10 passes
-# 1.44 rad of a constant 100 rad. responsePoint() leaves it out as well, so that it shows the same.
+# The coefficients of FirCoeffs().lowpass() have a sum of 1. Expected of an FirFilter with them: a constant angle comes
+# out as it is once the filter is full. What happens: the last coefficient is never applied, as the memory of the filter
+# has one value less than it has coefficients. An angle is too small by the part of this coefficient, and a high-pass of
+# order 10 passes 1.44 rad of a constant 100 rad. responsePoint() leaves it out as well, so that it shows the same.
 # For us: append a coefficient of 0 to those of the filter. An IirFilter of CalcCascades is right.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

@@ -3,9 +3,9 @@
 # filterpy 2.0.0: a Kalman filter of two joints takes the sum of their angles as each encoder's reading.
 #
 # Expected of kinematic_kf(dim=2, dim_z=2): each of the two measurements is one position. What happens: both rows of H
-# measure the sum of both positions, so that joints at 1 and 3 rad are both estimated at 1.0 rad, without a warning. Its Q is
-# the identity for every time step, not the white noise of Q_discrete_white_noise, a thousandth of which is meant at 1 kHz:
-# the velocity of an encoder at rest is as noisy as a difference of two readings.
+# measure the sum of both positions, so that joints at 1 and 3 rad are both estimated at 1.0 rad, without a warning. Its
+# Q is the identity for every time step, not the white noise of Q_discrete_white_noise, a thousandth of which is meant
+# at 1 kHz: the velocity of an encoder at rest is as noisy as a difference of two readings.
 # For us: make a filter of dim=1 for each joint, and set its Q.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

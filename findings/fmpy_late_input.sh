@@ -2,10 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # FMPy 0.3.32: the result of an FMU for co-simulation has its inputs and outputs a step late.
 #
-# A gear divides the angle of its motor by 20; the motor moves evenly by 100 rad/s, and is given as input at every 0.01 s.
-# Expected: in the row at 0.1 s the motor is at 10 rad, and the output, if at all, a step late. What happens: the motor itself
-# is at 9 rad in that row, and the output at 0.45 rad. Each row is recorded before the input of its time is applied. So the
-# two columns fit each other, and neither fits the time: an error of 1 rad at 100 rad/s, more with a longer interval.
+# A gear divides the angle of its motor by 20; the motor moves evenly by 100 rad/s, and is given as input at every 0.01
+# s. Expected: in the row at 0.1 s the motor is at 10 rad, and the output, if at all, a step late. What happens: the
+# motor itself is at 9 rad in that row, and the output at 0.45 rad. Each row is recorded before the input of its time is
+# applied. So the two columns fit each other, and neither fits the time: an error of 1 rad at 100 rad/s, more with a
+# longer interval.
 # For us: compare an output of such an FMU with the input of the row before, by its own times, not with the column.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

@@ -3,12 +3,12 @@
 # forge-robotics 0.2.0: of a joint that rests for 6 of 10 s, the static share is 60 % where it rests at 0 rad, and 0 %
 # at 1 rad.
 #
-# Expected of its "static detection", said to be the share of time in which the robot is not moving: 0.6 in each of three recordings of a
-# joint and its goal that rest for 6 of 10 s. What happens: 0.6 where it rests at 0 rad, and 0 where it rests at 1 rad, before or after
-# the motion. The size of the goal is compared with zero, not its change. The share of dead actions, said to be zero or constant ones,
-# is 0.6 if the joint rests first, and 0 if it rests last: only what equals the first goal counts as constant. And `forge convert` from
-# mcap to mcap sends positions through a float32, by default: a joint that turns from 100000.003 rad at 1 mrad/s stands for seconds and
-# then jumps by 7.8 mrad.
+# Expected of its "static detection", said to be the share of time in which the robot is not moving: 0.6 in each of
+# three recordings of a joint and its goal that rest for 6 of 10 s. What happens: 0.6 where it rests at 0 rad, and 0
+# where it rests at 1 rad, before or after the motion. The size of the goal is compared with zero, not its change. The
+# share of dead actions, said to be zero or constant ones, is 0.6 if the joint rests first, and 0 if it rests last: only
+# what equals the first goal counts as constant. And `forge convert` from mcap to mcap sends positions through a
+# float32, by default: a joint that turns from 100000.003 rad at 1 mrad/s stands for seconds and then jumps by 7.8 mrad.
 # For us: find rests from the differences of the angles; give `dtype: float64` for multi-turn joints.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -5,7 +5,8 @@
 # ROS has no negative nanoseconds: -0.5 s are -1 s and 500000000 ns. Expected of fromSec(-0.5): that. What happens:
 # fromSec() and fromMillis() give 0 s and -500000000 ns, which toSec() takes back, but the writer of messages puts into
 # unsigned 32 bits: the reader gets 0 s and 3794967296 ns. Neither raises an error. subtract() has the form of ROS.
-# For us: take negative durations from subtract(), or write Math.floor(x) as the seconds and the rest as the nanoseconds.
+# For us: take negative durations from subtract(), or write Math.floor(x) as the seconds and the rest as the
+# nanoseconds.
 #
 # Exit code 0: still so. Needs node; installs the versions into a temporary folder.
 set -eu

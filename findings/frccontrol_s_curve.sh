@@ -2,10 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # frccontrol 2026.20: a short move of limited jerk to 0.3 rad ends at 0.22 rad, and one to 0.05 rad is an error.
 #
-# generate_s_curve_profile() has limits of 1 rad/s and 2 rad/s², with 0.2 s to the greatest acceleration. Expected: it ends
-# at its goal. What happens: where the greatest velocity is not reached, the move is cut short: to 0.22 rad of 0.3, 0.36 of
-# 0.45. A goal below 0.06 rad is a ValueError of math.sqrt(). A goal of 1 rad, which reaches 1 rad/s, ends at 1 rad; ruckig
-# 0.19.4 reaches all four.
+# generate_s_curve_profile() has limits of 1 rad/s and 2 rad/s², with 0.2 s to the greatest acceleration. Expected: it
+# ends at its goal. What happens: where the greatest velocity is not reached, the move is cut short: to 0.22 rad of 0.3,
+# 0.36 of 0.45. A goal below 0.06 rad is a ValueError of math.sqrt(). A goal of 1 rad, which reaches 1 rad/s, ends at 1
+# rad; ruckig 0.19.4 reaches all four.
 # For us: plan short moves of limited jerk with ruckig, and check the last position of a profile.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -2,11 +2,13 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # py_gearworks 0.0.24: a gear pair without backlash has a backlash of 0.42 mm.
 #
-# calc_involute_mesh_distance() gives the distance of the axes for a backlash, and backlash_from_ax_distance() is said to be its
-# inverse. Two gears of module 1 with 20 and 40 teeth, at 20°, have 30 mm and no backlash, 30.1436 mm and 0.1 mm of it: the
-# first agrees with the textbook to 1e-9 mm. What happens: the second gives 0.42 mm and 0.52 mm, as one of its terms is
-# taken once instead of twice. It wants the angles at the base circle with the other sign, too; with the same, it gives 4.2 mm.
-# For us: backlash along the line of action is 2 (r1 + r2) (inv a - inv 20°), with cos a = (r1 + r2) / distance, r at the base.
+# calc_involute_mesh_distance() gives the distance of the axes for a backlash, and backlash_from_ax_distance() is said
+# to be its inverse. Two gears of module 1 with 20 and 40 teeth, at 20°, have 30 mm and no backlash, 30.1436 mm and 0.1
+# mm of it: the first agrees with the textbook to 1e-9 mm. What happens: the second gives 0.42 mm and 0.52 mm, as one of
+# its terms is taken once instead of twice. It wants the angles at the base circle with the other sign, too; with the
+# same, it gives 4.2 mm.
+# For us: backlash along the line of action is 2 (r1 + r2) (inv a - inv 20°), with cos a = (r1 + r2) / distance, r at
+# the base.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
 set -eu

@@ -2,9 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # py_gearworks 0.0.24: the planets of a planetary gear turn in the wrong direction.
 #
-# A sun of 20 teeth, planets of 20 and a ring of 60; the sun turns at 1, the carrier is fixed. Expected of get_ratio(): planets
-# at -1, as two equal gears in mesh. What happens: they are at 1/3, the mean of the sun's and the ring's speed, whatever
-# their teeth; with a fixed ring at 1/2 instead of -1/2. The sun, the ring and the carrier are right in all cases.
+# A sun of 20 teeth, planets of 20 and a ring of 60; the sun turns at 1, the carrier is fixed. Expected of get_ratio():
+# planets at -1, as two equal gears in mesh. What happens: they are at 1/3, the mean of the sun's and the ring's speed,
+# whatever their teeth; with a fixed ring at 1/2 instead of -1/2. The sun, the ring and the carrier are right in all
+# cases.
 # For us: compute a planet, and the speed of its bearing, from carrier - (sun - carrier) * n_sun / n_planet.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

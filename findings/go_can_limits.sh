@@ -1,10 +1,12 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# go.einride.tech/can 0.17.0: a position beyond [min|max] of a .dbc is read as the limit, and a float of 1.5 as 1069547520.
+# go.einride.tech/can 0.17.0: a position beyond [min|max] of a .dbc is read as the limit, and a float of 1.5 as
+# 1069547520.
 #
-# A signal of 16 bits with a factor of 0.001 has the range [-12.5|12.5] in its .dbc; the shaft has gone on to 20 rad. Expected:
-# UnmarshalPhysical() gives 20, or an error. What happens: it gives 12.5, as if the shaft stood still; that the range is [0|0]
-# is the only way to have no limit. A signal of type float gives the whole number that has its bits; UnmarshalFloat() is right.
+# A signal of 16 bits with a factor of 0.001 has the range [-12.5|12.5] in its .dbc; the shaft has gone on to 20 rad.
+# Expected: UnmarshalPhysical() gives 20, or an error. What happens: it gives 12.5, as if the shaft stood still; that
+# the range is [0|0] is the only way to have no limit. A signal of type float gives the whole number that has its bits;
+# UnmarshalFloat() is right.
 # For us: cantools and gearkin decode all values: the range of a .dbc is a note there. For Go set it to [0|0].
 #
 # Exit code 0: still so. Needs go; installs the version into a temporary folder.

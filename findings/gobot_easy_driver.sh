@@ -2,11 +2,12 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # gobot.io/x/gobot/v2 2.5.0 (Go): a move of -100 steps goes forward and is counted back, and 360 moves of 1° are 316°.
 #
-# An EasyDriver has a direction pin, 0 for forward. Expected of Move(-100): the pin is set to 1 for 100 steps. What happens: only
-# the counter knows of the sign; the pin keeps its level, the motor turns forward, and CurrentStep() is -100. After
-# SetDirection("backward") and Move(100) the motor turns back and is counted forward. Only Run() does both alike. Expected of 360
-# moves of 1° by a StepperDriver with 2048 steps per turn: one turn. What happens: each is cut off to 5 of its 5.69 steps, so that they
-# make 1800 steps, 316°; with 200 steps per turn each is an error, as 0.56 steps are none.
+# An EasyDriver has a direction pin, 0 for forward. Expected of Move(-100): the pin is set to 1 for 100 steps. What
+# happens: only the counter knows of the sign; the pin keeps its level, the motor turns forward, and CurrentStep() is
+# -100. After SetDirection("backward") and Move(100) the motor turns back and is counted forward. Only Run() does both
+# alike. Expected of 360 moves of 1° by a StepperDriver with 2048 steps per turn: one turn. What happens: each is cut
+# off to 5 of its 5.69 steps, so that they make 1800 steps, 316°; with 200 steps per turn each is an error, as 0.56
+# steps are none.
 # For us: call SetDirection() before each Move() of positive steps, and count yourself; give angles as steps.
 #
 # Exit code 0: still so. Needs go; installs the versions into a temporary folder.

@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# hampel 1.0.2: a jump in the first or last half window of a recording is not an outlier, and one count of a still encoder is.
+# hampel 1.0.2: a jump in the first or last half window of a recording is not an outlier, and one count of a still
+# encoder is.
 #
-# Expected: of three equal jumps of an angle, one in the middle and one each next to the ends, all are found, as the window is
-# cut short at the ends, or none that cannot be judged is called sound. What happens: samples in the first and last half
-# window are never judged and come back as they are, so that the newest sample of a running recording never is. All values
-# come back in 32 bits: of counts beyond 2^24 each second one is another one. Where more than half of a window is equal, as at
-# an encoder that stands, the deviation is 0 and a step of one count is an outlier, however large n_sigma is.
+# Expected: of three equal jumps of an angle, one in the middle and one each next to the ends, all are found, as the
+# window is cut short at the ends, or none that cannot be judged is called sound. What happens: samples in the first and
+# last half window are never judged and come back as they are, so that the newest sample of a running recording never
+# is. All values come back in 32 bits: of counts beyond 2^24 each second one is another one. Where more than half of a
+# window is equal, as at an encoder that stands, the deviation is 0 and a step of one count is an outlier, however large
+# n_sigma is.
 # For us: repeat the end samples half a window before and after; compare with the resolution too.
 #
 # Exit code 0: still so. Needs a C compiler; installs the version into a temporary folder.

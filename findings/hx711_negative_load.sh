@@ -2,9 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # adafruit-circuitpython-hx711 1.1.2: a load of -6 is read as 4294967290.
 #
-# The HX711 converts the bridge of a load cell or a torque sensor to 24 bits with a sign. Expected of read(): -6 where the torque
-# has turned round. What happens: the upper eight bits are filled with ones, as for a signed integer of 32 bits; but the integers
-# of Python have no fixed size, so that no value is ever negative. A tare is subtracted from that number.
+# The HX711 converts the bridge of a load cell or a torque sensor to 24 bits with a sign. Expected of read(): -6 where
+# the torque has turned round. What happens: the upper eight bits are filled with ones, as for a signed integer of 32
+# bits; but the integers of Python have no fixed size, so that no value is ever negative. A tare is subtracted from that
+# number.
 # For us: subtract 2**32 from values of 2**31 and more, before the tare.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# hysteresis 2.0.5: a spring of 100 N·m/rad has a stiffness of -10 at its last point, and each half cycle loses a part of its energy.
+# hysteresis 2.0.5: a spring of 100 N·m/rad has a stiffness of -10 at its last point, and each half cycle loses a part
+# of its energy.
 #
-# A gear is wound up and let back; its torque over its angle is a curve of the class Hysteresis. Expected: a linear spring has a
-# slope of 100 N·m/rad at each point. What happens: where it is wound up in steps of 10 mrad and let back in steps of 1 mrad,
-# the last slope is -10, as the last difference of torque is divided by the first step of the angle. CycleAreas, the energies
-# of the half cycles, leave out half of the last step of each: 1 N·m over 0.2 rad in 10 steps is 0.19 J instead of
-# 0.2 J, and the four do not sum up to getNetArea(). setCycleNetAreas() is an error unless each cycle had its setArea().
+# A gear is wound up and let back; its torque over its angle is a curve of the class Hysteresis. Expected: a linear
+# spring has a slope of 100 N·m/rad at each point. What happens: where it is wound up in steps of 10 mrad and let back
+# in steps of 1 mrad, the last slope is -10, as the last difference of torque is divided by the first step of the angle.
+# CycleAreas, the energies of the half cycles, leave out half of the last step of each: 1 N·m over 0.2 rad in 10 steps
+# is 0.19 J instead of 0.2 J, and the four do not sum up to getNetArea(). setCycleNetAreas() is an error unless each
+# cycle had its setArea().
 # For us: leave the last slope out, and sum up the energy with cycle.getNetArea().
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

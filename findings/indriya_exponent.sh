@@ -1,12 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# indriya 2.2 (Java): "1e-3 rad" is 1 rad and "1,5 rad" is 15 rad, without an error, and 20 °C plus a rise of 5 °C is 298 °C.
+# indriya 2.2 (Java): "1e-3 rad" is 1 rad and "1,5 rad" is 15 rad, without an error, and 20 °C plus a rise of 5 °C is
+# 298 °C.
 #
-# The reference implementation of Java's units. Expected of Quantities.getQuantity("1e-3 rad"), as C and Python write it: 0.001 rad, or
-# an error. What happens: the number ends at the "e", and what follows up to the space is left out, so that any exponent is 10^0:
-# "1e-3 rad" is 1 rad and "2.5e3 rad/s" 2.5 rad/s. Only "1E-3 rad" is right. A comma is left out in the number: "1,5 rad"
-# is 15 rad. Temperatures are added as absolute ones: 20 °C and a rise of 5 °C are 298.15 °C, the double of 20 °C is
-# 313.15 °C; the sum with 5 K is 25 °C.
+# The reference implementation of Java's units. Expected of Quantities.getQuantity("1e-3 rad"), as C and Python write
+# it: 0.001 rad, or an error. What happens: the number ends at the "e", and what follows up to the space is left out, so
+# that any exponent is 10^0: "1e-3 rad" is 1 rad and "2.5e3 rad/s" 2.5 rad/s. Only "1E-3 rad" is right. A comma is left
+# out in the number: "1,5 rad" is 15 rad. Temperatures are added as absolute ones: 20 °C and a rise of 5 °C are 298.15
+# °C, the double of 20 °C is 313.15 °C; the sum with 5 K is 25 °C.
 # For us: write limits in a file of a Java tool without an exponent; give a rise of temperature in K.
 #
 # Exit code 0: still so. Needs a JDK and mvn; installs the versions into a temporary folder.

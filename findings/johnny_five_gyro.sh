@@ -2,10 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # johnny-five 2.1.0: with an MPU-6050, a turn of an arm by 91° is found as 48°.
 #
-# The rate of a Gyro is right, 90° a second. Its angle, as in gyro.yaw.angle, is the sum of the rates divided by 100, whatever the
-# time between two samples. An Arduino with Firmata sends them each 19 ms, unless samplingInterval() is changed, so that
-# the angle is 0.53 of the real one; at 20 ms half of it. Only at 10 ms is it right.
-# An IO plugin here gives the samples of a board at 19 ms.
+# The rate of a Gyro is right, 90° a second. Its angle, as in gyro.yaw.angle, is the sum of the rates divided by 100,
+# whatever the time between two samples. An Arduino with Firmata sends them each 19 ms, unless samplingInterval() is
+# changed, so that the angle is 0.53 of the real one; at 20 ms half of it. Only at 10 ms is it right. An IO plugin here
+# gives the samples of a board at 19 ms.
 # For us: a link whose turn is found by it has a gear ratio of 0.53; sum rates up by their own times.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

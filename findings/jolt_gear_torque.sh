@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# jolt-physics 1.1.0 (npm): a gear of 20 divides the speed but not the torque, and one whose output turns the same way is at NaN.
+# jolt-physics 1.1.0 (npm): a gear of 20 divides the speed but not the torque, and one whose output turns the same way
+# is at NaN.
 #
-# A GearConstraint joins a rotor and an output of 0.1 kg·m² each, with 1 and 20 teeth; its documentation has the Jacobian (a, r b).
-# Expected: 1 N·m at the output turns the rotor by -0.25 rad in a second, and 0.05 N·m at the rotor hold it. What happens: -4.77 rad,
-# as the same torque acts on both; 1 N·m at the rotor holds it. Expected of a ratio of -20, "Gear1Rotation = -ratio * Gear2Rotation",
-# and 0.1 N·m at the rotor: both turn the same way. What happens: both are at NaN. Speeds and a ratio of 1 are right, and the
-# position motor of a hinge that is sent to 4 rad turns back to -2.28 rad.
+# A GearConstraint joins a rotor and an output of 0.1 kg·m² each, with 1 and 20 teeth; its documentation has the
+# Jacobian (a, r b). Expected: 1 N·m at the output turns the rotor by -0.25 rad in a second, and 0.05 N·m at the rotor
+# hold it. What happens: -4.77 rad, as the same torque acts on both; 1 N·m at the rotor holds it. Expected of a ratio of
+# -20, "Gear1Rotation = -ratio * Gear2Rotation", and 0.1 N·m at the rotor: both turn the same way. What happens: both
+# are at NaN. Speeds and a ratio of 1 are right, and the position motor of a hinge that is sent to 4 rad turns back to
+# -2.28 rad.
 # For us: simulate a gear as one body with the reflected inertia and the reflected torque.
 #
 # Exit code 0: still so. Needs node; installs the version into a temporary folder.

@@ -2,10 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # k 0.32.0 (Rust): a mimic follows its motor, but the Jacobian of the arm does not know of it.
 #
-# A tip mimics its motor by -0.5. Expected: one degree of freedom, and a tip that turns by 1 - 0.5 = 0.5 rad for each rad of
-# the motor. What happens: dof() is 2. set_joint_positions([0.4, 0]) rightly puts the tip at -0.2 and ignores the second
-# value; but jacobian() has a column for each of the two, and that of the motor is 1 rad for each rad. A speed or a torque
-# that is computed with it is wrong by a factor of 2 here.
+# A tip mimics its motor by -0.5. Expected: one degree of freedom, and a tip that turns by 1 - 0.5 = 0.5 rad for each
+# rad of the motor. What happens: dof() is 2. set_joint_positions([0.4, 0]) rightly puts the tip at -0.2 and ignores the
+# second value; but jacobian() has a column for each of the two, and that of the motor is 1 rad for each rad. A speed or
+# a torque that is computed with it is wrong by a factor of 2 here.
 # For us: multiply the Jacobian by the derivatives of all joints with respect to the motor, here (1, -0.5).
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

@@ -2,13 +2,14 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # kalbee 1.0.0: a shaft that turns at 1 rad/s is estimated at -2.1 rad/s after 10 s, and with two encoders at 0.5 rad/s.
 #
-# AsyncSensorBuffer takes measurements that come late or at several rates, around a filter "(e.g. KalmanFilter)". A shaft
-# starts at a known angle of 0 and turns at 1 rad/s; an ideal encoder is read at 100 Hz. Expected at any time: 1 rad/s.
-# What happens: it is right for 50 readings, its default capacity. From then on the oldest reading is dropped, but each
-# new one still starts from the first state, as if the shaft had been at 0 just before the 50 readings: 0.83 rad/s after
-# 1 s, 0.50 after 2 s and -2.14 after 10 s, with an uncertainty of 0.04. Where a second encoder is read at the same times,
-# the filter is advanced twice for each of them, and the speed is 0.5 rad/s; where one is read at 50 Hz, KalmanFilter
-# advances by the matrix for 10 ms all the same, and the speed is 2 rad/s, although the buffer gives it the time.
+# AsyncSensorBuffer takes measurements that come late or at several rates, around a filter "(e.g. KalmanFilter)". A
+# shaft starts at a known angle of 0 and turns at 1 rad/s; an ideal encoder is read at 100 Hz. Expected at any time: 1
+# rad/s. What happens: it is right for 50 readings, its default capacity. From then on the oldest reading is dropped,
+# but each new one still starts from the first state, as if the shaft had been at 0 just before the 50 readings: 0.83
+# rad/s after 1 s, 0.50 after 2 s and -2.14 after 10 s, with an uncertainty of 0.04. Where a second encoder is read at
+# the same times, the filter is advanced twice for each of them, and the speed is 0.5 rad/s; where one is read at 50 Hz,
+# KalmanFilter advances by the matrix for 10 ms all the same, and the speed is 2 rad/s, although the buffer gives it the
+# time.
 # For us: call predict(F=...) of the filter with the matrix for the time since the last reading, without this buffer.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -2,8 +2,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # lerobot 0.4.4: in degrees, a servo whose calibration reverses it is not reversed, and a turn has 360.09 degrees.
 #
-# The calibration of a Feetech servo has drive_mode 1, which reverses it, and the range 1000 to 3000. At a position of 2500
-# the bus reads -50 if it normalizes to ±100, which observes drive_mode, but +43.956 in degrees, where -43.945 is
+# The calibration of a Feetech servo has drive_mode 1, which reverses it, and the range 1000 to 3000. At a position of
+# 2500 the bus reads -50 if it normalizes to ±100, which observes drive_mode, but +43.956 in degrees, where -43.945 is
 # expected: drive_mode is ignored, and 4096 counts of a turn are divided by 4095. Beyond its range, at 3500, the
 # normalized position stays at -100, while that in degrees goes on. A pseudo-terminal answers here as a servo does.
 # For us: reverse such a joint after it is read; do not take a normalized position at ±100 for a standstill.

@@ -3,8 +3,8 @@
 # mcap-ros2-support 0.6.0: a JointState is written without its positions, or its nanoseconds, if a key has another name.
 #
 # Expected of a dict with a key that the message has not: an error, as rclpy and rosbags give. What happens: the key is
-# dropped, and the field that lacks is empty or 0. So positions (for position) are written as no position at all, and a stamp
-# of sec and nsec, as in Protobuf and ROS 1, has whole seconds: a thousand messages of 1 kHz with one stamp.
+# dropped, and the field that lacks is empty or 0. So positions (for position) are written as no position at all, and a
+# stamp of sec and nsec, as in Protobuf and ROS 1, has whole seconds: a thousand messages of 1 kHz with one stamp.
 # For us: such a rotor is rejected as without a position, or as duplicate; nanosec and position are the names.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# mdf4-rs 0.3.3 (Rust): merging makes 1500 of a position of 1.5 rad and times that go back, and a cut recording cannot be read.
+# mdf4-rs 0.3.3 (Rust): merging makes 1500 of a position of 1.5 rad and times that go back, and a cut recording cannot
+# be read.
 #
-# A channel has whole numbers with a factor of 0.001 and the unit rad. Expected after merge_files() of two recordings of 5 s: 10 values of
-# 1.500 to 1.504 rad at times that rise. What happens: of a channel only its bits and its name are kept, not its conversion and unit, so
-# that the values are 1500 to 1504 without a unit; the time is no longer marked as the time, and goes from 4 back to 0. Expected of
-# cut_mdf_by_time() from 1 to 3 s: three values. What happens: it reports success, but the new file points to where the conversion was in
-# the old one, and mdf4-rs itself refuses to open it.
+# A channel has whole numbers with a factor of 0.001 and the unit rad. Expected after merge_files() of two recordings of
+# 5 s: 10 values of 1.500 to 1.504 rad at times that rise. What happens: of a channel only its bits and its name are
+# kept, not its conversion and unit, so that the values are 1500 to 1504 without a unit; the time is no longer marked as
+# the time, and goes from 4 back to 0. Expected of cut_mdf_by_time() from 1 to 3 s: three values. What happens: it
+# reports success, but the new file points to where the conversion was in the old one, and mdf4-rs itself refuses to
+# open it.
 # For us: merge and cut recordings with another library, or give the recordings to gearkin one by one.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

@@ -1,11 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# mdfr 0.7.3: a reading that an .mf4 marks as invalid is an angle like any other, and joining puts numbers in rad under the unit deg.
+# mdfr 0.7.3: a reading that an .mf4 marks as invalid is an angle like any other, and joining puts numbers in rad under
+# the unit deg.
 #
-# An encoder gives 0 while it has a fault, and marks these samples as invalid. Expected: no value, as mf4-rs 3.7.0 gives nan of
-# the same file, or a mask. What happens: get_channel_data(), get_polars_series() and the exported CSV have 0, and nothing tells them
-# from readings. concat_mdf() of a recording in deg and one in rad, begun ten seconds later, appends the numbers in rad to those
-# in deg, under the unit deg, and lets them follow one sample after the last. It compares names alone, and returns no word.
+# An encoder gives 0 while it has a fault, and marks these samples as invalid. Expected: no value, as mf4-rs 3.7.0 gives
+# nan of the same file, or a mask. What happens: get_channel_data(), get_polars_series() and the exported CSV have 0,
+# and nothing tells them from readings. concat_mdf() of a recording in deg and one in rad, begun ten seconds later,
+# appends the numbers in rad to those in deg, under the unit deg, and lets them follow one sample after the last. It
+# compares names alone, and returns no word.
 # For us: gearkin leaves invalid samples out of an .mf4; give it the recordings one by one.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -2,10 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # melib 1.1.1: for a ball bearing with a thrust factor Y of 1.6, the limit e is found as 0.44 instead of 0.27.
 #
-# dgbbrtfacs() interpolates in a table of thrust factors of deep groove ball bearings. In the iteration that its documentation
-# describes, Y is given and e is sought. But Y falls in the table, while numpy.interp() needs rising values: between two
-# entries of the table it always gives the last one, e of 0.44 and T/C0 of 0.56. A Y of 1.6 has e of 0.27 and T/C0 of 0.08,
-# which the same function finds if T/C0 is given. Only at an entry, such as 1.55, is e right.
+# dgbbrtfacs() interpolates in a table of thrust factors of deep groove ball bearings. In the iteration that its
+# documentation describes, Y is given and e is sought. But Y falls in the table, while numpy.interp() needs rising
+# values: between two entries of the table it always gives the last one, e of 0.44 and T/C0 of 0.56. A Y of 1.6 has e of
+# 0.27 and T/C0 of 0.08, which the same function finds if T/C0 is given. Only at an entry, such as 1.55, is e right.
 # For us: `gearkin loads --cam-rating` needs no such factors, as the force on the cam is radial.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

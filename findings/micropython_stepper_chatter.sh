@@ -1,14 +1,16 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# micropython-stepper 1.0.3: a stepper that is sent to 10° steps to and fro for ever, and one that is set to 90° is at 0°.
+# micropython-stepper 1.0.3: a stepper that is sent to 10° steps to and fro for ever, and one that is set to 90° is at
+# 0°.
 #
-# 200 steps a turn make 5.56 steps of 10°. Expected of target_deg(10): the motor stops at 5 or 6 steps. What happens: the target
-# stays at 5.56, and as a motor is never there it makes one step on and one back at each tick of its timer, 1000 a second here.
-# So it is at each angle that is no whole number of steps; at 9° it stops. overwrite_pos_deg(90), which tells the motor after
-# homing where it stands, sets its position to 0, whatever is given.
+# 200 steps a turn make 5.56 steps of 10°. Expected of target_deg(10): the motor stops at 5 or 6 steps. What happens:
+# the target stays at 5.56, and as a motor is never there it makes one step on and one back at each tick of its timer,
+# 1000 a second here. So it is at each angle that is no whole number of steps; at 9° it stops. overwrite_pos_deg(90),
+# which tells the motor after homing where it stands, sets its position to 0, whatever is given.
 # For us: give target() a rounded number of steps, and keep the offset in the driver.
 #
-# The module runs in CPython with a `machine` that counts pulses. Exit code 0: still so. Installs it into a temporary folder.
+# The module runs in CPython with a `machine` that counts pulses. Exit code 0: still so. Installs it into a temporary
+# folder.
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

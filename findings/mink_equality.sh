@@ -2,10 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # mink 1.3.0: the output of a gear turns in its inverse kinematics while its rotor stands still.
 #
-# Expected: the joint equality of the MJCF, out = -rotor / 19, is kept, as its simulation keeps it. What happens: solve_ik()
-# knows nothing of equalities: the output turns to its target of 0.2 rad, the rotor stays at 0, without a warning. With
-# an EqualityConstraintTask among the tasks, the rotor gets to -3.8 rad; but where a VelocityLimit of 1 rad/s holds
-# it, the output of such a gear goes 56 % further than the rotor allows.
+# Expected: the joint equality of the MJCF, out = -rotor / 19, is kept, as its simulation keeps it. What happens:
+# solve_ik() knows nothing of equalities: the output turns to its target of 0.2 rad, the rotor stays at 0, without a
+# warning. With an EqualityConstraintTask among the tasks, the rotor gets to -3.8 rad; but where a VelocityLimit of 1
+# rad/s holds it, the output of such a gear goes 56 % further than the rotor allows.
 # For us: give the EqualityConstraintTask in constraints=, where the ratio is kept under a limit too.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

@@ -2,9 +2,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # mjcf-urdf-simple-converter 0.7.3: a joint without limits can no longer move in the URDF.
 #
-# A hinge without a range turns freely in MuJoCo. The converter writes it as revolute with limits of 0.0 and 0.0, where URDF
-# has continuous joints. Pinocchio 4.1.0, with which angles are drawn within the limits, finds 0 alone. A hinge with a range of
-# ±90° is right; damping, friction and couplings of joints (equality) are left out, without a word.
+# A hinge without a range turns freely in MuJoCo. The converter writes it as revolute with limits of 0.0 and 0.0, where
+# URDF has continuous joints. Pinocchio 4.1.0, with which angles are drawn within the limits, finds 0 alone. A hinge
+# with a range of ±90° is right; damping, friction and couplings of joints (equality) are left out, without a word.
 # For us: take the URDF from `gearkin urdf`, not from a conversion of `gearkin mjcf`.
 #
 # Exit code 0: still so. Installs the packages into a temporary folder.

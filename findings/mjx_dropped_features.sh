@@ -1,11 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# mujoco-mjx 3.17.0: an MJCF's armature of a tendon has next to no effect, and the delay of a motor none, without an exception.
+# mujoco-mjx 3.17.0: an MJCF's armature of a tendon has next to no effect, and the delay of a motor none, without an
+# exception.
 #
-# "MJX will raise an exception if asked to copy an mjModel that references unsupported features", as it does for a sensor of a stop.
-# Expected: an exception, or the motion that MuJoCo 3.17.0 computes with the same model. What happens where an arm falls for 0.5 s:
-# with an armature of 1 kg·m² on the tendon that couples it with a rotor it turns by 2.589 rad (by 2.594 without it) instead of by
-# 0.28 rad; with a motor whose delay is 0.1 s by 3.50 rad, as without it, instead of by 3.27 rad. The same armature at the joint is right.
+# "MJX will raise an exception if asked to copy an mjModel that references unsupported features", as it does for a
+# sensor of a stop. Expected: an exception, or the motion that MuJoCo 3.17.0 computes with the same model. What happens
+# where an arm falls for 0.5 s: with an armature of 1 kg·m² on the tendon that couples it with a rotor it turns by 2.589
+# rad (by 2.594 without it) instead of by 0.28 rad; with a motor whose delay is 0.1 s by 3.50 rad, as without it,
+# instead of by 3.27 rad. The same armature at the joint is right.
 # For us: simulate such a model in MuJoCo, or give the inertia as armature of the joints.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -1,11 +1,12 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# mujoco-mjx 3.17.0: a torque of 10 N·m at a joint is 0 in each sensor of force, torque and acceleration, until the model has a stop.
+# mujoco-mjx 3.17.0: a torque of 10 N·m at a joint is 0 in each sensor of force, torque and acceleration, until the
+# model has a stop.
 #
 # A motor with a gear of 10 and a control of 1 drives a bar. Expected: jointactuatorfrc, actuatorfrc, torque, force and
 # accelerometer read in MJX what they read in MuJoCo, as they do for jointpos and jointvel: 10 N·m, 1, and so on. What
-# happens: all of these are 0, without a warning, wherever a model has no constraint at all. With a range, a friction or an
-# equality anywhere in the model, even one that is not reached, all are right.
+# happens: all of these are 0, without a warning, wherever a model has no constraint at all. With a range, a friction or
+# an equality anywhere in the model, even one that is not reached, all are right.
 # For us: give a joint a wide range if the sensors of a simulated actuator are recorded.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -1,12 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# mks-servo 1.0.0: a stepper that is to stay at its soft origin of 90° turns by -180°, and one that is to turn by 1° by -179°.
+# mks-servo 1.0.0: a stepper that is to stay at its soft origin of 90° turns by -180°, and one that is to turn by 1° by
+# -179°.
 #
-# set_origin(soft=True) keeps the encoder's counts as the zero without writing to the drive. Expected: read() is 0 there, and
-# write(0) leaves the motor where it is. What happens: read() subtracts the counts of the origin, and write() subtracts them
-# too instead of adding them, so that the shaft turns back by twice the origin. move_relative() does the same, and limits of
-# ±5° do not stop it, as they are compared with the angle that was asked for. set_origin() without soft is right, since the
-# origin is then 0. A bus answers here as a drive does that is at its goal at once.
+# set_origin(soft=True) keeps the encoder's counts as the zero without writing to the drive. Expected: read() is 0
+# there, and write(0) leaves the motor where it is. What happens: read() subtracts the counts of the origin, and write()
+# subtracts them too instead of adding them, so that the shaft turns back by twice the origin. move_relative() does the
+# same, and limits of ±5° do not stop it, as they are compared with the angle that was asked for. set_origin() without
+# soft is right, since the origin is then 0. A bus answers here as a drive does that is at its goal at once.
 # For us: use set_origin() without soft=True, and keep an offset of your own in degrees.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

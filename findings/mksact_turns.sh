@@ -2,9 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # mksact 0.2.0: a closed-loop stepper that is to turn to 600 turns is sent to -424 turns.
 #
-# Expected: 600 turns, or an error. What happens: the target is cut to the 24 bits of the command, of 16384 counts a turn, so it
-# wraps beyond ±512 turns without an error; before a gear of 19 that is less than 27 turns of its output. The position
-# is read in 48 bits, so that move_rel() gets there by single turns: the move from 511 turns to 513 is one back by 1022.
+# Expected: 600 turns, or an error. What happens: the target is cut to the 24 bits of the command, of 16384 counts a
+# turn, so it wraps beyond ±512 turns without an error; before a gear of 19 that is less than 27 turns of its output.
+# The position is read in 48 bits, so that move_rel() gets there by single turns: the move from 511 turns to 513 is one
+# back by 1022.
 # For us: set min_pos and max_pos within ±512 turns.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

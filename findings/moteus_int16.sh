@@ -2,9 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # moteus 1.1.1: in 16 bits, a command to turn to 5 turns is sent as 3.2767 turns, without an error.
 #
-# The resolution INT16, which saves bytes on the bus, has steps of 0.1 mrev for a position and of 0.25 mrev/s for a velocity.
-# A position beyond ±3.2767 turns, which a rotor before a gear of 19 reaches in a sixth of a turn of its output, and
-# a velocity beyond ±8.19 rev/s are cut to these. A controller's answer that is read in 16 bits ends there as well.
+# The resolution INT16, which saves bytes on the bus, has steps of 0.1 mrev for a position and of 0.25 mrev/s for a
+# velocity. A position beyond ±3.2767 turns, which a rotor before a gear of 19 reaches in a sixth of a turn of its
+# output, and a velocity beyond ±8.19 rev/s are cut to these. A controller's answer that is read in 16 bits ends there
+# as well.
 # For us: keep F32 or INT32 for the position and the velocity of a rotor; INT16 is enough for torques.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

@@ -1,15 +1,17 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# motor-python 0.0.11: the low-pass of a joint at 1 rad gives 0 as its position, or 1.37 rad, and its backward Euler diverges.
+# motor-python 0.0.11: the low-pass of a joint at 1 rad gives 0 as its position, or 1.37 rad, and its backward Euler
+# diverges.
 #
-# SecondOrderLowPassFilter.run() is to give the filtered signal and its derivative. Expected for a joint that goes to 1 rad: 1
-# rad, then 0 rad/s. What happens: run() gives them the other way round, so that the position peaks at 7.3 "rad" and ends
-# at 0; step() is right. With initial_condition 1, a joint that stands at 1 rad is filtered as up to 1.37 rad, as the state
-# of the derivative begins at 1 too, which is 20 rad/s here. Backward Euler, said to be more stable, and the trapezoidal
-# rule take the slope of the old state: at 5 Hz they diverge, where the methods of these names are stable at any rate.
-# The integral of PIDController is cut off where it is used, not where it is kept: after 60 s at a stop, with a gain of 1, the
-# output pushes on for 53 s with an error of the same size in the other direction.
-# For us: swap what run() gives, begin at 0 and subtract the first position, sample fast, and reset() the PID after a stop.
+# SecondOrderLowPassFilter.run() is to give the filtered signal and its derivative. Expected for a joint that goes to 1
+# rad: 1 rad, then 0 rad/s. What happens: run() gives them the other way round, so that the position peaks at 7.3 "rad"
+# and ends at 0; step() is right. With initial_condition 1, a joint that stands at 1 rad is filtered as up to 1.37 rad,
+# as the state of the derivative begins at 1 too, which is 20 rad/s here. Backward Euler, said to be more stable, and
+# the trapezoidal rule take the slope of the old state: at 5 Hz they diverge, where the methods of these names are
+# stable at any rate. The integral of PIDController is cut off where it is used, not where it is kept: after 60 s at a
+# stop, with a gain of 1, the output pushes on for 53 s with an error of the same size in the other direction.
+# For us: swap what run() gives, begin at 0 and subtract the first position, sample fast, and reset() the PID after a
+# stop.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
 set -eu

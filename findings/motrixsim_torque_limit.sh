@@ -2,9 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # MotrixSim 0.10.1: the torque limit of a joint in an MJCF has no effect, and no warning says so.
 #
-# actuatorfrcrange="-0.005 0.005" limits what all motors together give a joint. With a command of 0.01 N·m, a rotor of 0.01 kg·m²
-# has 0.5 rad/s after a second in MuJoCo 4.0.0, and 1 rad/s in MotrixSim, which warns of other elements that it does
-# not know, such as a tendon. Its forcerange and ctrlrange of a motor, friction, armature and joint equality are right.
+# actuatorfrcrange="-0.005 0.005" limits what all motors together give a joint. With a command of 0.01 N·m, a rotor of
+# 0.01 kg·m² has 0.5 rad/s after a second in MuJoCo 4.0.0, and 1 rad/s in MotrixSim, which warns of other elements that
+# it does not know, such as a tendon. Its forcerange and ctrlrange of a motor, friction, armature and joint equality are
+# right.
 # For us: give the limit as forcerange of the motor: that of the joint divided by the gear.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -1,13 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# motulator 0.5.0: the encoder of a motor that drives its load over an elastic shaft stays at 0, and the drive cannot run.
+# motulator 0.5.0: the encoder of a motor that drives its load over an elastic shaft stays at 0, and the drive cannot
+# run.
 #
-# TwoMassMechanicalSystem is a rotor and a load with a stiffness and damping between them. Expected: the rotor's angle is
-# the integral of its speed, as in StiffMechanicalSystem. What happens: the angle is kept as a complex number of length 1,
-# which begins at 0 here and stays there: theta_M is 0 where the rotor has turned by 10.76 rad. A control with an encoder
-# (sensorless=False) that is to turn at 20.94 rad/s then does not: the rotor turns by 0.59 rad instead of 10.69 rad in 0.6
-# s. meas_load_position() is an AttributeError. 0.5.0 is what pip installs with Python 3.11; the state of 0.18.0, which
-# needs Python 3.12, is the angle itself.
+# TwoMassMechanicalSystem is a rotor and a load with a stiffness and damping between them. Expected: the rotor's angle
+# is the integral of its speed, as in StiffMechanicalSystem. What happens: the angle is kept as a complex number of
+# length 1, which begins at 0 here and stays there: theta_M is 0 where the rotor has turned by 10.76 rad. A control with
+# an encoder (sensorless=False) that is to turn at 20.94 rad/s then does not: the rotor turns by 0.59 rad instead of
+# 10.69 rad in 0.6 s. meas_load_position() is an AttributeError. 0.5.0 is what pip installs with Python 3.11; the state
+# of 0.18.0, which needs Python 3.12, is the angle itself.
 # For us: set mechanics.state.exp_j_theta_M to complex(1) before the simulation; then all is right.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -3,10 +3,10 @@
 # mt6701 0.2.5 (Rust): an encoder that turns by a quarter turn between two readings loses a turn.
 #
 # Expected: get_position() counts turns as long as the shaft moves by less than half a turn between two updates. What
-# happens: a wrap is seen only if the angle jumps by more than 0.8 turns, so that a step of 0.2 to 0.8 turns over the zero is
-# taken as a motion back: from 0.9 to 0.15 turns is -0.75 instead of +0.25. The first reading is compared with 0: a shaft
-# that stands at 0.9 turns begins at -0.1. The position, an f64, is computed in f32: after 5000 turns it has steps of 5
-# counts of the encoder. A bus answers here as an encoder does.
+# happens: a wrap is seen only if the angle jumps by more than 0.8 turns, so that a step of 0.2 to 0.8 turns over the
+# zero is taken as a motion back: from 0.9 to 0.15 turns is -0.75 instead of +0.25. The first reading is compared with
+# 0: a shaft that stands at 0.9 turns begins at -0.1. The position, an f64, is computed in f32: after 5000 turns it has
+# steps of 5 counts of the encoder. A bus answers here as an encoder does.
 # For us: unwrap the raw angle yourself, in whole counts, and read at least every 0.2 turns.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

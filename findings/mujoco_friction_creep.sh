@@ -2,9 +2,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # MuJoCo 4.0.0: a joint with a friction of 1 N·m turns by 30° a second under 0.5 N·m.
 #
-# frictionloss is a soft constraint: below the friction a joint does not stick, but creeps with a constant speed that grows
-# with the torque and falls with the inertia. A rotor of 1e-3 kg·m² with a frictionloss of 1 N·m turns by 0.52 rad/s
-# under 0.5 N·m, one of 1e-2 kg·m² by 0.05 rad/s. Above the friction it is right. A gear that holds its load by
+# frictionloss is a soft constraint: below the friction a joint does not stick, but creeps with a constant speed that
+# grows with the torque and falls with the inertia. A rotor of 1e-3 kg·m² with a frictionloss of 1 N·m turns by 0.52
+# rad/s under 0.5 N·m, one of 1e-2 kg·m² by 0.05 rad/s. Above the friction it is right. A gear that holds its load by
 # friction therefore sinks in the simulation. With solreffriction="0.002 1" the speed is a tenth.
 # For us: compare a creep with another solreffriction before it is called one of the mechanism.
 #

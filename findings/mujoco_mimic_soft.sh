@@ -2,9 +2,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # MuJoCo 4.0.0: a mimic joint gives way under load, by 1.05 rad at a rotor that bears 0.53 N·m.
 #
-# MuJoCo makes an equality of two joints of a mimic in a URDF. Such an equality is a spring and damper whose stiffness goes
-# with the inertias: for a rotor of 1e-5 kg·m² that mimics an output with -19, it is 0.5 N·m/rad at the rotor, which is
-# 180 N·m/rad at the output. A load of 10 N·m at the output, held by 10/19 N·m at the rotor, turns it by 60°
+# MuJoCo makes an equality of two joints of a mimic in a URDF. Such an equality is a spring and damper whose stiffness
+# goes with the inertias: for a rotor of 1e-5 kg·m² that mimics an output with -19, it is 0.5 N·m/rad at the rotor,
+# which is 180 N·m/rad at the output. A load of 10 N·m at the output, held by 10/19 N·m at the rotor, turns it by 60°
 # against its ratio. With `eq_solref` (0.004, 1), two time steps, instead of (0.02, 1) it is 2.4°.
 # For us: a winding that a simulation shows is that of the solver; make one joint of a gear, with `gear` and `armature`.
 #

@@ -2,11 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # Newton 1.8.0: in SolverXPBD a geared rotor does not start under a small torque, and loses its ratio after one turn.
 #
-# An output of 4 kg·m² is the mimic of a rotor of 0.01 kg·m², by -0.05. Expected: SolverXPBD lists mimics as supported, so 0.01 N·m
-# turn the rotor by 0.25 rad in a second, and 0.1 N·m by 10 rad in two, the output by -0.5 rad. SolverFeatherstone does that.
-# What happens in SolverXPBD, in steps of 1 ms: with 0.01 N·m the rotor stands still after 0.001 rad; more iterations or
-# shorter steps do not help. With 0.1 N·m all is right to one turn of the rotor; there its angle begins anew at 0,
-# and the mimic turns the output back, to -0.07 rad.
+# An output of 4 kg·m² is the mimic of a rotor of 0.01 kg·m², by -0.05. Expected: SolverXPBD lists mimics as supported,
+# so 0.01 N·m turn the rotor by 0.25 rad in a second, and 0.1 N·m by 10 rad in two, the output by -0.5 rad.
+# SolverFeatherstone does that. What happens in SolverXPBD, in steps of 1 ms: with 0.01 N·m the rotor stands still after
+# 0.001 rad; more iterations or shorter steps do not help. With 0.1 N·m all is right to one turn of the rotor; there its
+# angle begins anew at 0, and the mimic turns the output back, to -0.07 rad.
 # For us: give a model with a gear to SolverFeatherstone or SolverMuJoCo.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -1,12 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# node-pid-controller 1.0.1 (npm): two updates within one millisecond count as one second, so that an integral grows 1000 times too fast.
+# node-pid-controller 1.0.1 (npm): two updates within one millisecond count as one second, so that an integral grows
+# 1000 times too fast.
 #
-# A joint is 0.1 rad from its goal for one second, and dt is not set, so that it is calculated from the clock, as the README
-# says. Expected: an integral of 0.1 rad·s, whatever the rate. What happens: an interval of 0 is taken as 1 s. At the first
-# update, which has no interval, this adds 0.1 rad·s in any case: 0.2 rad·s at 100 Hz. The clock has whole milliseconds, so at
-# 2 kHz every other interval is 0, and the integral is 100.2 rad·s. The derivative of an error
-# that grows by 1 rad/s is 0.0005 rad/s in one update and 0.5 rad/s in the next.
+# A joint is 0.1 rad from its goal for one second, and dt is not set, so that it is calculated from the clock, as the
+# README says. Expected: an integral of 0.1 rad·s, whatever the rate. What happens: an interval of 0 is taken as 1 s. At
+# the first update, which has no interval, this adds 0.1 rad·s in any case: 0.2 rad·s at 100 Hz. The clock has whole
+# milliseconds, so at 2 kHz every other interval is 0, and the integral is 100.2 rad·s. The derivative of an error that
+# grows by 1 rad/s is 0.0005 rad/s in one update and 0.5 rad/s in the next.
 # For us: always set dt. A clock that is counted up by the test stands here for the clock of the machine.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

@@ -3,8 +3,8 @@
 # np-vmd 0.1.1: an arm driven at its resonance lags by 6° instead of 90°, and modes of unequal inertias are wrong.
 #
 # An arm of 1 kg·m² on a gear of 100 N·m/rad resonates at 10 rad/s; its damping ratio is 0.05, and 1 N·m at 10 rad/s
-# drives it. Expected of forced_cos_response_at_t_funcs() after a minute: the angle lags by 90°. What happens: it lags by
-# 6.3°, as its phase has k - m ω instead of k - m ω², at any frequency. "v" is not the derivative of "x", as the
+# drives it. Expected of forced_cos_response_at_t_funcs() after a minute: the angle lags by 90°. What happens: it lags
+# by 6.3°, as its phase has k - m ω instead of k - m ω², at any frequency. "v" is not the derivative of "x", as the
 # amplitude that decays is a power there instead of a product. from_wn_kz() makes 0.0005 of a ratio of 0.05. Of two
 # inertias, 9 kg·m² for an arm and 1 kg·m² for a rotor, the first mode turns the second one by 3 rad for 1 rad of the
 # first, as Smat of TDOF_modal has it. What happens: `us` and print_eigenmodes() have 1/3 rad.

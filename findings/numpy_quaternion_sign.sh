@@ -1,10 +1,11 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# numpy-quaternion 2024.0.13: a joint that turns at 10 rad/s stands still twice a turn, where a sensor gives only quaternions with w ≥ 0.
+# numpy-quaternion 2024.0.13: a joint that turns at 10 rad/s stands still twice a turn, where a sensor gives only
+# quaternions with w ≥ 0.
 #
 # q and -q are the same rotation, and many sensors give the one with w ≥ 0, so that the sign changes at half a turn.
-# Expected of angular_velocity(): 10 rad/s throughout. What happens: it is 0 at the two samples around each change of sign,
-# and 7.5, 16 and 10.9 rad/s beside them. The mean of four readings from 3.0 to 3.3 rad is 0.008 rad, and
+# Expected of angular_velocity(): 10 rad/s throughout. What happens: it is 0 at the two samples around each change of
+# sign, and 7.5, 16 and 10.9 rad/s beside them. The mean of four readings from 3.0 to 3.3 rad is 0.008 rad, and
 # as_rotation_vector() is 6.18 rad of -q of 0.1 rad.
 # For us: pass recorded orientations through unflip_rotors() first; then the velocity is right to 0.0001 %.
 #

@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# obra-tools 0.1.0: the ROS message that it makes of a .dbc cannot hold a speed of -10 rad/s or a torque of 600 N·m, which the .dbc can.
+# obra-tools 0.1.0: the ROS message that it makes of a .dbc cannot hold a speed of -10 rad/s or a torque of 600 N·m,
+# which the .dbc can.
 #
-# obra-dbc-to-msg makes a .msg of each frame. Expected: fields that hold all values of the signals. What happens: the type is that of the
-# raw bits, unless the factor is less than 1; the offset is ignored. A speed of an unsigned byte with an offset of -128, from -128 to
-# 127 rad/s, gets a uint8, a torque of a byte in steps of 10 N·m up to 2550 N·m a uint8, and a speed in steps of 2.5 rad/s a uint8 too.
-# A position of 32 bits in steps of 1e-6 rad gets a float32, whose steps are 122 times as large at 1024 rad. The fields are meant for
-# decoded values: a factor of 0.1 gives a float, and their ranges are in the comments, such as "(rad/s) [-128 - 127]" above a uint8.
+# obra-dbc-to-msg makes a .msg of each frame. Expected: fields that hold all values of the signals. What happens: the
+# type is that of the raw bits, unless the factor is less than 1; the offset is ignored. A speed of an unsigned byte
+# with an offset of -128, from -128 to 127 rad/s, gets a uint8, a torque of a byte in steps of 10 N·m up to 2550 N·m a
+# uint8, and a speed in steps of 2.5 rad/s a uint8 too. A position of 32 bits in steps of 1e-6 rad gets a float32, whose
+# steps are 122 times as large at 1024 rad. The fields are meant for decoded values: a factor of 0.1 gives a float, and
+# their ranges are in the comments, such as "(rad/s) [-128 - 127]" above a uint8.
 # For us: make all fields float64 that have a factor or an offset.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

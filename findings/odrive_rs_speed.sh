@@ -2,10 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # odrive-rs 1.1.0 (Rust): the speed of a turning motor is 0, and a goal without limits sets both limits to 0.
 #
-# Expected: get_velocity() gives the speed of the axis, or an error. What happens: it asks for "axis0 .encoder.vel_estimate",
-# with a space, so that an ODrive is asked for "axis0" and answers in words; what cannot be read as a number is 0.0.
-# set_position_q(axis, 3.0, None, None) sends "q 0 3 0 0", with which an ODrive limits speed and current of the axis to 0, and
-# does not move. A stream answers here as firmware 0.5 does.
+# Expected: get_velocity() gives the speed of the axis, or an error. What happens: it asks for "axis0
+# .encoder.vel_estimate", with a space, so that an ODrive is asked for "axis0" and answers in words; what cannot be read
+# as a number is 0.0. set_position_q(axis, 3.0, None, None) sends "q 0 3 0 0", with which an ODrive limits speed and
+# current of the axis to 0, and does not move. A stream answers here as firmware 0.5 does.
 # For us: a speed of exactly 0.0 at a turning rotor is no measurement; differentiate the position.
 #
 # Exit code 0: still so. Needs cargo; installs the version into a temporary folder.

@@ -2,11 +2,12 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # openrainflow 1.0.0: a torque that swings by 240 N·m has swings of 113 N·m at most, and 3 % of its damage.
 #
-# rainflow_count() is to count as ASTM E1049-85 does. Expected of the example of this standard, 3: 0.5, 4: 1.5, 6:
-# 0.5, 8: 1 and 9: 0.5, as rainflow 3.2.0 gives it. What happens: 9 is not found and 8 counts 1.5 times, as a cycle is
-# taken out whose ends belong to a larger one. For a torque of 100 N·m once a second with a tooth mesh of 20 N·m at 17
-# Hz, the greatest swing is 113 instead of 240, and the damage for a slope of 5 is 3 % of the right one. Where two
-# equal readings follow each other, a swing is split there: 0, 100, 50, 50, 0 are one of 50 and half a one of 100. Without the cut-off, calculate_damage() is infinite as soon as one small swing occurs.
+# rainflow_count() is to count as ASTM E1049-85 does. Expected of the example of this standard, 3: 0.5, 4: 1.5, 6: 0.5,
+# 8: 1 and 9: 0.5, as rainflow 3.2.0 gives it. What happens: 9 is not found and 8 counts 1.5 times, as a cycle is taken
+# out whose ends belong to a larger one. For a torque of 100 N·m once a second with a tooth mesh of 20 N·m at 17 Hz, the
+# greatest swing is 113 instead of 240, and the damage for a slope of 5 is 3 % of the right one. Where two equal
+# readings follow each other, a swing is split there: 0, 100, 50, 50, 0 are one of 50 and half a one of 100. Without the
+# cut-off, calculate_damage() is infinite as soon as one small swing occurs.
 # For us: use rainflow or rfcnt.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

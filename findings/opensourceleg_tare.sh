@@ -2,10 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # opensourceleg 3.5.0: the zero of a load cell, an average of 2000 readings, is as noisy as that of three.
 #
-# Expected of calibrate() of a DephyLoadcellAmplifier: number_of_iterations readings are averaged, as documented, so that
-# the noise of the zero is 1/45 of that of one reading. What happens: each reading is averaged with the zero so far,
-# half and half, so that the last one has a weight of 1/2, the one before of 1/4, and all but the last five have 3 %
-# together. The noise is 0.58 of that of a reading, with 20 as with 2000 readings, and a last reading that is off by
+# Expected of calibrate() of a DephyLoadcellAmplifier: number_of_iterations readings are averaged, as documented, so
+# that the noise of the zero is 1/45 of that of one reading. What happens: each reading is averaged with the zero so
+# far, half and half, so that the last one has a weight of 1/2, the one before of 1/4, and all but the last five have 3
+# % together. The noise is 0.58 of that of a reading, with 20 as with 2000 readings, and a last reading that is off by
 # 100 N shifts the zero by 50 N for good. The other load cell, NBLoadcellDAQ, averages as expected.
 # For us: average readings of the unloaded cell yourself, and subtract them.
 #

@@ -2,10 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # openTorsion 0.3.2: behind a gear, a torque acts one node further on than where it is given.
 #
-# A pinion at node 1 drives a wheel at node 2, 20 times as large, whose shaft leads to a disk at node 3. Slowly alternating, 1 N·m at
-# the wheel should twist the shaft behind it by nothing, and that before the pinion by 0.05 N·m. An excitation for
-# the four nodes is refused, because the matrices have three rows. One of three rows is accepted, and 1 N·m at node 2
-# twists the shaft behind the wheel by 1 N·m: each gear pair removes a node, and the nodes behind it move up.
+# A pinion at node 1 drives a wheel at node 2, 20 times as large, whose shaft leads to a disk at node 3. Slowly
+# alternating, 1 N·m at the wheel should twist the shaft behind it by nothing, and that before the pinion by 0.05 N·m.
+# An excitation for the four nodes is refused, because the matrices have three rows. One of three rows is accepted, and
+# 1 N·m at node 2 twists the shaft behind the wheel by 1 N·m: each gear pair removes a node, and the nodes behind it
+# move up.
 # For us: give the excitation for all nodes, and multiply it by the transpose of `T(E())` of the assembly.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -3,9 +3,9 @@
 # openTorsion 0.3.2: a shaft that is given by its stiffness and moment of inertia has six times this inertia.
 #
 # A shaft of steel, 500 mm long and 40 mm thick, is clamped at one end. Expected: by its length and diameter, or by its
-# stiffness and its inertia, as documented in Nm/rad and kgm², it is the same shaft. What happens: the second one has six
-# times the inertia, and its first natural frequency is 4472 rad/s in place of 10954; the exact one is 9935.
-# In a geared drive the frequency of a long shaft comes out 2.4 times too low.
+# stiffness and its inertia, as documented in Nm/rad and kgm², it is the same shaft. What happens: the second one has
+# six times the inertia, and its first natural frequency is 4472 rad/s in place of 10954; the exact one is 9935. In a
+# geared drive the frequency of a long shaft comes out 2.4 times too low.
 # For us: give I divided by 6 with k, or add the inertia to the disks at both ends, half at each.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# oxictl 0.1.1 (Rust): where a motor turns back, its angle rises within each sector, and its Hall sensors are never at fault.
+# oxictl 0.1.1 (Rust): where a motor turns back, its angle rises within each sector, and its Hall sensors are never at
+# fault.
 #
-# HallSensor interpolates the electrical angle between two edges. Expected of a motor that turns back at 20 rad/s: an angle that falls
-# from the upper to the lower edge of each sector. What happens: it is counted up from the lower edge with the speed's absolute
-# value, and jumps down by two sectors at the next edge: up to 1.05 rad away, where forward it is right within 0.01 rad. Expected of
-# is_fault() where all three sensors are on, as with a broken cable: true. What happens: such a state is not stored, so that it is
-# false for any input; and a motor whose last edge was an hour ago keeps its speed of 20 rad/s.
+# HallSensor interpolates the electrical angle between two edges. Expected of a motor that turns back at 20 rad/s: an
+# angle that falls from the upper to the lower edge of each sector. What happens: it is counted up from the lower edge
+# with the speed's absolute value, and jumps down by two sectors at the next edge: up to 1.05 rad away, where forward it
+# is right within 0.01 rad. Expected of is_fault() where all three sensors are on, as with a broken cable: true. What
+# happens: such a state is not stored, so that it is false for any input; and a motor whose last edge was an hour ago
+# keeps its speed of 20 rad/s.
 # For us: leave out a velocity that a driver takes from it; interpolate by the sign of the speed.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

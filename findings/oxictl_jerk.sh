@@ -2,10 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # oxictl 0.1.1 (Rust): a move of limited jerk to 2 rad overshoots to 2.79 rad and jumps back to 2 rad within one step.
 #
-# JerkLimitedProfile plans within 30 rad/s³, 10 rad/s² and 5 rad/s, and "handles short distances". Expected of a move by 2 rad: that
-# it ends at 2 rad with a speed of 0. What happens: the peak speed for a short distance is taken as the root of jerk times distance
-# over 4, without the limit of the acceleration, which is too much; the move goes on to 2.79 rad, and at its last step the position
-# is set to its goal, 0.79 rad back. With 1000 rad/s³ a move by 1 rad goes to 2.55 rad. A move by 10 rad is right.
+# JerkLimitedProfile plans within 30 rad/s³, 10 rad/s² and 5 rad/s, and "handles short distances". Expected of a move by
+# 2 rad: that it ends at 2 rad with a speed of 0. What happens: the peak speed for a short distance is taken as the root
+# of jerk times distance over 4, without the limit of the acceleration, which is too much; the move goes on to 2.79 rad,
+# and at its last step the position is set to its goal, 0.79 rad back. With 1000 rad/s³ a move by 1 rad goes to 2.55
+# rad. A move by 10 rad is right.
 # For us: look at the last step of a planned move before it is sent to a motor, which cannot follow such a step.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

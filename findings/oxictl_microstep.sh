@@ -2,11 +2,12 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # oxictl 0.1.1 (Rust): in microsteps, a stepper turns by 1/50 of what its position says.
 #
-# By its documentation, the angle of MicroStepDriver's currents advances by 2π / (4 N) per microstep. A motor of 200 steps per turn has
-# 50 periods per turn, so expected after 3200 microsteps of 1/16: 50 periods, and after 64, four full steps, one period. What happens:
-# the angle is that of the shaft, so that 3200 microsteps make one period, which turns the motor by four steps, 7.2°. position_rad()
-# is 2π. FullStepDriver has its period of four steps.
-# For us: the output of a driver that reports such a position turns by a fiftieth of it, which looks like another gear ratio.
+# By its documentation, the angle of MicroStepDriver's currents advances by 2π / (4 N) per microstep. A motor of 200
+# steps per turn has 50 periods per turn, so expected after 3200 microsteps of 1/16: 50 periods, and after 64, four full
+# steps, one period. What happens: the angle is that of the shaft, so that 3200 microsteps make one period, which turns
+# the motor by four steps, 7.2°. position_rad() is 2π. FullStepDriver has its period of four steps.
+# For us: the output of a driver that reports such a position turns by a fiftieth of it, which looks like another gear
+# ratio.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.
 set -eu

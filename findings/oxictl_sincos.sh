@@ -2,10 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # oxictl 0.1.1 (Rust): an ideal sine and cosine are read right for the first 0.11 rad, then up to 3.1 rad away.
 #
-# Its SincosEncoder corrects offsets and amplitudes "as the encoder rotates through a full cycle". Expected at ideal signals of
-# amplitude 1 and no offset: their angle. What happens: as soon as a signal has covered 0.1, this part of a turn is taken as its
-# whole range, and its middle as the offset; after that, each 0.1 again. The angle is right up to 0.11 rad, 0.75 rad away at 0.12 rad,
-# and up to 3.07 rad away over the next turns. A shaft that turns at 10 rad/s is read at speeds from below -480 to above 480 rad/s.
+# Its SincosEncoder corrects offsets and amplitudes "as the encoder rotates through a full cycle". Expected at ideal
+# signals of amplitude 1 and no offset: their angle. What happens: as soon as a signal has covered 0.1, this part of a
+# turn is taken as its whole range, and its middle as the offset; after that, each 0.1 again. The angle is right up to
+# 0.11 rad, 0.75 rad away at 0.12 rad, and up to 3.07 rad away over the next turns. A shaft that turns at 10 rad/s is
+# read at speeds from below -480 to above 480 rad/s.
 # For us: take atan2(sine, cosine) yourself, with offsets and amplitudes that were measured over whole turns.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

@@ -2,9 +2,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # pandas 3.1.1: diff() of an encoder's counts, as unsigned numbers, gives 65530.0 where they fall by 6.
 #
-# The result of Series.diff() is a float64 with NaN in its first row, so that it can hold -6; but the difference is taken
-# between unsigned numbers before it becomes a float. counts - counts.shift(), and diff() of a group, give -6.0; so
-# does diff() of int16. diff() of int32 wraps as well: from 2147483647 to -2147483648 it is 1.0, not -4294967295.0.
+# The result of Series.diff() is a float64 with NaN in its first row, so that it can hold -6; but the difference is
+# taken between unsigned numbers before it becomes a float. counts - counts.shift(), and diff() of a group, give -6.0;
+# so does diff() of int16. diff() of int32 wraps as well: from 2147483647 to -2147483648 it is 1.0, not -4294967295.0.
 # polars 2.1.0 gives -6 for every unsigned type.
 # For us: the speed of a rotor that turns backwards is wrong in such a table; make counts int64 first.
 #

@@ -1,11 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# periph.io/x/devices/v3 3.7.4 (Go): an ADXL345 at 1 g is read as 0, at 0.5 g as -32768, and the goal -1 of a Tic as 4294967295.
+# periph.io/x/devices/v3 3.7.4 (Go): an ADXL345 at 1 g is read as 0, at 0.5 g as -32768, and the goal -1 of a Tic as
+# 4294967295.
 #
-# The sensor counts 256 per g, in two bytes. Expected of Update() at 1 g: 256. What happens: each byte is already shifted up by 8 bits
-# where it is read from SPI, and the upper one once more, out of its 16 bits. What remains is the lower byte times 256: 0 for 256,
-# -32768 for 128 and -256 for 255, so that a vibration of a few counts is the largest one. Expected of a Tic whose ramp goes to -1:
-# GetActingTargetPosition() is -1, as GetTargetPosition() is; the comment at its register says int32. What happens: it is unsigned.
+# The sensor counts 256 per g, in two bytes. Expected of Update() at 1 g: 256. What happens: each byte is already
+# shifted up by 8 bits where it is read from SPI, and the upper one once more, out of its 16 bits. What remains is the
+# lower byte times 256: 0 for 256, -32768 for 128 and -256 for 255, so that a vibration of a few counts is the largest
+# one. Expected of a Tic whose ramp goes to -1: GetActingTargetPosition() is -1, as GetTargetPosition() is; the comment
+# at its register says int32. What happens: it is unsigned.
 # For us: read the registers 0x32 to 0x37 yourself; subtract 2^32 from a target beyond 2^31.
 #
 # Exit code 0: still so. Needs go; installs the versions into a temporary folder.

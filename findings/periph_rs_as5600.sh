@@ -2,11 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # periph 1.3.1 (Rust): an AS5600 is refused where its magnet is right, and works only where the magnet is too strong.
 #
-# In the status of the encoder bit 5 says that there is a magnet, bit 4 that it is too weak, and bit 3 that it is too strong, as the
-# datasheet and as5600 0.8.0 have it. What happens: bits 3 and 5 are exchanged. With a status of 0x20, the only good one,
-# As5600Minimal::new() refuses the encoder because no magnet is detected. With 0x28, a magnet that is too strong, it works and
-# says that the magnet is there and too strong; where this gets better later on, is_magnet_detected() is false and
-# is_magnet_too_strong() true. burn_angle() is refused with a good magnet, too.
+# In the status of the encoder bit 5 says that there is a magnet, bit 4 that it is too weak, and bit 3 that it is too
+# strong, as the datasheet and as5600 0.8.0 have it. What happens: bits 3 and 5 are exchanged. With a status of 0x20,
+# the only good one, As5600Minimal::new() refuses the encoder because no magnet is detected. With 0x28, a magnet that is
+# too strong, it works and says that the magnet is there and too strong; where this gets better later on,
+# is_magnet_detected() is false and is_magnet_too_strong() true. burn_angle() is refused with a good magnet, too.
 # For us: read the register 0x0B yourself, and take another driver.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

@@ -2,11 +2,12 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # pin-pink 4.4.0: the output of a gear jumps by 18° whenever its continuous rotor passes half a turn.
 #
-# A JointCouplingTask with ratios of 1 and 20 keeps motor + 20 output = 0 in the inverse kinematics, as its documentation says of the
-# joint angles. Expected of a rotor that is driven to 7 rad: the output turns to -0.35 rad. What happens where the motor is of type
-# continuous: its angle counts within ±π only, so that the output goes to -0.156 rad, then within one step to +0.156 rad, and is at
-# -0.037 rad at the end, without a warning. With a revolute motor that has wide limits it is at -0.35 rad. Only the more general
-# LinearHolonomicTask is said to take a difference of configurations, which for a continuous joint lies within ±π.
+# A JointCouplingTask with ratios of 1 and 20 keeps motor + 20 output = 0 in the inverse kinematics, as its
+# documentation says of the joint angles. Expected of a rotor that is driven to 7 rad: the output turns to -0.35 rad.
+# What happens where the motor is of type continuous: its angle counts within ±π only, so that the output goes to -0.156
+# rad, then within one step to +0.156 rad, and is at -0.037 rad at the end, without a warning. With a revolute motor
+# that has wide limits it is at -0.35 rad. Only the more general LinearHolonomicTask is said to take a difference of
+# configurations, which for a continuous joint lies within ±π.
 # For us: make the rotor revolute, with limits beyond all of its turns.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

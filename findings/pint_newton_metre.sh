@@ -2,8 +2,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # Pint 0.25.3: "1.5 Nm" is read as the fineness of a yarn, not as a torque.
 #
-# Expected: newton metres, or an error, as Pint wants a space or a sign between two units. What happens: Nm is the metric
-# count of a yarn, 1 km/kg, and mNm is a thousandth of it. The text is printed as "1.5 Nm", and so are sums,
+# Expected: newton metres, or an error, as Pint wants a space or a sign between two units. What happens: Nm is the
+# metric count of a yarn, 1 km/kg, and mNm is a thousandth of it. The text is printed as "1.5 Nm", and so are sums,
 # ratios and comparisons of such values, so nothing shows it until a value meets a real torque: 1.5 Nm · 100 rad/s is no
 # power but 150000 m·rad/(kg·s). A stiffness of "3 Nm/arcmin" is read in the same way.
 # For us: the tables of drives say Nm; give Pint "N*m" or "N m".

@@ -2,10 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # polars 2.1.0: upsample() drops the samples that are not on its grid, and interpolate() then bridges them.
 #
-# A joint is recorded every 100 ms: 0, 1, 0 and 0.3 rad. upsample every 75 ms, with interpolate as its documentation shows,
-# gives 0, 0.075, 0.15, 0.225 and 0.3 rad: of the samples only those at 0 and 300 ms are used, and the motion to 1 rad is gone.
-# Every 50 ms all samples are on the grid, and the motion is there.
-# Expected: values interpolated between the nearest samples, as numpy.interp does: 0.75 rad at 75 ms.
+# A joint is recorded every 100 ms: 0, 1, 0 and 0.3 rad. upsample every 75 ms, with interpolate as its documentation
+# shows, gives 0, 0.075, 0.15, 0.225 and 0.3 rad: of the samples only those at 0 and 300 ms are used, and the motion to
+# 1 rad is gone. Every 50 ms all samples are on the grid, and the motion is there. Expected: values interpolated between
+# the nearest samples, as numpy.interp does: 0.75 rad at 75 ms.
 # For us: do not bring rotor and output to a common time this way before gearkin; it interpolates itself.
 #
 # Exit code 0: still so. Installs the packages into a temporary folder.

@@ -1,11 +1,12 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# pybearing 1.0.4: at an output that turns at 0.1 rpm the cage frequency is 5 % too large, and one that turns back is an error.
+# pybearing 1.0.4: at an output that turns at 0.1 rpm the cage frequency is 5 % too large, and one that turns back is an
+# error.
 #
-# Expected: the fault frequencies of a bearing are proportional to the speed. What happens: the speed in Hz is rounded to four
-# decimals, and so is each frequency: right to 1e-6 at 1500 rpm, but at 0.1 rpm the frequency of the outer ring is 2 % too large
-# and that of the cage 5 %, and at 0.02 rpm it is 25 % too small. Below 0.006 rpm, at rest, and at a negative
-# speed an error says that the cage frequency must be positive.
+# Expected: the fault frequencies of a bearing are proportional to the speed. What happens: the speed in Hz is rounded
+# to four decimals, and so is each frequency: right to 1e-6 at 1500 rpm, but at 0.1 rpm the frequency of the outer ring
+# is 2 % too large and that of the cage 5 %, and at 0.02 rpm it is 25 % too small. Below 0.006 rpm, at rest, and at a
+# negative speed an error says that the cage frequency must be positive.
 # For us: compute the orders once, at 60 rpm, and multiply them by the speed of the joint.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

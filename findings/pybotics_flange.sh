@@ -1,11 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# pybotics 3.1.2: jacobian_flange() is that of the tool, 700 mm instead of 500 mm, and compute_joint_torques() that of the flange.
+# pybotics 3.1.2: jacobian_flange() is that of the tool, 700 mm instead of 500 mm, and compute_joint_torques() that of
+# the flange.
 #
-# An arm of 500 mm has a tool of 200 mm. Expected of jacobian_flange(), whose documentation names the flange frame: 500 mm
-# for each rad, and the torque of 1 N at the flange is its product with the force, 500 N·mm. What happens: it has 700 mm, as
-# the tool is in it, and compute_joint_torques() gives 500 N·mm for the same force, as the tool is not in it. A force that
-# is measured at the tool gets torques that are 29 % too small, without a warning. Without a tool the two agree.
+# An arm of 500 mm has a tool of 200 mm. Expected of jacobian_flange(), whose documentation names the flange frame: 500
+# mm for each rad, and the torque of 1 N at the flange is its product with the force, 500 N·mm. What happens: it has 700
+# mm, as the tool is in it, and compute_joint_torques() gives 500 N·mm for the same force, as the tool is not in it. A
+# force that is measured at the tool gets torques that are 29 % too small, without a warning. Without a tool the two
+# agree.
 # For us: multiply the transposed jacobian_flange() by the force at the tool.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

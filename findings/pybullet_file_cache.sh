@@ -2,8 +2,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # PyBullet 3.2.7: a URDF that was changed is not read again, even after resetSimulation().
 #
-# loadURDF keeps the contents of files by their path. A URDF is written with a mass of 1 kg and loaded, written with 2 kg
-# and loaded again: the mass is 1 kg, also after resetSimulation(). After a new connection it is 2 kg.
+# loadURDF keeps the contents of files by their path. A URDF is written with a mass of 1 kg and loaded, written with 2
+# kg and loaded again: the mass is 1 kg, also after resetSimulation(). After a new connection it is 2 kg.
 # For us: where `gearkin urdf` writes a file again beside a running program, it needs
 # setPhysicsEngineParameter(enableFileCaching=0) before the first loadURDF.
 #

@@ -3,8 +3,8 @@
 # PyBullet 3.2.7: calculateMassMatrix() keeps the inertia of its first call after changeDynamics().
 #
 # A rotor of 0.3 kg·m² gets 1.0 by changeDynamics(). The simulation obeys, so that 1 N·m accelerates it by 1 rad/s², and
-# getDynamicsInfo() says 1.0; but calculateMassMatrix() and calculateInverseDynamics() go on with 0.3, if they were called
-# before. Called for the first time after the change they are right.
+# getDynamicsInfo() says 1.0; but calculateMassMatrix() and calculateInverseDynamics() go on with 0.3, if they were
+# called before. Called for the first time after the change they are right.
 # For us: a payload or an inertia seen through the gear has to be set before a controller asks for torques.
 #
 # Exit code 0: still so. Installs the packages into a temporary folder; needs Python 3.9 to 3.12 for a wheel.

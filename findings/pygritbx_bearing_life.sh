@@ -2,9 +2,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # pygritbx 1.1.4: an angular contact ball bearing that lives for 3796 million turns is given 30116 million.
 #
-# Under 1000 N radially and 500 N axially, updateReaction() finds 707 N radially: it takes the axial force, a scalar, from
-# all three components, also from those that are 0. calculateBearingLife() has the exponent 10/3 of roller bearings, as the
-# class compares the type "Contact Ball" with "ball". ISO 281 has 3 for ball bearings, so the life is
+# Under 1000 N radially and 500 N axially, updateReaction() finds 707 N radially: it takes the axial force, a scalar,
+# from all three components, also from those that are 0. calculateBearingLife() has the exponent 10/3 of roller
+# bearings, as the class compares the type "Contact Ball" with "ball". ISO 281 has 3 for ball bearings, so the life is
 # (15600 N / 1000 N)³ = 3796 million turns. The equivalent static load, which is not less than the radial one, is 614 N.
 # For us: `gearkin loads --cam-rating` has the exponent 3.
 #

@@ -1,12 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# pygritbx 1.1.4: the contact stress of a pair of spur gears is 381 MPa instead of 685 MPa, and that of helical gears also too low.
+# pygritbx 1.1.4: the contact stress of a pair of spur gears is 381 MPa instead of 685 MPa, and that of helical gears
+# also too low.
 #
-# By AGMA 2001 the load sharing ratio of spur gears is 1, and that of helical gears follows from the length of action, of which
-# a gear adds the root of (pitch radius + addendum)² - base radius². calculateSigmaMaxPitting() takes the root of
-# pitch radius² + addendum² instead, and that also for spur gears: the ratio is 0.31, and the safety factor 1.8 times too good.
-# The dynamic factor takes the speed at twice the pitch radius. The centre of an internal gear is put at the sum
-# of the pitch radii, 80 mm, instead of at their difference, 40 mm.
+# By AGMA 2001 the load sharing ratio of spur gears is 1, and that of helical gears follows from the length of action,
+# of which a gear adds the root of (pitch radius + addendum)² - base radius². calculateSigmaMaxPitting() takes the root
+# of pitch radius² + addendum² instead, and that also for spur gears: the ratio is 0.31, and the safety factor 1.8 times
+# too good. The dynamic factor takes the speed at twice the pitch radius. The centre of an internal gear is put at the
+# sum of the pitch radii, 80 mm, instead of at their difference, 40 mm.
 # For us: check such a stress by hand before a preload is chosen by it.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

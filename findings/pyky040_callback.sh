@@ -2,11 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # pyky040 0.1.4: an encoder with an inc_callback but no dec_callback is not counted any more after its first step back.
 #
-# An encoder of 20 steps a turn shows an angle: setup(scale_min=0, scale_max=342, step=18, loop=True, inc_callback=...). By the
-# documentation all arguments are optional. Expected of two steps on, one back and two on: 18°, 36°, 18°, 36°, 54°. What happens:
-# the step back asks whether there is an inc_callback, and calls the dec_callback, which is None. watch() takes this error for the
-# wish to end, logs "Exiting..." at the level INFO, and returns, so that the angle stays at 36° for ever. With both callbacks, or
-# with neither, all five steps are counted.
+# An encoder of 20 steps a turn shows an angle: setup(scale_min=0, scale_max=342, step=18, loop=True, inc_callback=...).
+# By the documentation all arguments are optional. Expected of two steps on, one back and two on: 18°, 36°, 18°, 36°,
+# 54°. What happens: the step back asks whether there is an inc_callback, and calls the dec_callback, which is None.
+# watch() takes this error for the wish to end, logs "Exiting..." at the level INFO, and returns, so that the angle
+# stays at 36° for ever. With both callbacks, or with neither, all five steps are counted.
 # For us: give both callbacks, and take the return of watch() as a fault of the encoder.
 #
 # The pins are those of a stand-in of RPi.GPIO. Exit code 0: still so. Installs the package into a temporary folder.

@@ -1,11 +1,12 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# pylx16a 1.1.1: a servo with limits of 60° and 180° refuses to turn by 10°, or back, but turns from 170° by 70° to 240°.
+# pylx16a 1.1.1: a servo with limits of 60° and 180° refuses to turn by 10°, or back, but turns from 170° by 70° to
+# 240°.
 #
-# Expected of move(10, relative=True) at 100°: a command to 110°, and of move(70, relative=True) at 170° an error, since the limits
-# end at 180°. What happens: not the goal but the number of degrees to turn is compared with the limits, so that 10 is refused as
-# less than 60, -10 also without limits, as less than 0, and 70 is sent as 240°. get_angle_offset() of an offset of -10° that was
-# set gives 51.36° until the program is started anew.
+# Expected of move(10, relative=True) at 100°: a command to 110°, and of move(70, relative=True) at 170° an error, since
+# the limits end at 180°. What happens: not the goal but the number of degrees to turn is compared with the limits, so
+# that 10 is refused as less than 60, -10 also without limits, as less than 0, and 70 is sent as 240°.
+# get_angle_offset() of an offset of -10° that was set gives 51.36° until the program is started anew.
 # For us: add the angle of get_commanded_angle() in the driver, and send absolute goals.
 #
 # A pseudo-terminal answers as the servo does. Exit code 0: still so. Installs the package into a temporary folder.

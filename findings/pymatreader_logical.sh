@@ -1,12 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# pymatreader 1.3.2: positions[valid] of a .mat, where `valid` is a logical array, are the first two positions again and again.
+# pymatreader 1.3.2: positions[valid] of a .mat, where `valid` is a logical array, are the first two positions again and
+# again.
 #
-# Expected of a logical array of MATLAB: an array of bool, so that positions[valid] are the valid positions, as in MATLAB. What happens:
-# it is an array of uint8, of version 5 and of version 7.3, with which numpy takes the positions number 0 and 1. Of six positions from
-# 0 to 0.5 rad, of which four are valid, there are six, all 0 or 0.1 rad, with a mean of 0.07 rad instead of 0.225 rad, without an error.
-# ~valid is 254 and 255. read_mat() has no argument to change it. mat73 0.65 reads version 7.3 with bool; SciPy reads version 5 with
-# bool if it is told mat_dtype=True.
+# Expected of a logical array of MATLAB: an array of bool, so that positions[valid] are the valid positions, as in
+# MATLAB. What happens: it is an array of uint8, of version 5 and of version 7.3, with which numpy takes the positions
+# number 0 and 1. Of six positions from 0 to 0.5 rad, of which four are valid, there are six, all 0 or 0.1 rad, with a
+# mean of 0.07 rad instead of 0.225 rad, without an error. ~valid is 254 and 255. read_mat() has no argument to change
+# it. mat73 0.65 reads version 7.3 with bool; SciPy reads version 5 with bool if it is told mat_dtype=True.
 # For us: write `valid.astype(bool)` wherever a logical array of a .mat selects samples.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# pymunk 7.3.1: a spring with a rest angle of 0.5 rad rests at -0.5 rad, and a motor at 1 rad/s turns its shaft at -1 rad/s.
+# pymunk 7.3.1: a spring with a rest angle of 0.5 rad rests at -0.5 rad, and a motor at 1 rad/s turns its shaft at -1
+# rad/s.
 #
-# A shaft turns about a base; each joint is made of (base, shaft). A RotaryLimitJoint from 0 to 1 rad keeps the shaft from 0 to 1 rad,
-# and a GearJoint with a phase of 0.5 rad puts it at 0.5 rad, as expected. Expected of DampedRotarySpring with a rest_angle of 0.5 rad:
-# 0.5 rad; of SimpleMotor with a rate of 1 rad/s: 1 rad/s. What happens: -0.5 rad and -1 rad/s, so that within these limits
-# the spring presses the shaft against its stop at 0, and the motor does not move it. The documentation calls the angle of the spring,
-# the speed of the motor and the rotation of the limits relative, and does not say to which of the two bodies.
+# A shaft turns about a base; each joint is made of (base, shaft). A RotaryLimitJoint from 0 to 1 rad keeps the shaft
+# from 0 to 1 rad, and a GearJoint with a phase of 0.5 rad puts it at 0.5 rad, as expected. Expected of
+# DampedRotarySpring with a rest_angle of 0.5 rad: 0.5 rad; of SimpleMotor with a rate of 1 rad/s: 1 rad/s. What
+# happens: -0.5 rad and -1 rad/s, so that within these limits the spring presses the shaft against its stop at 0, and
+# the motor does not move it. The documentation calls the angle of the spring, the speed of the motor and the rotation
+# of the limits relative, and does not say to which of the two bodies.
 # For us: give springs and motors as (shaft, base), limits and gears as (base, shaft).
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

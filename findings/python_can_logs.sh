@@ -2,7 +2,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # python-can 4.6.1: what a log says of the time and the direction of a frame depends on its format.
 #
-# A command is sent at 1700000000.5 s and answered by 1700000000.6 s. Logger and LogReader make of it, by the ending of the file:
+# A command is sent at 1700000000.5 s and answered by 1700000000.6 s. Logger and LogReader make of it, by the ending of
+# the file:
 #
 #     .blf, .mf4, .log, .trc    the times as they were; one frame sent, one received
 #     .asc                      the times begin at 0: two logs of a bench cannot be aligned

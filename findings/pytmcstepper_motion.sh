@@ -1,13 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# PyTmcStepper 0.21.3: a quarter turn over VACTUAL never ends, and back is forward; a TMC5160 in hold mode turns backwards.
+# PyTmcStepper 0.21.3: a quarter turn over VACTUAL never ends, and back is forward; a TMC5160 in hold mode turns
+# backwards.
 #
-# Expected of run_to_position_revolutions(0.25) with TmcMotionControlVActual: a quarter turn, and of -0.25 one back. What
-# happens: the steps are rounded to whole turns, and 0 turns have no end: the motor turns forward on and on in both cases, and
-# its position is given as reached. 1.5 turns are 2. With 16 microsteps, 16 turns/s that are set are 1 turn/s.
-# With TmcMotionControlIntRampGenerator HOLD_MODE is 2, which a TMC5160 takes as velocity mode backwards; hold is 3. The
-# speed and the acceleration are sent in microsteps and seconds, but the units of the chip are, at its 12 MHz, 0.715
-# microsteps/s and 65.5 microsteps/s²: 3200 and 3200 are 2289 and 209545. A bus answers here as a driver does.
+# Expected of run_to_position_revolutions(0.25) with TmcMotionControlVActual: a quarter turn, and of -0.25 one back.
+# What happens: the steps are rounded to whole turns, and 0 turns have no end: the motor turns forward on and on in both
+# cases, and its position is given as reached. 1.5 turns are 2. With 16 microsteps, 16 turns/s that are set are 1
+# turn/s. With TmcMotionControlIntRampGenerator HOLD_MODE is 2, which a TMC5160 takes as velocity mode backwards; hold
+# is 3. The speed and the acceleration are sent in microsteps and seconds, but the units of the chip are, at its 12 MHz,
+# 0.715 microsteps/s and 65.5 microsteps/s²: 3200 and 3200 are 2289 and 209545. A bus answers here as a driver does.
 # For us: drive it over STEP/DIR, or scale the numbers and write RAMPMODE and VACTUAL yourself.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

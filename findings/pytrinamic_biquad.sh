@@ -3,12 +3,13 @@
 # PyTrinamic 0.2.26: a low-pass with a quality factor of 2 has a gain of 0.25 at its corner instead of 2, and one of
 # first order rings on and on.
 #
-# calculate_biquad_filter_coefficients() is for a TMC9660 or TMC4671. Expected of LowPassFilterSpec(500, q=2), whose q is a quality
-# factor: a gain of 2 at 500 Hz. What happens: it is taken as the damping, so that the gain is 0.25, and q=0.5, which is
-# critical damping, has a peak of 1.15. At q=0.7071 both are the same. Without q, the filter of first order has a second pole
-# at -1, since both sides are multiplied by 1 + 1/z: switched on while its input is at 1, it swings between two values from one
-# sample to the next, by as much after 10 s as at first. The test of stability looks at the greater pole alone and passes it, but
-# it refuses a low-pass of 50 Hz at 25 kHz, whose pole of 0.9875 is stable, as unstable.
+# calculate_biquad_filter_coefficients() is for a TMC9660 or TMC4671. Expected of LowPassFilterSpec(500, q=2), whose q
+# is a quality factor: a gain of 2 at 500 Hz. What happens: it is taken as the damping, so that the gain is 0.25, and
+# q=0.5, which is critical damping, has a peak of 1.15. At q=0.7071 both are the same. Without q, the filter of first
+# order has a second pole at -1, since both sides are multiplied by 1 + 1/z: switched on while its input is at 1, it
+# swings between two values from one sample to the next, by as much after 10 s as at first. The test of stability looks
+# at the greater pole alone and passes it, but it refuses a low-pass of 50 Hz at 25 kHz, whose pole of 0.9875 is stable,
+# as unstable.
 # For us: give 1 / (2 q) as q, and for a first order two equal poles (q=1), or scipy.signal.bilinear.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

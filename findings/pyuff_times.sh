@@ -2,10 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # pyuff 2.5.8: the times of an encoder are stretched by the jitter of their first step, or kept to six digits.
 #
-# A universal file (data set 58) has its times as a start and a step, or one by one. Expected: an error where the times do not
-# fit, as here, where the first of 1000 steps of 1 ms is 2 % too long. What happens: the step is that of the first two
-# samples, and the second that was recorded is read as 1.02 s. One by one they are right at first, but the format gives them
-# six digits: after 100 s, a thousand samples at 10 kHz have 101 different times, after 1000 s 11. Nothing warns of either.
+# A universal file (data set 58) has its times as a start and a step, or one by one. Expected: an error where the times
+# do not fit, as here, where the first of 1000 steps of 1 ms is 2 % too long. What happens: the step is that of the
+# first two samples, and the second that was recorded is read as 1.02 s. One by one they are right at first, but the
+# format gives them six digits: after 100 s, a thousand samples at 10 kHz have 101 different times, after 1000 s 11.
+# Nothing warns of either.
 # For us: begin the times at 0 and give them one by one up to 10 s; keep longer recordings in another format.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -2,10 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # pyvesc 1.0.5: the answer of a VESC since firmware 3 is read without an error: 49000 rpm are -1083702824 rpm.
 #
-# Expected: values, or an error about the length of 64 bytes instead of 56. What happens: GetValues has the layout of the
-# firmware before 3, with seven temperatures at its head; the checksum is right, and what follows the two temperatures of
-# today is read at other places: a motor current of 27.5 A and 47.2 V as 0.0, a tachometer of 15000 as 983040000.
-# The package needs PyCRC without saying so, here from pythoncrc.
+# Expected: values, or an error about the length of 64 bytes instead of 56. What happens: GetValues has the layout of
+# the firmware before 3, with seven temperatures at its head; the checksum is right, and what follows the two
+# temperatures of today is read at other places: a motor current of 27.5 A and 47.2 V as 0.0, a tachometer of 15000 as
+# 983040000. The package needs PyCRC without saying so, here from pythoncrc.
 # For us: no speed of a rotor from this release; take the layout from the firmware of the drive.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

@@ -1,10 +1,11 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# sparkfun-qwiic-twist 2.0.0, sparkfun-qwiic-dual-encoder-reader 0.0.2: an encoder that turned back by 6 has turned by 65530.
+# sparkfun-qwiic-twist 2.0.0, sparkfun-qwiic-dual-encoder-reader 0.0.2: an encoder that turned back by 6 has turned by
+# 65530.
 #
-# The counters of both boards have 16 bits with a sign, and their words are read without one. The reader of two encoders of
-# motors corrects it in get_count1() and get_count2(), but not in get_diff(), which so contradicts them; the
-# knob corrects neither get_count() nor get_diff(). A bus answers here as the boards do.
+# The counters of both boards have 16 bits with a sign, and their words are read without one. The reader of two encoders
+# of motors corrects it in get_count1() and get_count2(), but not in get_diff(), which so contradicts them; the knob
+# corrects neither get_count() nor get_diff(). A bus answers here as the boards do.
 # For us: subtract 65536 from 32768 on; a difference of 65530 is otherwise a speed of thousands of turns a second.
 #
 # Exit code 0: still so. Installs the packages into a temporary folder.

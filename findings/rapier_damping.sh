@@ -2,10 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # rapier3d 0.36.1: a joint of an MJCF without damping has one of 0.1 N·m·s/rad, and one with damping has only its own.
 #
-# A motor gives 0.01 N·m to a rotor of 0.01 kg·m². Expected: without damping it turns at 1 rad/s after a second, as in MuJoCo 4.0.0.
-# What happens where joints are inserted as a multibody: it turns at 0.1 rad/s, which it reaches in 0.1 s and never
-# exceeds. With damping="0.01" it is faster, and right: 0.632 rad/s. The loader gives a joint that is not damped the
-# standard damping of a multibody, which the description of the loader does not mention; joints of a URDF have it too.
+# A motor gives 0.01 N·m to a rotor of 0.01 kg·m². Expected: without damping it turns at 1 rad/s after a second, as in
+# MuJoCo 4.0.0. What happens where joints are inserted as a multibody: it turns at 0.1 rad/s, which it reaches in 0.1 s
+# and never exceeds. With damping="0.01" it is faster, and right: 0.632 rad/s. The loader gives a joint that is not
+# damped the standard damping of a multibody, which the description of the loader does not mention; joints of a URDF
+# have it too.
 # For us: set `multibody.set_damping()` after loading, or give each joint a damping of 1e-9.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

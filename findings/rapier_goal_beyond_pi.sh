@@ -2,12 +2,14 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # @dimforge/rapier3d-compat 0.21.0 (npm): a joint from -1 to 5 rad that is sent to 4 rad stands at its stop at -1 rad.
 #
-# A revolute joint without gravity; its motor has 100 N·m/rad and 20 N·m·s/rad for each kg·m². Expected of configureMotorPosition(4):
-# 4 rad, as 3 rad is reached; with limits beyond ±π also 10 rad. What happens: the goal is taken within half a turn, so that 4 rad is
-# reached at -2.28 rad, and with limits of -1 and 5 rad, between which the joint can be pushed to 5 rad by a torque, it is
-# driven to -1 rad and held there. Sent to 10 rad it never stops turning. Limits of -4 and 4 rad have no effect at all. The documentation
-# names no range of goals or limits; issue 499 of Rapier, which is open, is about limits beyond π.
-# For us: simulate only goals within ±π in this way; turn a rotor by configureMotorVelocity() and a controller of its own.
+# A revolute joint without gravity; its motor has 100 N·m/rad and 20 N·m·s/rad for each kg·m². Expected of
+# configureMotorPosition(4): 4 rad, as 3 rad is reached; with limits beyond ±π also 10 rad. What happens: the goal is
+# taken within half a turn, so that 4 rad is reached at -2.28 rad, and with limits of -1 and 5 rad, between which the
+# joint can be pushed to 5 rad by a torque, it is driven to -1 rad and held there. Sent to 10 rad it never stops
+# turning. Limits of -4 and 4 rad have no effect at all. The documentation names no range of goals or limits; issue 499
+# of Rapier, which is open, is about limits beyond π.
+# For us: simulate only goals within ±π in this way; turn a rotor by configureMotorVelocity() and a controller of its
+# own.
 #
 # Exit code 0: still so. Needs node; installs the version into a temporary folder.
 set -eu

@@ -2,9 +2,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # rapier3d 0.36.1: the gear ratio of a joint equality in an MJCF is inverted, 1/20 becomes 20.
 #
-# <joint joint1="output" joint2="motor" polycoef="0 -0.05 0 0 0"/> means output = -0.05 · motor. With 0.01 N·m at a rotor of
-# 0.01 kg·m², and an output of 4 kg·m², MuJoCo 4.0.0 has 0.5 rad/s at the rotor and -0.025 at the output after a second. The
-# loader of rapier, where joints are inserted as a multibody, has 6e-6 and -1.2e-4: the rotor turns with a
+# <joint joint1="output" joint2="motor" polycoef="0 -0.05 0 0 0"/> means output = -0.05 · motor. With 0.01 N·m at a
+# rotor of 0.01 kg·m², and an output of 4 kg·m², MuJoCo 4.0.0 has 0.5 rad/s at the rotor and -0.025 at the output after
+# a second. The loader of rapier, where joints are inserted as a multibody, has 6e-6 and -1.2e-4: the rotor turns with a
 # twentieth of the speed of the output. Where they are inserted as impulse joints, the equality has no effect.
 # For us: exchange joint1 and joint2 for rapier, and keep polycoef.
 #

@@ -2,10 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # rclpy 7.1.6 and 9.1.2: a driver that is connected but has never sent does not miss a deadline of 0.1 s in 2 s.
 #
-# A watchdog subscribes to joint states with a deadline of 0.1 s and a callback for missed ones; the driver offers the same
-# deadline. Expected: the callback is called 0.1 s after the driver is there, if it sends nothing, as after a fault at its start. What
-# happens, with Fast DDS: no call in 2 s. The time begins with the first message: after one message and silence the
-# callback comes each 0.1 s. A driver whose process ends after its first message is told in this way, one that hangs before it is not.
+# A watchdog subscribes to joint states with a deadline of 0.1 s and a callback for missed ones; the driver offers the
+# same deadline. Expected: the callback is called 0.1 s after the driver is there, if it sends nothing, as after a fault
+# at its start. What happens, with Fast DDS: no call in 2 s. The time begins with the first message: after one message
+# and silence the callback comes each 0.1 s. A driver whose process ends after its first message is told in this way,
+# one that hangs before it is not.
 # For us: the diagnostics of the node report it after input_timeout; in a watchdog, use a timer beside the deadline.
 #
 # Exit code 0: still so. Installs the wheels into a temporary folder.

@@ -2,11 +2,12 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # rclpy 7.1.6 and 9.1.2: a parameter from -0.3 to 0.3 in steps of 0.1 takes all seven values but 0.0.
 #
-# A trim in degrees is declared with FloatingPointRange(from_value=-0.3, to_value=0.3, step=0.1). Expected: 0.0 is one of its seven
-# values, as 0.1 is. What happens: -0.3 + 3 * 0.1 is 5.6e-17 in floating point, and is compared with 0.0 by a relative
-# tolerance alone, by which no number is near 0: "not close enough to a valid step", in declare_parameter() an exception, so that the
-# node does not start with its default of 0.0. So it is for 83 of 472 ranges of the usual steps, among them ±0.3, ±0.6 and ±0.7 of 0.1,
-# and for none with a limit of 0.5, 1 or 2. All other values have a tolerance of 1e-6 of their size.
+# A trim in degrees is declared with FloatingPointRange(from_value=-0.3, to_value=0.3, step=0.1). Expected: 0.0 is one
+# of its seven values, as 0.1 is. What happens: -0.3 + 3 * 0.1 is 5.6e-17 in floating point, and is compared with 0.0 by
+# a relative tolerance alone, by which no number is near 0: "not close enough to a valid step", in declare_parameter()
+# an exception, so that the node does not start with its default of 0.0. So it is for 83 of 472 ranges of the usual
+# steps, among them ±0.3, ±0.6 and ±0.7 of 0.1, and for none with a limit of 0.5, 1 or 2. All other values have a
+# tolerance of 1e-6 of their size.
 # For us: no parameter of the node has a step. In a driver, leave the step at 0, or let the range begin at 0.
 #
 # Exit code 0: still so. Installs the wheels into a temporary folder.

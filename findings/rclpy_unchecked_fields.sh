@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# rclpy 7.1.6 and 9.1.2: a Float64 of the whole number 1 is published as 5e-324, and the joint name 'elbow' as five joints.
+# rclpy 7.1.6 and 9.1.2: a Float64 of the whole number 1 is published as 5e-324, and the joint name 'elbow' as five
+# joints.
 #
-# Expected of Float64(data=1), a whole number as a slider or a file gives it: 1.0, or an error. What happens: the message shows 1,
-# and its subscribers get 5e-324, as the size of the whole number is taken for the bits of the double; of -3 they get nan, of 0 zero.
-# Int16(data=40000) is received as -25536, Bool(data=2) as False, and JointState(name='elbow') as five joints of a letter each.
-# In Humble each of these is an AssertionError; since Jazzy fields are checked only if ROS_PYTHON_CHECK_FIELDS is 1.
-# Sequences of doubles, as the positions of a JointState, are converted: [1] is received as 1.0.
+# Expected of Float64(data=1), a whole number as a slider or a file gives it: 1.0, or an error. What happens: the
+# message shows 1, and its subscribers get 5e-324, as the size of the whole number is taken for the bits of the double;
+# of -3 they get nan, of 0 zero. Int16(data=40000) is received as -25536, Bool(data=2) as False, and
+# JointState(name='elbow') as five joints of a letter each. In Humble each of these is an AssertionError; since Jazzy
+# fields are checked only if ROS_PYTHON_CHECK_FIELDS is 1. Sequences of doubles, as the positions of a JointState, are
+# converted: [1] is received as 1.0.
 # For us: in a driver, give float(value), and a list of names; test it with ROS_PYTHON_CHECK_FIELDS=1.
 #
 # Exit code 0: still so. Installs the wheels into a temporary folder.

@@ -1,11 +1,12 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# robokinematics 1.0.2: an arm of 500 mm whose parameters are named in another order has 0 mm and stands 500 mm high, without an error.
+# robokinematics 1.0.2: an arm of 500 mm whose parameters are named in another order has 0 mm and stands 500 mm high,
+# without an error.
 #
-# A link is given by name: frame_name, joint_type, link_length, twist, offset and theta. Expected: the order of the names
-# does not matter; at 30° the tip is at (0.433, 0.25, 0.1) m. What happens: the names are checked, but the values are taken
-# by their place. With the order theta, offset, link_length, twist, the tip is at (0, 0, 0.5) m, tilted by 0.1°, as the 0.1
-# m of the offset are taken as the twist.
+# A link is given by name: frame_name, joint_type, link_length, twist, offset and theta. Expected: the order of the
+# names does not matter; at 30° the tip is at (0.433, 0.25, 0.1) m. What happens: the names are checked, but the values
+# are taken by their place. With the order theta, offset, link_length, twist, the tip is at (0, 0, 0.5) m, tilted by
+# 0.1°, as the 0.1 m of the offset are taken as the twist.
 # For us: name the parameters in exactly the order above.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

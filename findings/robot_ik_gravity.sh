@@ -1,12 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# robot-ik 0.4.0: gravity loads the vertical first joint of its six-joint robot with 29.4 N·m, which is the torque of the second.
+# robot-ik 0.4.0: gravity loads the vertical first joint of its six-joint robot with 29.4 N·m, which is the torque of
+# the second.
 #
-# Expected of gravity_torque(): the derivative of the potential energy, so 0 at a joint that turns about the vertical. What
-# happens: with the robot that the package brings, the joints have -29.4, 5.0, 0.3, 14.1 ... N·m, where the energy of the
-# positions of its own forward kinematics gives 0, -29.4, -1.8, 0.3 ...: the axis of each joint is taken from the link after
-# it. Centres of mass are not moved to their link either: one arm of 0.5 m needs 0 N·m with 2 kg at its tip, and -9.81 N·m
-# with them at its joint.
+# Expected of gravity_torque(): the derivative of the potential energy, so 0 at a joint that turns about the vertical.
+# What happens: with the robot that the package brings, the joints have -29.4, 5.0, 0.3, 14.1 ... N·m, where the energy
+# of the positions of its own forward kinematics gives 0, -29.4, -1.8, 0.3 ...: the axis of each joint is taken from the
+# link after it. Centres of mass are not moved to their link either: one arm of 0.5 m needs 0 N·m with 2 kg at its tip,
+# and -9.81 N·m with them at its joint.
 # For us: compute torques with a library that is checked against energy, such as Pinocchio or MuJoCo.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -1,13 +1,15 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# robot-kinematics 1.1.0: in its Jacobian the last joint of an arm does not move the tip, and the tip of each URDF is at (0, 0, 0).
+# robot-kinematics 1.1.0: in its Jacobian the last joint of an arm does not move the tip, and the tip of each URDF is at
+# (0, 0, 0).
 #
-# An arm of 0.5 m and 0.4 m by its DH parameters, at 0.3 and 0.5 rad. Expected of Jacobian(): the derivative of forward_kinematics(),
-# 0.435 and 0.287 m/rad in x. What happens: each joint turns about the frame at its own end, not the one before it, so that the
-# elbow gives 0 m/rad, and the shoulder what the elbow should. Its inverse kinematics goes by it. pseudo_inverse() with a damping
-# multiplies by J Jᵀ + d instead of dividing by it: 0.1 m/s in x are 0.033 rad/s with it and 0.179 rad/s without.
-# URDFKinematics looks for the chain from the base on as if the base were a child, and finds none: forward_kinematics()
-# is at (0, 0, 0) for all angles of all URDF files, although it asks for as many angles as there are joints.
+# An arm of 0.5 m and 0.4 m by its DH parameters, at 0.3 and 0.5 rad. Expected of Jacobian(): the derivative of
+# forward_kinematics(), 0.435 and 0.287 m/rad in x. What happens: each joint turns about the frame at its own end, not
+# the one before it, so that the elbow gives 0 m/rad, and the shoulder what the elbow should. Its inverse kinematics
+# goes by it. pseudo_inverse() with a damping multiplies by J Jᵀ + d instead of dividing by it: 0.1 m/s in x are 0.033
+# rad/s with it and 0.179 rad/s without. URDFKinematics looks for the chain from the base on as if the base were a
+# child, and finds none: forward_kinematics() is at (0, 0, 0) for all angles of all URDF files, although it asks for as
+# many angles as there are joints.
 # For us: take the Jacobian of pinocchio for the URDF that gearkin writes.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

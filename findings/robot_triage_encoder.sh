@@ -2,12 +2,14 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # robot-triage 0.1.0: an encoder that is stuck for 10 s, or gives NaN, is no issue in a JointState, in a Float64 it is.
 #
-# Its detectors are said to flag "a topic still publishing but the value stopped changing", as of "an encoder wedged at one count", and
-# a value that leaves its range or is NaN. What happens: whole messages are compared, and a JointState has another stamp each time, so
-# that a stuck encoder is not seen; it is where the stamps are 0. A rule for the field `position` is accepted, but a list of an mcap is
-# never compared with the limits, and no path reaches its elements: 0.6 rad, where the limit is 0.5 rad, or NaN, is "No issues detected".
-# The README speaks of values; only a comment in the source speaks of identical messages.
-# For us: `gearkin validate` rejects NaN. Record what is to be watched as a Float64 as well; a clean report says nothing about joints.
+# Its detectors are said to flag "a topic still publishing but the value stopped changing", as of "an encoder wedged at
+# one count", and a value that leaves its range or is NaN. What happens: whole messages are compared, and a JointState
+# has another stamp each time, so that a stuck encoder is not seen; it is where the stamps are 0. A rule for the field
+# `position` is accepted, but a list of an mcap is never compared with the limits, and no path reaches its elements: 0.6
+# rad, where the limit is 0.5 rad, or NaN, is "No issues detected". The README speaks of values; only a comment in the
+# source speaks of identical messages.
+# For us: `gearkin validate` rejects NaN. Record what is to be watched as a Float64 as well; a clean report says nothing
+# about joints.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
 set -eu

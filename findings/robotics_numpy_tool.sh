@@ -2,9 +2,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # robotics-numpy 0.1.0: in the Jacobian of an arm a tool of 0.2 m is 0.4 m long, in its forward kinematics 0.2 m.
 #
-# A joint with a link of 0.5 m and a tool of 0.2 m moves the tip by 0.7 m for each rad. Expected: jacob0() is the derivative
-# of fkine(). What happens: the frame that it starts from contains the tool already, and the tool is added again: it has 0.9
-# m/rad. Speeds and torques of a gripper are wrong by 29 % here. Without a tool the two agree.
+# A joint with a link of 0.5 m and a tool of 0.2 m moves the tip by 0.7 m for each rad. Expected: jacob0() is the
+# derivative of fkine(). What happens: the frame that it starts from contains the tool already, and the tool is added
+# again: it has 0.9 m/rad. Speeds and torques of a gripper are wrong by 29 % here. Without a tool the two agree.
 # For us: make the tool a part of the last link, and leave `tool` as it is.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

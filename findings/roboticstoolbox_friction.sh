@@ -2,9 +2,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # roboticstoolbox-python 1.5.0: the friction of a joint in a URDF becomes its viscous damping.
 #
-# <dynamics damping="0.1" friction="0.02"/> means 0.1 N·m·s/rad and 0.02 N·m. The joint of the Robot has B = 0.02, its viscous
-# friction, and Tc = [0, 0], its Coulomb friction; the damping is dropped. At 10 rad/s that is 0.2 N·m in place of 1.02.
-# A URDF with damping alone has no losses at all. Pinocchio 4.1.0 reads 0.1 and 0.02.
+# <dynamics damping="0.1" friction="0.02"/> means 0.1 N·m·s/rad and 0.02 N·m. The joint of the Robot has B = 0.02, its
+# viscous friction, and Tc = [0, 0], its Coulomb friction; the damping is dropped. At 10 rad/s that is 0.2 N·m in place
+# of 1.02. A URDF with damping alone has no losses at all. Pinocchio 4.1.0 reads 0.1 and 0.02.
 # For us: set link.B and link.Tc by hand where torques are computed from a URDF.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# robotkinecal 0.1.0: a calibration of an arm by points instead of poses gives a third of the right variance of its joints.
+# robotkinecal 0.1.0: a calibration of an arm by points instead of poses gives a third of the right variance of its
+# joints.
 #
-# A calibration of six joints by 20 measured points of the tool, with a noise of 0.1 mm. Expected of joints_uncertainty, which is a
-# variance by the documentation: that of the estimated parameters, as they scatter over many calibrations. What happens: the residuals are
-# divided by 6 N minus the number of parameters also where each of the N observations is a point of three numbers. For 20 points and 27
-# parameters that is 93 instead of 33, and the variance is 0.35 of the right one, on average. For poses of six numbers it is right. For
-# each joint it is the norm of four variances, two in m² and two in rad².
+# A calibration of six joints by 20 measured points of the tool, with a noise of 0.1 mm. Expected of joints_uncertainty,
+# which is a variance by the documentation: that of the estimated parameters, as they scatter over many calibrations.
+# What happens: the residuals are divided by 6 N minus the number of parameters also where each of the N observations is
+# a point of three numbers. For 20 points and 27 parameters that is 93 instead of 33, and the variance is 0.35 of the
+# right one, on average. For poses of six numbers it is right. For each joint it is the norm of four variances, two in
+# m² and two in rad².
 # For us: multiply it by (6 N - p) / (3 N - p), or take the interval of `gearkin calibrate`.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

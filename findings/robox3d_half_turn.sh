@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# robox3d 0.1.0: a rotor that is to turn to 4 rad spins for ever, and the mimic, damping and friction of a URDF have no effect.
+# robox3d 0.1.0: a rotor that is to turn to 4 rad spins for ever, and the mimic, damping and friction of a URDF have no
+# effect.
 #
-# A continuous joint under position control with 10 N·m/rad and 0.6 N·m·s/rad. Expected of set_targets(), which goes to 4 rad at
-# 2 rad/s: the rotor follows and stops, as it does at 3 rad. What happens: angles are kept within ±π, but not the goals; beyond half
-# a turn the error never gets less than 0.86 rad, and the rotor is driven on. positions() goes from 3.14 to -3.14 rad, so that no count
-# of turns is left for an encoder. The output of a <mimic> is a free joint that stays at 0, and a damping of 1 N·m·s/rad and a
-# friction of 1 N·m in the URDF have no effect; no warning says so. The torque itself is right: 0.5 rad after a second.
+# A continuous joint under position control with 10 N·m/rad and 0.6 N·m·s/rad. Expected of set_targets(), which goes to
+# 4 rad at 2 rad/s: the rotor follows and stops, as it does at 3 rad. What happens: angles are kept within ±π, but not
+# the goals; beyond half a turn the error never gets less than 0.86 rad, and the rotor is driven on. positions() goes
+# from 3.14 to -3.14 rad, so that no count of turns is left for an encoder. The output of a <mimic> is a free joint that
+# stays at 0, and a damping of 1 N·m·s/rad and a friction of 1 N·m in the URDF have no effect; no warning says so. The
+# torque itself is right: 0.5 rad after a second.
 # For us: keep a simulated joint within half a turn, or take the MJCF that gearkin writes.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

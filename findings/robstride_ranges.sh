@@ -1,11 +1,12 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# robstride-dynamics 0.0.1: a torque of 2 N·m is sent to an RS05 as 0.65 N·m, and an RS03 at 8 rad/s is read at 20 rad/s.
+# robstride-dynamics 0.0.1: a torque of 2 N·m is sent to an RS05 as 0.65 N·m, and an RS03 at 8 rad/s is read at 20
+# rad/s.
 #
-# Each frame of a RobStride motor has torque and speed as fractions of the motor's own range, so that both sides have to know it.
-# By the manuals, and by epicallypowerful 1.0.7, the ranges are 14 N·m and 33 rad/s in an RS00, 20 rad/s in an RS03, 5.5 N·m and
-# 50 rad/s in an RS05, 36 N·m and 50 rad/s in an RS06. What happens: this package takes 17 and 50, 50, 17 and 33, 60 and 20.
-# RS01, RS02 and RS04 are right, and so are the gains and angles of all.
+# Each frame of a RobStride motor has torque and speed as fractions of the motor's own range, so that both sides have to
+# know it. By the manuals, and by epicallypowerful 1.0.7, the ranges are 14 N·m and 33 rad/s in an RS00, 20 rad/s in an
+# RS03, 5.5 N·m and 50 rad/s in an RS05, 36 N·m and 50 rad/s in an RS06. What happens: this package takes 17 and 50, 50,
+# 17 and 33, 60 and 20. RS01, RS02 and RS04 are right, and so are the gains and angles of all.
 # For us: scale by the factors that are printed here; a speed can be checked against the angles.
 #
 # Exit code 0: still so. Installs the packages into a temporary folder.

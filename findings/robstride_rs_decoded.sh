@@ -1,13 +1,15 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# robstride 0.3.6 (Rust): its command of 1 rad is read back as -79.5 rad, and its answer of a motor that runs as an overcurrent.
+# robstride 0.3.6 (Rust): its command of 1 rad is read back as -79.5 rad, and its answer of a motor that runs as an
+# overcurrent.
 #
-# It makes commands and answers into frames of CAN, and frames into commands and answers, as a recorder of the bus or a simulated motor
-# needs it. Expected: what was made into a frame comes back, within the 16 bits of the frame. What happens: of 1 rad, 2 rad/s, 30 N·m/rad
-# and 3 N·m to an RS03 there come -79.5 rad, -70 rad/s, 0.6 N·m/rad and -35 N·m, even without a frame between: the inverse of the
-# scaling only adds an offset. Out of the frame, the angle in percent of the range is 35475. In answers, mode and faults are written to
-# other bits than those that are read: a motor that runs without a fault is at overcurrent, and in reset. The frames of commands that
-# are sent, and the answers of real motors, are right.
+# It makes commands and answers into frames of CAN, and frames into commands and answers, as a recorder of the bus or a
+# simulated motor needs it. Expected: what was made into a frame comes back, within the 16 bits of the frame. What
+# happens: of 1 rad, 2 rad/s, 30 N·m/rad and 3 N·m to an RS03 there come -79.5 rad, -70 rad/s, 0.6 N·m/rad and -35 N·m,
+# even without a frame between: the inverse of the scaling only adds an offset. Out of the frame, the angle in percent
+# of the range is 35475. In answers, mode and faults are written to other bits than those that are read: a motor that
+# runs without a fault is at overcurrent, and in reset. The frames of commands that are sent, and the answers of real
+# motors, are right.
 # For us: decode the frames of commands yourself, from big-endian words over the printed ranges.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

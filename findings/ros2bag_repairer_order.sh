@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# ros2bag-repairer 0.1.0: a repaired recording of twelve files is read in the order 0, 1, 10, 11, 2, so that the motor jumps back.
+# ros2bag-repairer 0.1.0: a repaired recording of twelve files is read in the order 0, 1, 10, 11, 2, so that the motor
+# jumps back.
 #
-# `ros2 bag record` numbers its files from motor_0.db3 on. A recorder that is ended before it has written metadata.yaml leaves the files
-# alone, and this tool makes the missing file. Expected: its files are in the order of their numbers, which is that of their times. What
-# happens: they are in the order of the alphabet. A reader goes through them as they are listed, as rosbags does here
-# with twelve files of a second each: the third second of a motor at 1 rad/s is the eleventh, and after the twelfth the time goes back
-# by 10 s. The number of messages, their first and their last time in metadata.yaml are right.
+# `ros2 bag record` numbers its files from motor_0.db3 on. A recorder that is ended before it has written metadata.yaml
+# leaves the files alone, and this tool makes the missing file. Expected: its files are in the order of their numbers,
+# which is that of their times. What happens: they are in the order of the alphabet. A reader goes through them as they
+# are listed, as rosbags does here with twelve files of a second each: the third second of a motor at 1 rad/s is the
+# eleventh, and after the twelfth the time goes back by 10 s. The number of messages, their first and their last time in
+# metadata.yaml are right.
 # For us: sort `files` and `relative_file_paths` in metadata.yaml by number, or use `ros2 bag reindex`.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

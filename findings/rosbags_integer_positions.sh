@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# rosbags 0.11.9: positions of 1 and 2 rad in a numpy array of integers are written as 5e-324 and 1e-323 rad, without an error.
+# rosbags 0.11.9: positions of 1 and 2 rad in a numpy array of integers are written as 5e-324 and 1e-323 rad, without an
+# error.
 #
-# Expected of an array of integers in a float64[] of a JointState: the same numbers, or an error, as an array of float32 or a list raises
-# one. What happens: the bits of 64-bit integers are written as they are, in an mcap, a .db3 and a ROS 1 bag, and read back as
-# numbers next to zero: np.array([0, 1]), np.arange() and np.zeros_like() of counts make such arrays. In an array of
-# big-endian floats, as of an HDF5 file of another machine, 1.5 rad are 3.1e-319 rad in ROS 2; for ROS 1 the bytes are swapped.
-# The type hints of the messages ask for float64, but nothing compares the type of an array with them, only its size in bytes.
+# Expected of an array of integers in a float64[] of a JointState: the same numbers, or an error, as an array of float32
+# or a list raises one. What happens: the bits of 64-bit integers are written as they are, in an mcap, a .db3 and a ROS
+# 1 bag, and read back as numbers next to zero: np.array([0, 1]), np.arange() and np.zeros_like() of counts make such
+# arrays. In an array of big-endian floats, as of an HDF5 file of another machine, 1.5 rad are 3.1e-319 rad in ROS 2;
+# for ROS 1 the bytes are swapped. The type hints of the messages ask for float64, but nothing compares the type of an
+# array with them, only its size in bytes.
 # For us: give `np.asarray(angles, dtype=np.float64)` to each message that is written.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

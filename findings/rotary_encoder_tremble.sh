@@ -2,10 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # rotary-encoder-embedded 0.5.0 (Rust): a shaft that trembles across one edge of its encoder is counted on and on.
 #
-# Expected: a decoder of an incremental encoder counts a shaft that trembles across one edge to and fro, so that it stays where
-# it is. What happens in the standard mode, that of the README: a falling edge of one signal is a step if the other signal is
-# low, but the rising edge there is none. 100 trembles of a quarter of a cycle are 100 steps in one direction. The
-# quadrature table counts them right, but where the signals are not both low at first, its first reading is a step.
+# Expected: a decoder of an incremental encoder counts a shaft that trembles across one edge to and fro, so that it
+# stays where it is. What happens in the standard mode, that of the README: a falling edge of one signal is a step if
+# the other signal is low, but the rising edge there is none. 100 trembles of a quarter of a cycle are 100 steps in one
+# direction. The quadrature table counts them right, but where the signals are not both low at first, its first reading
+# is a step.
 # For us: a joint that is held against a load trembles so; its position drifts in one direction without any lost edge.
 #
 # Exit code 0: still so. Needs cargo; installs the version into a temporary folder.

@@ -1,12 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# rrtk 0.7.1 (Rust): a controller without a derivative term gives NaN whenever it is updated before its encoder has a new reading.
+# rrtk 0.7.1 (Rust): a controller without a derivative term gives NaN whenever it is updated before its encoder has a
+# new reading.
 #
-# Its getters return the latest reading with the time of that reading, so a control loop that is faster than the encoder gets some
-# readings twice. Expected of PIDControllerStream with kd = 0: the same output again. What happens: the derivative of an unchanged
-# reading is 0/0, and 0 times NaN is NaN. The next new reading gives a number again. MovingAverageStream copes with it, but
-# weights each reading by the time before it: of 0 at 0 ms and 0.1 at 10 ms the average over the last 15 ms is 0.067, as
-# if the shaft had been at 0.1 rad for 10 ms already.
+# Its getters return the latest reading with the time of that reading, so a control loop that is faster than the encoder
+# gets some readings twice. Expected of PIDControllerStream with kd = 0: the same output again. What happens: the
+# derivative of an unchanged reading is 0/0, and 0 times NaN is NaN. The next new reading gives a number again.
+# MovingAverageStream copes with it, but weights each reading by the time before it: of 0 at 0 ms and 0.1 at 10 ms the
+# average over the last 15 ms is 0.067, as if the shaft had been at 0.1 rad for 10 ms already.
 # For us: update the controller only with new readings, and let nothing that is not finite through to a motor.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

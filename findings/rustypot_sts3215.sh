@@ -2,10 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # rustypot 1.13.1: an STS3215 at -3.30 rad is read at -53.25 rad, and a goal of -3.30 rad is sent as -53.25 rad.
 #
-# Positions of this servo have 4096 steps a turn, 2048 for 0 rad, and their sign in bit 15: 100 steps below 0 is 32868 (see
-# st3215_registers.sh). Expected: -3.2950 rad for it, and 32868 as the goal for -3.2950. What happens: positions and goals are
-# in two's complement, so that a goal is read back right although the servo has another one. Speeds have their sign, but
-# a turn of 4095 steps: 0.02 % too much. A load has its sign in bit 10: -100 is read as 1124.
+# Positions of this servo have 4096 steps a turn, 2048 for 0 rad, and their sign in bit 15: 100 steps below 0 is 32868
+# (see st3215_registers.sh). Expected: -3.2950 rad for it, and 32868 as the goal for -3.2950. What happens: positions
+# and goals are in two's complement, so that a goal is read back right although the servo has another one. Speeds have
+# their sign, but a turn of 4095 steps: 0.02 % too much. A load has its sign in bit 10: -100 is read as 1124.
 # For us: keep the servo between -π and π, or decode read_raw_present_position() & 0xFFFF by its sign bit.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

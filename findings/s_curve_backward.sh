@@ -2,10 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # s_curve 0.1.7 (Rust): a short move back that begins in motion jumps by 2.2 rad, where the same move forward is right.
 #
-# A joint that turns at 1 rad/s moves from 0 to 2 rad, within 30 rad/s³, 10 rad/s² and 5 rad/s. Expected of the move from 2 rad to
-# 0 that begins at -1 rad/s: the mirror image. What happens: where the greatest speed is not reached, the times are calculated with
-# the sign of the initial speed, but for a move forward. The move lasts 1.43 s instead of 1.16 s, its position jumps by 2.20 rad
-# within one step, and it goes up to 5.33 rad/s. is_trajectory_feasible() is true. A move of 10 rad is right in both directions.
+# A joint that turns at 1 rad/s moves from 0 to 2 rad, within 30 rad/s³, 10 rad/s² and 5 rad/s. Expected of the move
+# from 2 rad to 0 that begins at -1 rad/s: the mirror image. What happens: where the greatest speed is not reached, the
+# times are calculated with the sign of the initial speed, but for a move forward. The move lasts 1.43 s instead of 1.16
+# s, its position jumps by 2.20 rad within one step, and it goes up to 5.33 rad/s. is_trajectory_feasible() is true. A
+# move of 10 rad is right in both directions.
 # For us: plan a move back as the mirror image of a move forward, with a positive initial speed, and negate its values.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

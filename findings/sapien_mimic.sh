@@ -2,10 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # SAPIEN 3.0.3: the gear ratio of a mimic between two joints on one link is inverted, 1/20 becomes 20.
 #
-# Rotor and output are on the stator, and the output is the mimic of the motor by -0.05. Expected: 1 N·m at the rotor turns it 20
-# times as far as the output. What happens: in a second the rotor turns by 0.07 rad and the output by -1.45 rad, in its
-# simulation on a CPU, without a warning: the rotor is -0.05 times the output. With an offset of 0.03 rad it is the rotor that
-# goes there, not the output. A joint without dynamics in the URDF has a friction of 0.05: 0.01 N·m do not turn the rotor.
+# Rotor and output are on the stator, and the output is the mimic of the motor by -0.05. Expected: 1 N·m at the rotor
+# turns it 20 times as far as the output. What happens: in a second the rotor turns by 0.07 rad and the output by -1.45
+# rad, in its simulation on a CPU, without a warning: the rotor is -0.05 times the output. With an offset of 0.03 rad it
+# is the rotor that goes there, not the output. A joint without dynamics in the URDF has a friction of 0.05: 0.01 N·m do
+# not turn the rotor.
 # For us: take the mimic out of the URDF for SAPIEN, and set the position of the output yourself.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

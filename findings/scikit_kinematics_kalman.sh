@@ -3,9 +3,10 @@
 # scikit-kinematics 0.10.4: its Kalman filter turns an arm by 2.83 rad that has turned by 1.75 rad, without any noise.
 #
 # An arm turns about the vertical at 0.5 rad/s, and the readings of gyroscope, accelerometer and magnetometer are exact.
-# Expected of imus.kalman(): 1.75 rad after 3.5 s, which the magnetometer alone shows. What happens: 2.83 rad; an arm that
-# stops at 1.0 rad is at 1.79 rad 1.5 s later. The correction is the difference of two successive measurements, not of a
-# measurement and the estimate, so no error is ever corrected. The parameter D, the noise of the process, has no effect.
+# Expected of imus.kalman(): 1.75 rad after 3.5 s, which the magnetometer alone shows. What happens: 2.83 rad; an arm
+# that stops at 1.0 rad is at 1.79 rad 1.5 s later. The correction is the difference of two successive measurements, not
+# of a measurement and the estimate, so no error is ever corrected. The parameter D, the noise of the process, has no
+# effect.
 # For us: check a filter with exact readings of a known turn. 0.12.0, which needs Python 3.12, has the same correction.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

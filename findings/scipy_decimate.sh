@@ -2,8 +2,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # SciPy 1.17.1: decimate() makes 98.86 rad of a shaft that stands at 100 rad, and resample_poly() 55 rad at its ends.
 #
-# The default of decimate is a Chebyshev filter of order 8, which passes a constant with -0.05 dB, and is used twice: every
-# sample is 1.1 % too small, in the middle of a recording as at its ends. So a gear ratio from a decimated and a
+# The default of decimate is a Chebyshev filter of order 8, which passes a constant with -0.05 dB, and is used twice:
+# every sample is 1.1 % too small, in the middle of a recording as at its ends. So a gear ratio from a decimated and a
 # whole signal is wrong by as much. With ftype='fir', and in resample_poly, the middle is right, but both take the
 # signal as 0 before and after: at 100 rad the first two samples are 55.0 and 108.7 rad.
 # For us: resample_poly(..., padtype='line') errs nowhere for a steady shaft, nor for one that turns evenly.

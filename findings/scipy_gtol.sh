@@ -3,8 +3,8 @@
 # SciPy 1.17.1: the phase of a transmission error in radians is left at its start value, and success is reported.
 #
 # 100 samples of 10e-6·sin(3φ + 0.7) rad are fitted with an amplitude and a phase, from 12e-6 rad and 0. least_squares
-# and minimize answer with a phase of 0.00 rad and an amplitude that is 24 % too small: their gtol of 1e-8 and 1e-5 is an
-# absolute number, and the gradient of squares of microradians is below it. curve_fit, as soon as it has bounds, does
+# and minimize answer with a phase of 0.00 rad and an amplitude that is 24 % too small: their gtol of 1e-8 and 1e-5 is
+# an absolute number, and the gradient of squares of microradians is below it. curve_fit, as soon as it has bounds, does
 # so too (0.01 rad and 12 %), but not without bounds. In µrad all four find 10.0 µrad and 0.70 rad.
 # For us: fit in µrad or arcseconds, or give gtol=None, and look at the residual instead of at success.
 #

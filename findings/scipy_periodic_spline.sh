@@ -2,9 +2,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # SciPy 1.17.1: a periodic spline of splrep() is not periodic outside of its turn, where four others are.
 #
-# A correction sin(φ) is given by 24 points of a turn. Asked 2 rad after its end, splev() of splrep(per=True) gives 0.674
-# instead of 0.909: it goes on along its last polynomial, and is -17 after a further half turn. BSpline made
-# of it does so as well. CubicSpline, make_interp_spline and make_splrep with bc_type='periodic' wrap the angle.
+# A correction sin(φ) is given by 24 points of a turn. Asked 2 rad after its end, splev() of splrep(per=True) gives
+# 0.674 instead of 0.909: it goes on along its last polynomial, and is -17 after a further half turn. BSpline made of it
+# does so as well. CubicSpline, make_interp_spline and make_splrep with bc_type='periodic' wrap the angle.
 # For us: a rotor turns on: use one of the others, or bring the angle into the turn with `angle % (2 * np.pi)`.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

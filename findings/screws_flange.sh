@@ -2,10 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # screws 0.7.0: a tool of 5 kg at a flange of a URDF needs no torque at the joint that bears it, 24.5 N·m are right.
 #
-# The output of a joint bears a tool by a fixed joint, 0.5 m from the axis. Expected: gravity_forces() is 24.525 N·m and the
-# inertia 1.28 kg·m², as the documentation of load() says only that fixed joints "add no column". What happens: they are 0
-# and 0.01 kg·m², those of the output alone: the mass of every link behind a fixed joint is left out, without a warning.
-# Pinocchio 4.1.0 counts it.
+# The output of a joint bears a tool by a fixed joint, 0.5 m from the axis. Expected: gravity_forces() is 24.525 N·m and
+# the inertia 1.28 kg·m², as the documentation of load() says only that fixed joints "add no column". What happens: they
+# are 0 and 0.01 kg·m², those of the output alone: the mass of every link behind a fixed joint is left out, without a
+# warning. Pinocchio 4.1.0 counts it.
 # For us: merge the masses of fixed links into the moving link before, or use Pinocchio.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -2,11 +2,12 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # servomotor 0.12.2: a whole turn of an external encoder of 4096 counts is read as 0.45°, and multimove() always fails.
 #
-# An M17 servomotor with an external encoder of 4096 counts a turn, in degrees. Expected of get_comprehensive_position(): the
-# motor's two positions in degrees, and the count of the encoder, which the library's own table of commands says must not be
-# converted. What happens: the same table asks for the conversion, and 4096 counts are divided by the 9102.2 counts per degree of
-# the motor: a turn is 0.45°, or 0.00125 shaft_rotations. multimove() asks for a unit that no motor has, and raises an AttributeError
-# before anything is sent; it is the only command that queues moves of two kinds at once.
+# An M17 servomotor with an external encoder of 4096 counts a turn, in degrees. Expected of
+# get_comprehensive_position(): the motor's two positions in degrees, and the count of the encoder, which the library's
+# own table of commands says must not be converted. What happens: the same table asks for the conversion, and 4096
+# counts are divided by the 9102.2 counts per degree of the motor: a turn is 0.45°, or 0.00125 shaft_rotations.
+# multimove() asks for a unit that no motor has, and raises an AttributeError before anything is sent; it is the only
+# command that queues moves of two kinds at once.
 # For us: set position_unit='encoder_counts' for this reading, and divide by the counts of the encoder.
 #
 # The motor's answer is given in place of its port. Exit code 0: still so. Installs the package into a temporary folder.

@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# signal-filters 0.1.16 (Rust): after a million counts, the average of readings of 0.1 is -23.5, and a median of five begins at 0.
+# signal-filters 0.1.16 (Rust): after a million counts, the average of readings of 0.1 is -23.5, and a median of five
+# begins at 0.
 #
-# An axis moves at a million counts and more, and is then set to zero. Expected of MovingAverageFilterf32 of 8 readings, when 100 have been
-# 0.1: 0.1. What happens: the sum is kept in single precision, in which each reading is added once and taken off later;
-# what is rounded off at large values stays in it for good. reset() clears it. A shaft at 100 rad with a noise of 1 mrad is read 2.6 mrad
-# away after an hour at 1 kHz. Expected of MedianFilter5f32 at a shaft that stands at 100 rad: 100. What happens: its first two
-# values are 0, as its five readings begin as zeros; MedianFilter3f32 gives 100 from the first on.
+# An axis moves at a million counts and more, and is then set to zero. Expected of MovingAverageFilterf32 of 8 readings,
+# when 100 have been 0.1: 0.1. What happens: the sum is kept in single precision, in which each reading is added once
+# and taken off later; what is rounded off at large values stays in it for good. reset() clears it. A shaft at 100 rad
+# with a noise of 1 mrad is read 2.6 mrad away after an hour at 1 kHz. Expected of MedianFilter5f32 at a shaft that
+# stands at 100 rad: 100. What happens: its first two values are 0, as its five readings begin as zeros;
+# MedianFilter3f32 gives 100 from the first on.
 # For us: give the filter angles within a turn, or call reset() at standstill; leave out the first two medians.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

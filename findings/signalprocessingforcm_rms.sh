@@ -1,11 +1,12 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# SignalProcessingForCM 0.2.6: the RMS of a vibration of amplitude 1 is 71 in a record of 10 000 samples, and 224 in 100 000.
+# SignalProcessingForCM 0.2.6: the RMS of a vibration of amplitude 1 is 71 in a record of 10 000 samples, and 224 in 100
+# 000.
 #
-# Expected of get_statistics(): an RMS of 0.707 and a crest factor of 1.414 of a sine. What happens: the root of the sum of the
-# squares is taken, not of their mean, so that the RMS grows and the crest factor falls with the length of the record, here to
-# 0.014. TSA() cuts the samples of a turn to a whole number: at 10 kHz and 1700 rpm, 352.94 become 352, and
-# after 100 turns a tooth mesh of 20 a turn has averaged itself away to 0.05 of its amplitude; nothing warns.
+# Expected of get_statistics(): an RMS of 0.707 and a crest factor of 1.414 of a sine. What happens: the root of the sum
+# of the squares is taken, not of their mean, so that the RMS grows and the crest factor falls with the length of the
+# record, here to 0.014. TSA() cuts the samples of a turn to a whole number: at 10 kHz and 1700 rpm, 352.94 become 352,
+# and after 100 turns a tooth mesh of 20 a turn has averaged itself away to 0.05 of its amplitude; nothing warns.
 # For us: compute the RMS yourself; average over turns only after resampling by the angle.
 #
 # Exit code 0: still so. Needs Python 3.11, as the package does; installs the version into a temporary folder.

@@ -2,9 +2,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # simple-pid 2.0.1: error_map keeps the error of an angle within a turn, but not its derivative.
 #
-# For angles, the error is brought into ±π by error_map, as its documentation shows. The derivative is taken of the measured
-# angle, which is not mapped: where an encoder wraps from 3.1 to -3.1 rad within 10 ms, a turn of 0.083 rad, the
-# derivative is that of 6.2 rad: with Kd = 1 the output jumps to 620, where 8.3 is right, and with the wrong sign.
+# For angles, the error is brought into ±π by error_map, as its documentation shows. The derivative is taken of the
+# measured angle, which is not mapped: where an encoder wraps from 3.1 to -3.1 rad within 10 ms, a turn of 0.083 rad,
+# the derivative is that of 6.2 rad: with Kd = 1 the output jumps to 620, where 8.3 is right, and with the wrong sign.
 # For us: feed it with an unwrapped angle, such as `output_state`.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

@@ -2,11 +2,12 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # sorotraj 1.3.2: a trajectory that is asked for 3.5 s and 0.5 s at once gives the two angles in the opposite order.
 #
-# A joint goes from 0 to 1 rad in a prefix of 1 s, to 3 rad in 2 s, and back to 0 in a suffix of 1 s. Expected of the function of
-# get_traj_function() for the times [3.5, 0.5]: [1.5, 0.5] rad. What happens: [0.5, 1.5], since the values of prefix, main part and suffix
-# are put one behind the other, in whatever order the times were. Times of samples that came late, or of several joints in one array, get
-# each other's angles; in ascending order all is right. Without a suffix the trajectory is to hold its last angle, and does so in an array
-# with earlier times, but for a single time 1 µs behind the end it raises a TypeError, which ends a loop that asks by the clock.
+# A joint goes from 0 to 1 rad in a prefix of 1 s, to 3 rad in 2 s, and back to 0 in a suffix of 1 s. Expected of the
+# function of get_traj_function() for the times [3.5, 0.5]: [1.5, 0.5] rad. What happens: [0.5, 1.5], since the values
+# of prefix, main part and suffix are put one behind the other, in whatever order the times were. Times of samples that
+# came late, or of several joints in one array, get each other's angles; in ascending order all is right. Without a
+# suffix the trajectory is to hold its last angle, and does so in an array with earlier times, but for a single time 1
+# µs behind the end it raises a TypeError, which ends a loop that asks by the clock.
 # For us: ask for one time at a time, and for at most the final time.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

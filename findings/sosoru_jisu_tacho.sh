@@ -3,10 +3,11 @@
 # sosoru-jisu 1.0.0: the tacho of a motor at 3000 rpm is read as 1500 rpm, and its imbalance is found at order 2 instead
 # of 1.
 #
-# A tacho gives one pulse a turn, an accelerometer 1 m/s² once a turn. Expected of get_tach_midpoints(): one time a turn. What
-# happens: pulses that come less than 30 ms after the one before are left out, which is said nowhere. From 2000 rpm on each second
-# one is lost, and from 4000 rpm on two of three: 4500 rpm are 1500 rpm. perform_order_tracking() takes the times as turns, so
-# that each order is two or three times too high. At 1900 rpm all is right. No warning is given.
+# A tacho gives one pulse a turn, an accelerometer 1 m/s² once a turn. Expected of get_tach_midpoints(): one time a
+# turn. What happens: pulses that come less than 30 ms after the one before are left out, which is said nowhere. From
+# 2000 rpm on each second one is lost, and from 4000 rpm on two of three: 4500 rpm are 1500 rpm.
+# perform_order_tracking() takes the times as turns, so that each order is two or three times too high. At 1900 rpm all
+# is right. No warning is given.
 # For us: find the pulses by numpy.diff() of the signal above its threshold, or take the speed of the recording itself.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -1,14 +1,17 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# step-driver-g071-api 1.1: a stepper that is sent to 70 000 steps goes to 70 001, and to 655 350 it goes ten steps too far.
+# step-driver-g071-api 1.1: a stepper that is sent to 70 000 steps goes to 70 001, and to 655 350 it goes ten steps too
+# far.
 #
-# The driver takes a position in two Modbus registers of 16 bits. Expected of move_to_pos(70000): 70 000 is sent. What happens: the
-# position is divided by 65 535 instead of 65 536, so that one step is added for each 65 535: 65 535 is sent as 65 536, and
-# 655 350 as 655 360. The position is read back right, so that the move ends with "not in set position" in the log,
-# and no exception. Up to 65 534 steps all is right; 65 535, 131 071 and so on cannot be reached at all.
+# The driver takes a position in two Modbus registers of 16 bits. Expected of move_to_pos(70000): 70 000 is sent. What
+# happens: the position is divided by 65 535 instead of 65 536, so that one step is added for each 65 535: 65 535 is
+# sent as 65 536, and 655 350 as 655 360. The position is read back right, so that the move ends with "not in set
+# position" in the log, and no exception. Up to 65 534 steps all is right; 65 535, 131 071 and so on cannot be reached
+# at all.
 # For us: give p - p // 65536 instead of the position p.
 #
-# A pseudo-terminal answers as the driver does, and is where it is sent. Exit code 0: still so. Installs into a temporary folder.
+# A pseudo-terminal answers as the driver does, and is where it is sent. Exit code 0: still so. Installs into a
+# temporary folder.
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

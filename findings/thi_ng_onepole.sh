@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# @thi.ng/dsp 4.7.115 (npm): a high-pass lets 91 % of a standstill through, and the response of a low-pass is 30 dB too small.
+# @thi.ng/dsp 4.7.115 (npm): a high-pass lets 91 % of a standstill through, and the response of a low-pass is 30 dB too
+# small.
 #
-# Expected of onepoleHP(0.01), to take the rest position out of a vibration: a joint that stands at 100 rad ends at 0. What happens: it
-# ends at 91.2 rad. Its pole is that of a low-pass seen from half the rate, so that at a low corner it lets all frequencies through,
-# and at 1/1000 of the rate 91.7 rad. dcBlock(0.01) ends at 0. Expected of filterResponse() for onepoleLP(0.01): 0 dB at
-# standstill and -3 dB at the corner, as the filter really has. What happens: its pole has the opposite sign in filterCoeffs(), so
-# that the response is -30 dB at both. Those of biquads are right.
+# Expected of onepoleHP(0.01), to take the rest position out of a vibration: a joint that stands at 100 rad ends at 0.
+# What happens: it ends at 91.2 rad. Its pole is that of a low-pass seen from half the rate, so that at a low corner it
+# lets all frequencies through, and at 1/1000 of the rate 91.7 rad. dcBlock(0.01) ends at 0. Expected of
+# filterResponse() for onepoleLP(0.01): 0 dB at standstill and -3 dB at the corner, as the filter really has. What
+# happens: its pole has the opposite sign in filterCoeffs(), so that the response is -30 dB at both. Those of biquads
+# are right.
 # For us: take dcBlock() or a biquad as a high-pass; a filter that is chosen by this response is the wrong one.
 #
 # Exit code 0: still so. Needs node; installs the versions into a temporary folder.

@@ -1,12 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# circuitpython-ticstepper 2.0.4: an acceleration of 60 rpm/s is sent to a Tic as 6000 rpm/s, and a second move does nothing.
+# circuitpython-ticstepper 2.0.4: an acceleration of 60 rpm/s is sent to a Tic as 6000 rpm/s, and a second move does
+# nothing.
 #
-# By Pololu's guide the controller takes speeds in steps per 10 000 s, but accelerations in steps per 100 s². The library
-# sends both as the first, so that max_accel and max_decel are 100 times as great. Read back, it takes offsets of
-# settings for those of variables, by ticlib 0.3.0 both: a current limit of 15 is then a maximum speed of 7550 rpm. move(),
-# said to move by the given number of steps, sets the target position: the second move(100) leaves the motor where it is.
-# A bus keeps here what is sent, as the controller does.
+# By Pololu's guide the controller takes speeds in steps per 10 000 s, but accelerations in steps per 100 s². The
+# library sends both as the first, so that max_accel and max_decel are 100 times as great. Read back, it takes offsets
+# of settings for those of variables, by ticlib 0.3.0 both: a current limit of 15 is then a maximum speed of 7550 rpm.
+# move(), said to move by the given number of steps, sets the target position: the second move(100) leaves the motor
+# where it is. A bus keeps here what is sent, as the controller does.
 # For us: a rotor that loses steps by such an acceleration has an offset that looks like a slipped coupling.
 #
 # Exit code 0: still so. Installs the packages into a temporary folder.

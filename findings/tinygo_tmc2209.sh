@@ -2,11 +2,12 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # tinygo.org/x/drivers 0.37.0: a run current of 16 is sent to a TMC2209 as 2, and a driver that is too hot has no error.
 #
-# The register IHOLD_IRUN has, by the datasheet, the run current in bits 8 to 12 and the delay in bits 16 to 19, as tmc2209
-# 0.3.0 for Rust packs them. Pack() puts the run current at bit 5 and the delay at bit 10: 16 of 31 becomes 2 and a delay of 8
-# becomes 0. Expected of CheckErrorStatus() of a driver with a short circuit that is too hot: false. What happens: true, as
-# the status that is read is never looked at, and VerifyCommunication() is false for a driver that answers, for the same
-# reason. Unpack() does not use the value that it is given. A table of registers answers here as a driver does.
+# The register IHOLD_IRUN has, by the datasheet, the run current in bits 8 to 12 and the delay in bits 16 to 19, as
+# tmc2209 0.3.0 for Rust packs them. Pack() puts the run current at bit 5 and the delay at bit 10: 16 of 31 becomes 2
+# and a delay of 8 becomes 0. Expected of CheckErrorStatus() of a driver with a short circuit that is too hot: false.
+# What happens: true, as the status that is read is never looked at, and VerifyCommunication() is false for a driver
+# that answers, for the same reason. Unpack() does not use the value that it is given. A table of registers answers here
+# as a driver does.
 # For us: a motor with an eighth of its current loses steps under load, which looks like a slipped coupling.
 #
 # Exit code 0: still so. Needs go; installs the version into a temporary folder.

@@ -3,9 +3,9 @@
 # tmc2209 0.3.0 (Rust): VACTUAL::ENABLED_STOPPED, "in a stopped state", turns a motor on and on, by 18° an hour.
 #
 # A TMC2209 ignores its step input while the register VACTUAL is not 0, and turns the motor by VACTUAL times fclk / 2^24
-# microsteps a second. ENABLED_STOPPED is 1, so that at 12 MHz the motor makes 0.715 microsteps a second: 2575 an hour, which
-# are 10 of its 200 full steps at 256 microsteps, and 161 full steps, 290°, at 16. Expected of a stopped motor: 0. By the
-# datasheet 0 is the normal operation, in which the step input counts.
+# microsteps a second. ENABLED_STOPPED is 1, so that at 12 MHz the motor makes 0.715 microsteps a second: 2575 an hour,
+# which are 10 of its 200 full steps at 256 microsteps, and 161 full steps, 290°, at 16. Expected of a stopped motor: 0.
+# By the datasheet 0 is the normal operation, in which the step input counts.
 # For us: an output that creeps at a rate that no load changes is such a motor; disable the driver to stop it.
 #
 # Exit code 0: still so. Needs cargo; installs the version into a temporary folder.

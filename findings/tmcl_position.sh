@@ -2,11 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # TMCL 1.1.1: a target of 300 or of -1 microsteps is an error, and a position of -1 is read as 4294967295.
 #
-# A Trinamic module takes commands of nine bytes, the last of which is the sum of the others in eight bits. Expected: each target
-# from -2^31 to 2^31 - 1 can be sent. What happens: the sum is not cut to eight bits, so that struct.error is raised where address,
-# command and value together exceed 255: with motor 1, from 250 on, 1/205 of a turn at 256 microsteps. What is negative
-# is an error too, and is read without its sign, as a speed back of -100 is 4294967196. An error that the
-# module answers is a NameError. A line answers here as a module does.
+# A Trinamic module takes commands of nine bytes, the last of which is the sum of the others in eight bits. Expected:
+# each target from -2^31 to 2^31 - 1 can be sent. What happens: the sum is not cut to eight bits, so that struct.error
+# is raised where address, command and value together exceed 255: with motor 1, from 250 on, 1/205 of a turn at 256
+# microsteps. What is negative is an error too, and is read without its sign, as a speed back of -100 is 4294967196. An
+# error that the module answers is a NameError. A line answers here as a module does.
 # For us: pytrinamic 0.2.26 sends and reads both right.
 #
 # Exit code 0: still so. Installs the packages into a temporary folder.

@@ -2,9 +2,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # toppra 0.6.10: a trajectory exceeds its limit of acceleration by 22 %, and goes on after its end.
 #
-# A joint moves by 1 rad through 0.3 rad, with at most 1 rad/s and 1 rad/s². The trajectory that TOPPRA makes by default,
-# by ParametrizeSpline, accelerates with 1.219 rad/s²; by ParametrizeConstAccel with 1.000 rad/s².
-# A second after its end, where a loop that is late may evaluate it, the joint is at 0.485 rad, not at 1 rad.
+# A joint moves by 1 rad through 0.3 rad, with at most 1 rad/s and 1 rad/s². The trajectory that TOPPRA makes by
+# default, by ParametrizeSpline, accelerates with 1.219 rad/s²; by ParametrizeConstAccel with 1.000 rad/s². A second
+# after its end, where a loop that is late may evaluate it, the joint is at 0.485 rad, not at 1 rad.
 # For us: give parametrizer='ParametrizeConstAccel' for motions of a bench, and clip the time to its duration.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

@@ -2,9 +2,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # truerig 0.1.1: the friction and the greatest torque of a joint are lost in MJCF, and the report of losses is silent.
 #
-# truerig converts a URDF and reports what the conversion loses. A joint has a friction of 0.2 N·m and an effort of 2 N·m.
-# The MJCF has neither frictionloss nor actuatorfrcrange; the report names assumed contacts, but not these.
-# MuJoCo 4.0.0 itself keeps both when it reads the same URDF.
+# truerig converts a URDF and reports what the conversion loses. A joint has a friction of 0.2 N·m and an effort of 2
+# N·m. The MJCF has neither frictionloss nor actuatorfrcrange; the report names assumed contacts, but not these. MuJoCo
+# 4.0.0 itself keeps both when it reads the same URDF.
 # For us: let MuJoCo read the URDF, or compare the models' dof_frictionloss and jnt_actfrcrange.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

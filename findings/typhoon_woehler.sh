@@ -2,11 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # typhoon-rainflow 0.2.5: the slope of an S-N curve beyond its knee is ignored, and the table of all cycles is empty.
 #
-# WoehlerCurveParams(sd=100, nd=1e6, k1=5, k2=9) has, by the README, a slope of 9 beyond 10^6 cycles. Expected: 59.9 at 10^8
-# cycles. What happens: 100, as without k2; with MinerType.HAIBACH the slope is 2 k1 - 1, whatever k2 is. Of two cycles that
-# rainflow() counts, counter_to_full_interval_df() shows none, neither without bins nor with the bin size of 0.1 that the table
-# has by default: rainflow() gives 0.6 in 32 bits as 0.6000000238, which is in no bin, and what is in none is dropped. With 0.25
-# the table has both.
+# WoehlerCurveParams(sd=100, nd=1e6, k1=5, k2=9) has, by the README, a slope of 9 beyond 10^6 cycles. Expected: 59.9 at
+# 10^8 cycles. What happens: 100, as without k2; with MinerType.HAIBACH the slope is 2 k1 - 1, whatever k2 is. Of two
+# cycles that rainflow() counts, counter_to_full_interval_df() shows none, neither without bins nor with the bin size of
+# 0.1 that the table has by default: rainflow() gives 0.6 in 32 bits as 0.6000000238, which is in no bin, and what is in
+# none is dropped. With 0.25 the table has both.
 # For us: a load beyond the knee does no damage there; take a power of 2 as bin size of both.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

@@ -2,10 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # urdf-loader 0.13.1: a mimic begins without its offset, and a mimic of a mimic leaves the joint that it follows.
 #
-# An output follows a motor by -0.05 with an offset of 0.03, from -0.1 to 0.1 rad; a pointer follows the output by 2 with an
-# offset of 0.2. A loaded robot shows all three at 0, until a joint is set. At 100 rad of the motor the output stops at -0.1;
-# the pointer should stand at 0, and is at -9.74: it follows where the output would be without its limit. Where the output
-# is set, it turns without the motor.
+# An output follows a motor by -0.05 with an offset of 0.03, from -0.1 to 0.1 rad; a pointer follows the output by 2
+# with an offset of 0.2. A loaded robot shows all three at 0, until a joint is set. At 100 rad of the motor the output
+# stops at -0.1; the pointer should stand at 0, and is at -9.74: it follows where the output would be without its limit.
+# Where the output is set, it turns without the motor.
 # For us: set the motor once after loading, give mimics no limits of their own, and let each mimic the motor itself.
 #
 # Exit code 0: still so. Needs node; installs the versions into a temporary folder.

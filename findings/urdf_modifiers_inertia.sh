@@ -2,8 +2,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # urdf-modifiers 0.0.2: a rotor of 50 g that is made 10 % heavier has 0.01 kg·m² after it, 900 times its inertia.
 #
-# The rotor is a cylinder of 40 mm diameter, with an inertia of 0.00001 kg·m² about its axis. Expected after mass_scale =
-# 1.1: 0.000011 kg·m². What happens: each inertia below 0.01 kg·m² is set to 0.01 kg·m², without a warning. At a motor
+# The rotor is a cylinder of 40 mm diameter, with an inertia of 0.00001 kg·m² about its axis. Expected after mass_scale
+# = 1.1: 0.000011 kg·m². What happens: each inertia below 0.01 kg·m² is set to 0.01 kg·m², without a warning. At a motor
 # behind a gear of ratio 19 this rotor appears as 3.6 kg·m² at the output, where 0.004 are right.
 # For us: set the inertia of the link again after the modification.
 #

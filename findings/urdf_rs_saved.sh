@@ -1,11 +1,12 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# urdf-rs 0.10.0 (Rust): a motor without limits has an effort and a speed of 0 once its URDF is saved, and its gear is lost.
+# urdf-rs 0.10.0 (Rust): a motor without limits has an effort and a speed of 0 once its URDF is saved, and its gear is
+# lost.
 #
-# A continuous joint needs no <limit>, and a link without <inertial> is a frame. Expected of read_from_string() and write_to_string():
-# the same robot. What happens: what the file does not have is written with zeros. The motor gets a limit of effort 0 and velocity 0,
-# with which a simulator holds it still, and the frame an <inertial> of mass 0, which others refuse or take as a massless body. The
-# <transmission> with its reduction of 20 is missing. The mimic stays.
+# A continuous joint needs no <limit>, and a link without <inertial> is a frame. Expected of read_from_string() and
+# write_to_string(): the same robot. What happens: what the file does not have is written with zeros. The motor gets a
+# limit of effort 0 and velocity 0, with which a simulator holds it still, and the frame an <inertial> of mass 0, which
+# others refuse or take as a massless body. The <transmission> with its reduction of 20 is missing. The mimic stays.
 # For us: keep the file that was read, or give each motor limits and each link an inertia before it is read.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.

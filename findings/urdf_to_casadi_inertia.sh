@@ -2,10 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # urdf-to-casadi 0.1.1: a shaft whose inertia in a URDF is given in turned axes has 400 times its inertia.
 #
-# The shaft has 0.01 kg·m² about its long axis, which is z of its <inertial> and, by rpy="0 1.5708 0" of the <origin> of it,
-# the axis x of the joint. Expected: an inertia of 0.01 kg·m² at the joint, as in MuJoCo 4.0.0. What happens: it is 4 kg·m²,
-# as rpy is left out. A joint without an <origin>, which a URDF may leave out, is an AttributeError, and so is each call of
-# get_friction_matrices().
+# The shaft has 0.01 kg·m² about its long axis, which is z of its <inertial> and, by rpy="0 1.5708 0" of the <origin> of
+# it, the axis x of the joint. Expected: an inertia of 0.01 kg·m² at the joint, as in MuJoCo 4.0.0. What happens: it is
+# 4 kg·m², as rpy is left out. A joint without an <origin>, which a URDF may leave out, is an AttributeError, and so is
+# each call of get_friction_matrices().
 # For us: turn the inertias into the axes of their links before; CAD exporters often give their principal axes.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

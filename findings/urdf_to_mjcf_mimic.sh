@@ -2,10 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # urdf-to-mjcf 0.1.1: the gear ratio of a mimic is inverted: 1/20 becomes 20, and damping and friction are lost.
 #
-# An output mimics a motor by -0.05 with an offset of 0.2. MuJoCo reads the equality of an MJCF as joint1 = offset + factor *
-# joint2, so joint1 has to be the one that follows. urdf-mujoco-converter 0.1.0 writes the
-# output first. urdf-to-mjcf writes the motor first with the same numbers: where the output turns by 1 rad the
-# motor turns by -0.05 rad. The damping and friction of the motor are not in its file. It warns of neither.
+# An output mimics a motor by -0.05 with an offset of 0.2. MuJoCo reads the equality of an MJCF as joint1 = offset +
+# factor * joint2, so joint1 has to be the one that follows. urdf-mujoco-converter 0.1.0 writes the output first.
+# urdf-to-mjcf writes the motor first with the same numbers: where the output turns by 1 rad the motor turns by -0.05
+# rad. The damping and friction of the motor are not in its file. It warns of neither.
 # For us: turn one joint of a converted model, and look whether the faster one is the motor.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# urdf-usd-converter 0.3.4, Newton 1.8.0: a joint's torque limit of 10 N·m in a URDF is 1 000 000 N·m after the way over USD.
+# urdf-usd-converter 0.3.4, Newton 1.8.0: a joint's torque limit of 10 N·m in a URDF is 1 000 000 N·m after the way over
+# USD.
 #
 # Both are of one project, and Newton reads the URDF and the USD file that the converter makes of it. Expected: the same
 # joints. What happens: limits of angle and speed, damping, friction and mimic are the same, but the effort of 10 N·m is

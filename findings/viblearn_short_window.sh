@@ -1,12 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# viblearn 0.1.1: a gear mesh at 1000 Hz is at 508 Hz in the power spectrum of a window of 128 samples, and at 781 Hz in one of 200.
+# viblearn 0.1.1: a gear mesh at 1000 Hz is at 508 Hz in the power spectrum of a window of 128 samples, and at 781 Hz in
+# one of 200.
 #
-# Expected of PSDAnalyzer(fs=10000, nperseg=256): a vibration of 1000 Hz has its line at 1000 Hz in windows of any length, as in those of
-# 1000 samples. What happens: a window that is shorter than nperseg is taken as one short segment, but frequencies() and the names of the
-# features stay those of 256 samples, and the missing lines are filled with zeros. The frequency is too low by the ratio of the two
-# lengths, and so is the power, and no error says so. iso_10816_3_severity(7.0, machine_class=4) rates 7.0 mm/s as zone A, that of new
-# machines, which ends at 3.5 mm/s in ISO 10816-3.
+# Expected of PSDAnalyzer(fs=10000, nperseg=256): a vibration of 1000 Hz has its line at 1000 Hz in windows of any
+# length, as in those of 1000 samples. What happens: a window that is shorter than nperseg is taken as one short
+# segment, but frequencies() and the names of the features stay those of 256 samples, and the missing lines are filled
+# with zeros. The frequency is too low by the ratio of the two lengths, and so is the power, and no error says so.
+# iso_10816_3_severity(7.0, machine_class=4) rates 7.0 mm/s as zone A, that of new machines, which ends at 3.5 mm/s in
+# ISO 10816-3.
 # For us: give nperseg at most the length of the windows, or take scipy.signal.welch.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

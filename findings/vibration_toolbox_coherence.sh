@@ -2,10 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # vibration_toolbox 0.6.10: the coherence of a torque with a vibration that has nothing to do with it is 1.
 #
-# Expected of frf(x, f, dt): a coherence near 0 of two independent noises, and near 0.5 of a response that is half noise, as
-# scipy.signal.coherence() gives. What happens: it is 1 at all frequencies for any two signals, as it is computed from one single
-# spectrum, without any average; its plot shows a perfect measurement. The frequency response is the ratio of the magnitudes, so
-# that noise in the response makes it too large: 1.40 times here, where an estimate from averaged spectra is right.
+# Expected of frf(x, f, dt): a coherence near 0 of two independent noises, and near 0.5 of a response that is half
+# noise, as scipy.signal.coherence() gives. What happens: it is 1 at all frequencies for any two signals, as it is
+# computed from one single spectrum, without any average; its plot shows a perfect measurement. The frequency response
+# is the ratio of the magnitudes, so that noise in the response makes it too large: 1.40 times here, where an estimate
+# from averaged spectra is right.
 # For us: judge a measured stiffness or transmission by scipy.signal.coherence(), with 10 or more segments.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

@@ -2,11 +2,12 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # wpimath 2026.2.2: at 200 Hz an encoder with a noise of 0.01 rad is weighted as if it had one of 0.141 rad.
 #
-# KalmanFilter takes "standard deviations of measurements". Expected: the noise of one reading, so that the gain is that of
-# the Riccati equation with R = 0.01². What happens: the filter divides R by its time step, because it takes the noise as a
-# continuous one. The gain of the position is 0.022 where 0.081 is right, and the same encoder is trusted less, the more
-# often it is read.
-# For us: multiply the standard deviation of a reading by the square root of the time step, here 0.01 · √0.005 s = 0.000707.
+# KalmanFilter takes "standard deviations of measurements", and its documentation makes R = 0.0001 of 0.01 in the
+# equations of a discrete filter. Expected: the gain of the Riccati equation with this R. What happens: the filter
+# divides R by its time step, because it takes the noise as a continuous one. The gain of the position is 0.022 where
+# 0.081 is right, and the same encoder is trusted less, the more often it is read.
+# For us: multiply the standard deviation of a reading by the square root of the time step, here 0.01 · √0.005 s =
+# 0.000707.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
 set -eu

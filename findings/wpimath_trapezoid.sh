@@ -1,11 +1,13 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# wpimath 2026.2.2: a joint at 3 rad/s whose limit is lowered to 1 rad/s is to brake with 100 rad/s² within 20 ms, not with 2.
+# wpimath 2026.2.2: a joint at 3 rad/s whose limit is lowered to 1 rad/s is to brake with 100 rad/s² within 20 ms, not
+# with 2.
 #
-# TrapezoidProfile takes a greatest velocity of 1 rad/s and a greatest acceleration of 2 rad/s². Expected: from 3 rad/s it
-# brakes to 1 rad/s in 1 s, as ruckig 0.19.4 does. What happens: the velocity is 1 rad/s at the first step, and the position
-# goes on from there as if the joint had never been faster: the plan to 10 rad takes 10.25 s instead of 9.25 s.
-# For us: give the greater of the limit and the present velocity as the limit until the joint is slow enough, or use ruckig.
+# TrapezoidProfile takes a greatest velocity of 1 rad/s and a greatest acceleration of 2 rad/s². Expected: from 3 rad/s
+# it brakes to 1 rad/s in 1 s, as ruckig 0.19.4 does. What happens: the velocity is 1 rad/s at the first step, and the
+# position goes on from there as if the joint had never been faster: the plan to 10 rad takes 10.25 s instead of 9.25 s.
+# For us: give the greater of the limit and the present velocity as the limit until the joint is slow enough, or use
+# ruckig.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
 set -eu
