@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# ahrs 0.4.0: of the same roll, pitch and yaw, DCM and Quaternion make different rotations.
+# ahrs 0.4.0: DCM and Quaternion make different rotations of the same roll, pitch and yaw.
 #
 # Quaternion(rpy=[0.1, 0.2, 0.3]) rolls by 0.1 about x, pitches by 0.2 about y and yaws by 0.3 about z, as a URDF does.
 # DCM(rpy=[0.1, 0.2, 0.3]) turns by 0.1 about z and by 0.3 about x: it takes the angles in the opposite order.

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# asammdf 8.8.28: concatenate() gives the samples of a file other times, where files are not in order of time.
+# asammdf 8.8.28: concatenate() changes the times of a file's samples, where files are not in order of time.
 #
 # Two files of a bench, run_2.mf4 from 12:00:00 and run_10.mf4 from 12:00:10. Sorted by name, as from a glob, run_10
 # comes first. MDF.concatenate then puts the samples of run_2 behind it, 10.5 to 10.9 s after the start of run_2, which

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# basic-robotics 1.0.2: a linear axis of a URDF turns, and half way between 0 and 90° is 54°.
+# basic-robotics 1.0.2: a linear axis of a URDF turns instead of sliding, and half way between 0° and 90° is 54°.
 #
 # loadArmFromURDF() of an arm whose first joint is prismatic along x. Expected of FK([0.5, 0]): a shift by 0.5 m. What
 # happens: a rotation by 0.5 rad about x, as each joint that is not fixed is taken as revolute, without an error.

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# canmatrix 1.3.3: a conversion of a .dbc changes the values of its signals.
+# canmatrix 1.3.3: converting a .dbc to .sym, .xls or .arxml loses floats, signs or factors of signals.
 #
 # A motor sends its angle in steps of 0.01° as a signed number of 16 bits, and its position as a float. canconvert
 # writes the matrix in other formats without a warning. What canmatrix itself then reads of the same bytes:

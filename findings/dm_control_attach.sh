@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# dm_control 1.0.50: to attach a gear in radians to an arm in degrees makes the arm's limits of 90 degrees 90 rad.
+# dm_control 1.0.50: a gear in radians that is attached to an arm in degrees makes ±90 rad of the arm's limits of ±90°.
 #
 # MJCF has angles in degrees unless its compiler says otherwise. An arm that leaves this default out has a joint from
 # -90 to 90 degrees. A gear with angle="radian" is attached to it: the arm takes over the gear's setting, nothing is

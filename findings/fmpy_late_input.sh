@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# FMPy 0.3.32: the result of an FMU for co-simulation has its inputs and outputs a step late.
+# FMPy 0.3.32: the inputs and outputs of an FMU for co-simulation are recorded a step late.
 #
 # A gear divides the angle of its motor by 20; the motor moves evenly by 100 rad/s, and is given as input at every 0.01
 # s. Expected: in the row at 0.1 s the motor is at 10 rad, and the output, if at all, a step late. What happens: the

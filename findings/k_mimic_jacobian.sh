@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# k 0.32.0 (Rust): a mimic follows its motor, but the Jacobian of the arm does not know of it.
+# k 0.32.0 (Rust): a mimic follows its motor, but the Jacobian takes it as an independent joint.
 #
 # A tip mimics its motor by -0.5. Expected: one degree of freedom, and a tip that turns by 1 - 0.5 = 0.5 rad for each
 # rad of the motor. What happens: dof() is 2. set_joint_positions([0.4, 0]) rightly puts the tip at -0.2 and ignores the

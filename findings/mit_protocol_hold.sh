@@ -1,6 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# damiao-motor 1.0.6, pydamiao 0.1.4: to hold a motor where it is moves it, and a velocity of 0 is not sent as 0.
+# damiao-motor 1.0.6, pydamiao 0.1.4: the command to hold a motor where it is moves it, and a velocity of 0 is not sent
+# as 0.
 #
 # In the MIT protocol a position is a whole number of 16 bits over ±12.5 rad. Both libraries round down where they
 # send one, and floating-point numbers lose a little where they read one. Who sends the position just read:

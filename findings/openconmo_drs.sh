@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# openconmo 0.0.6: a gear mesh at 51.7 Hz is 1.5 times as large in the signal that should be without it.
+# openconmo 0.0.6: a gear mesh at 51.7 Hz is 1.5 times as large in the part of a vibration that should be without it.
 #
 # DRS() separates what repeats, as the mesh of a gear, from what is random, as a damaged bearing. 6 s at 10 kHz of one
 # line of amplitude 1 with a noise of 0.1. Expected of its random part, at any frequency: hardly more than the noise.

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# pandas 3.1.1: diff() of an encoder's counts, as unsigned numbers, gives 65530.0 where they fall by 6.
+# pandas 3.1.1: diff() of an encoder's unsigned counts gives 65530.0 where they fall by 6.
 #
 # The result of Series.diff() is a float64 with NaN in its first row, so that it can hold -6; but the difference is
 # taken between unsigned numbers before it becomes a float. counts - counts.shift(), and diff() of a group, give -6.0;

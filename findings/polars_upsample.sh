@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# polars 2.1.0: upsample() drops the samples that are not on its grid, and interpolate() then bridges them.
+# polars 2.1.0: upsample() drops the samples off its grid, and interpolate() then bridges them.
 #
 # A joint is recorded every 100 ms: 0, 1, 0 and 0.3 rad. upsample every 75 ms, with interpolate as its documentation
 # shows, gives 0, 0.075, 0.15, 0.225 and 0.3 rad: of the samples only those at 0 and 300 ms are used, and the motion to

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# pylkmotor 1.0.6: two motors on one bus are read at each other's angles, and an encoder beyond half a turn is negative.
+# pylkmotor 1.0.6: of two motors on one bus, each is read at the angle of the other or at 0°, and an encoder at 270° is
+# at -90°.
 #
 # Expected: read_multi_turn_angle() of a motor returns what this motor answers, and read_encoder_data() the number
 # without a sign (uint16_t) that its docstring names. What happens: each LKMotor opens the bus for itself and takes

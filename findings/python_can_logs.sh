@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# python-can 4.6.1: what a log says of the time and the direction of a frame depends on its format.
+# python-can 4.6.1: the time and direction of a frame in a log depend on the format of the log.
 #
 # A command is sent at 1700000000.5 s and answered by 1700000000.6 s. Logger and LogReader make of it, by the ending of
 # the file:

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# rosbags 0.11.9: a conversion from mcap to mcap loses when messages were published.
+# rosbags 0.11.9: rosbags-convert from mcap to mcap replaces the time of publishing by that of reception.
 #
 # Each message of the recording was published 5 ns before it was received, and is numbered. After
 # `rosbags-convert` the time of publishing is that of reception, and every number is 0; attachments are

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# si-dyno-reader 0.0.5: a measuring point at 100 N·m has a least torque of 0, and a torque that is missing is -1 N·m.
+# si-dyno-reader 0.0.5: a measuring point at 100 N·m has a mean of 80 N·m, and a torque that is missing is -1 N·m.
 #
 # A file of a test bench in the format of its README, with a measuring point of four samples at 100 N·m, marked by
 # Test_State, after which the load is taken off. Expected of get_measure_point("Torque"): 100. What happens: the first

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# urdf-loader 0.13.1: a mimic begins without its offset, and a mimic of a mimic leaves the joint that it follows.
+# urdf-loader 0.13.1: a mimic begins without its offset, and a mimic of a mimic goes beyond the stop of the joint that
+# it follows.
 #
 # An output follows a motor by -0.05 with an offset of 0.03, from -0.1 to 0.1 rad; a pointer follows the output by 2
 # with an offset of 0.2. A loaded robot shows all three at 0, until a joint is set. At 100 rad of the motor the output

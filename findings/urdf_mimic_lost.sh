@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# urdf2any 0.3.0 and urdf2mjcf 0.2.39: the MJCF of a URDF with a mimic has a free joint, without a word.
+# urdf2any 0.3.0, urdf2mjcf 0.2.39: the MJCF of a URDF with a mimic has a free joint, without any warning.
 #
 # An output mimics a motor by -1/20. MuJoCo 4.0.0 itself reads the URDF with an equality of the two joints, and the
 # output follows. Both converters write two joints and no equality, and exit with 0; urdf2any says that mimic

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# vibdata 1.1.4: NormalizeSampleRate makes 1000 Hz of a gear mesh at 100 Hz, if the record lasts for 10 s.
+# vibdata 1.1.4: normalized to another sample rate, a gear mesh at 100 Hz is at 1000 Hz, if the record lasts for 10 s.
 #
 # A vibration at 100 Hz, recorded at 10 kHz. Expected of NormalizeSampleRate(5000): the same vibration at 5 kHz, 5000
 # samples for each second. What happens: it makes 5000 samples of each record, however long it is, and says that they
