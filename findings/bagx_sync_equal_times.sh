@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# bagx 0.6.0: an output that is published 0.2 ms after its rotor has a delay of 4.5 s if two messages have the same time.
+# bagx 0.6.0: an output published 0.2 ms after its rotor has a delay of 4.5 s if two messages have the same time.
 #
 # analyze_sync(), and the command `bagx sync`, look for the nearest message of the second topic for each message of the
 # first. Expected of two topics at 1 kHz for 10 s: a mean delay of 0.2 ms. What happens: the search goes on only while
