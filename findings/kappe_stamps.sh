@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# kappe 0.25.0: taking log times from the stamps of a recording changes its stamps, and a cut by log time goes by another.
+# kappe 0.25.0: taking log times from the stamps of a recording moves its stamps, and a cut goes by another time.
 #
 # `update_log_time` is documented to take the log time of each message from the stamp in its header. Expected: log times
 # equal to the stamps, and the same stamps as before. What happens: the log times are right, but each stamp is written

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# s7 0.1.9 (Rust): of 100 angles in a data block of an S7 PLC, those from the 57th on are read as 0 rad, without an error.
+# s7 0.1.9 (Rust): of 100 angles in a data block of an S7 PLC, those from the 57th on are read as 0, without error.
 #
 # An S7-1200 sends at most 240 bytes at a time, of which 222 are data, so that ag_read() asks for 400 bytes in two
 # parts. Expected: 100 angles as REAL. What happens: the second part is asked for and answered, but not copied to the

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# tdms 0.3.0 (Rust): once a property of the output changes during a recording, the angles of the motor are read as its own.
+# tdms 0.3.0 (Rust): once a property of the output changes in a recording, the motor's angles are read as its own.
 #
 # A TDMS file consists of segments. One that does not begin a new list of objects names only the channels at which
 # something changed; the others go on as before, by National Instruments' description of the format. Expected of a file
