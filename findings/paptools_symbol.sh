@@ -3,10 +3,10 @@
 # paptools 0.1.6: a torque of 10 ± 0.1 N·m less one of 4 ± 0.2 N·m is 0 N·m, unless each is given a symbol of its own.
 #
 # A Number is a value with its error and unit. Expected: 6 ± 0.22 N·m, and 2.5 ± 0.13 as the quotient. What happens: 0
-# and 1, without an error and without a warning, as `symbol` has the default 'x', and the result is computed from symbols:
-# x - x is 0 and x / x is 1. The sum is 8 or 20 N·m, by chance. With symbols of their own they are right. The second of
-# three readings in an Array, times 2, is all three readings times 2, and the third less the first is 0. If one of the
-# errors of an Array is 0, as that of cos(φ) at φ = 0, then the others are None too.
+# and 1, without an error and without a warning, as `symbol` has the default 'x', and the result is computed from
+# symbols: x - x is 0 and x / x is 1. The sum is 8 or 20 N·m, by chance. With symbols of their own they are right. The
+# second of three readings in an Array, times 2, is all three readings times 2, and the third less the first is 0. If
+# one of the errors of an Array is 0, as that of cos(φ) at φ = 0, then the others are None too.
 # For us: use the package uncertainties, which is right in all of these.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
