@@ -9,13 +9,14 @@ from typing import Any
 
 from gear_kinematics.report.document import Sentence, counted, number, printable
 from gear_kinematics.validation.causes import LESS_GRAVE, FindingCause
-from gear_kinematics.validation.recorder import AFTER, BEFORE, LOST, NO_INPUT
+from gear_kinematics.validation.recorder import AFTER, BACK, BEFORE, LOST, NO_INPUT
 from gear_kinematics.validation.report import BagReport, FieldReport, Finding, TopicReport
 from gear_kinematics.validation.task import QUANTITIES
 
 _WHY_LEFT_OUT = {
     BEFORE: 'the recording had just begun',
     AFTER: 'the recording ended first',
+    BACK: 'the driver had just come back',
     NO_INPUT: 'the input was not recorded',
     LOST: 'lost by the recorder, by its own count',
 }

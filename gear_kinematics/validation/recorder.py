@@ -23,10 +23,13 @@ Flags = NDArray[np.bool_]
 
 BEFORE = 'before the recorder settled'
 AFTER = 'after the last output'
+BACK = 'before the node heard the driver again'
 NO_INPUT = 'whose input was not recorded'
 LOST = 'that the recorder says that it lost'
 
-_SETTLING_TIME = 1_000_000_000  # ns after which a recorder has settled
+_SETTLING_TIME = 1_000_000_000  # ns after which a recorder has settled, or a node hears a driver
+_PAUSE, _PERIODS = 500_000_000, 10.0
+"""ns, and usual periods, without inputs that a driver needs for a restart."""
 _QUIET_TIME = 150_000_000  # ns without a loss after which it has settled earlier
 _MAX_END = 500_000_000  # ns by which outputs may end before their inputs
 HOLE = 1.5  # median periods between inputs; beyond, an input between them was not recorded
@@ -47,6 +50,7 @@ class Missing:
         """s from the last input with an output to the last input, if that is too long."""
         self._after = Occurrences()  # inputs after the last one with an output
         self._after_since = 0  # when the first of them was received, ns
+        self._back: int | None = None  # when a driver without an output yet came back, ns
         self._last_answered: int | None = None  # when it was received, ns
 
     def leave_out(self, answered: Flags, cause: str) -> None:
@@ -54,13 +58,24 @@ class Missing:
         if count := int(np.count_nonzero(~answered)):
             self.left_out[cause] += count
 
-    def update(self, received: Array, stamp: Array, answered: Flags) -> None:
-        """Judge inputs, (n,), by whether they have their output."""
+    def update(
+        self, received: Array, stamp: Array, answered: Flags, *, back: bool = False
+    ) -> None:
+        """Judge inputs, (n,), by whether they have their output.
+
+        Before the first of them, the driver may have restarted, and now is `back`.
+        """
+        if back:
+            self._judge_after()
+            self._back = int(received[0])
         end = 0
         if answered.any():
-            end = len(answered) - int(np.argmax(answered[::-1]))
-            self._judge_after()
-            self.inputs.add(stamp[:end][~answered[:end]])
+            first, end = int(np.argmax(answered)), len(answered) - int(np.argmax(answered[::-1]))
+            self._after.add(stamp[:first])
+            soon = self._back is not None and received[first] - self._back <= _SETTLING_TIME
+            self._judge_after(BACK if soon else '')
+            self._back = None
+            self.inputs.add(stamp[first:end][~answered[first:end]])
             self._last_answered = int(received[end - 1])
         if not self._after.count and end < len(received):
             self._after_since = int(received[end])
@@ -82,8 +97,11 @@ class Missing:
             self.left_out[LOST] += self.inputs.count
             self.inputs = Occurrences()
 
-    def _judge_after(self) -> None:
-        self.inputs.add_all(self._after)
+    def _judge_after(self, excuse: str = '') -> None:
+        if not excuse:
+            self.inputs.add_all(self._after)
+        elif self._after.count:
+            self.left_out[excuse] += self._after.count
         self._after = Occurrences()
 
 
@@ -99,6 +117,7 @@ class Completeness:
         self._start = self._settled = -_NEVER if strict else _NEVER
         """When all topics were recorded, and the last loss until the recorder settled, ns."""
         self._last = 0  # when the last input was received, ns
+        self._pause = float(_NEVER)  # ns without inputs after which the driver may have restarted
 
     def update(
         self, received: Array, stamp: Array, answered: Flags, begun: Mapping[str, int]
@@ -108,8 +127,24 @@ class Completeness:
         `answered`, (topics, n), says whether they have their outputs, and `begun` when the
         recording of each topic began, ns.
         """
-        if not len(received):
-            return
+        periods = np.diff(received, prepend=self._last or received[:1])
+        if len(periods) > _PERIODS and not self._strict:
+            self._pause = max(_PAUSE, _PERIODS * float(np.median(periods)))
+        restarts = np.flatnonzero(periods > self._pause)
+        for rows in np.split(np.arange(len(received)), restarts):
+            if len(rows):
+                given = received[rows], stamp[rows], answered[:, rows]
+                self._update(*given, begun, back=rows[0] in restarts)
+
+    def _update(
+        self,
+        received: Array,
+        stamp: Array,
+        answered: Flags,
+        begun: Mapping[str, int],
+        *,
+        back: bool,
+    ) -> None:
         self._last = int(received[-1])
         names = {self._rotor, *self.topics}
         if self._start == _NEVER and begun.keys() >= names:
@@ -120,7 +155,7 @@ class Completeness:
         rows = [*zip(self.topics.values(), answered, strict=True)]
         for missing, has_output in (*rows, (self._on_all, answered.any(axis=0))):
             if all_judged:
-                missing.update(received, stamp, has_output)
+                missing.update(received, stamp, has_output, back=back)
                 continue
             missing.leave_out(has_output[~judged], BEFORE)
             missing.update(received[judged], stamp[judged], has_output[judged])

@@ -22,7 +22,7 @@ from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.findings import findings
-from gear_kinematics.validation.recorder import BEFORE, NO_INPUT
+from gear_kinematics.validation.recorder import BACK, BEFORE, NO_INPUT
 from gear_kinematics.validation.report import Finding
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validate_bag import validate_bag
@@ -204,6 +204,32 @@ def test_a_loss_after_a_quiet_period_is_found_at_once(traffic, config, seed):
     report = validate([m for k, m in enumerate(recorded) if k not in lost], config)
     assert report.verdict == Verdict.FAIL
     assert [t.missing for t in report.topics] == [0, 5]
+
+
+@pytest.mark.parametrize(
+    ('pause', 'begin', 'end', 'excused'),
+    [
+        (2.0, 0.0, 0.05, True),
+        (0.3, 0.0, 0.05, False),  # too short for a restart
+        (2.0, 0.01, 0.05, False),  # the node had heard the driver
+        (2.0, 0.0, 1.2, False),
+        (2.0, 0.0, 9.0, False),  # the node did not survive
+    ],
+)
+def test_inputs_that_a_node_misses_after_a_restart_of_the_driver_fail_nothing(
+    traffic, config, pause, begin, end, excused
+):
+    """The recorder may have found the driver before the node."""
+    back = stamp_of(traffic[100][0]) + 3 * SECOND
+    there = [m for m in traffic[100] if not back - pause * SECOND < stamp_of(m) < back]
+    from_, to = (back + after * SECOND for after in (begin, end))
+    lost = [m for m in there if m.topic != ROTOR and from_ <= stamp_of(m) < to]
+    messages = [m for m in there if m not in lost]
+    report = validate(messages, config)
+    assert report.passed is excused
+    count = len(lost) // 2
+    assert [t.left_out for t in report.topics] == 2 * [{BACK: count} if excused else {}]
+    assert [t.missing for t in validate(messages, config, strict=True).topics] == 2 * [count]
 
 
 def test_an_output_for_a_rejected_input_is_extra(traffic, config):
