@@ -130,11 +130,12 @@ def _run(
 
 def _flushed(program: str, run: Callable[[], int]) -> int:
     """Run a program and write out what it printed, with one line where that fails."""
+    code = 0
     try:
-        code = run()
-    except SystemExit as end:  # of argparse, after --help
-        code = int(end.code or 0)
-    try:
+        try:
+            code = run()
+        except SystemExit as end:  # of argparse, after --help
+            code = int(end.code or 0)
         sys.stdout.flush()
     except OSError as error:
         sys.stdout = open(os.devnull, 'w')  # noqa: PTH123, SIM115, for the interpreter's last flush
@@ -146,8 +147,7 @@ def _flushed(program: str, run: Callable[[], int]) -> int:
 
 
 def _answer(text: str) -> int:
-    with suppress(OSError):  # without a buffer, as for --help
-        sys.stdout.write(text)
+    sys.stdout.write(text)
     return 0
 
 

@@ -268,6 +268,7 @@ def test_an_error_that_cannot_be_said_has_its_exit_code():
         assert gearkin('validate', 'nowhere', stderr=full).returncode == 2
 
 
+@pytest.mark.parametrize('unbuffered', ['', '1'])
 @pytest.mark.parametrize(
     ('program', 'argument'),
     [
@@ -277,14 +278,14 @@ def test_an_error_that_cannot_be_said_has_its_exit_code():
         ('gear_simulator', '--help'),
     ],
 )
-def test_what_cannot_be_printed_is_one_line_and_a_closed_pipe_none(program, argument):
-    buffered = {name: text for name, text in os.environ.items() if name != 'PYTHONUNBUFFERED'}
+def test_what_cannot_be_printed_is_one_line_and_a_closed_pipe_none(program, argument, unbuffered):
+    env = os.environ | {'PYTHONUNBUFFERED': unbuffered}
     command = f'{shlex.quote(sys.executable)} -c "$0" {argument}'
     code = f'import sys; from gear_kinematics.__main__ import {program} as p; sys.exit(p())'
-    full = finished(['sh', '-c', f'{command} > /dev/full', code], env=buffered)
+    full = finished(['sh', '-c', f'{command} > /dev/full', code], env=env)
     said = f'{program}: [Errno 28] No space left on device\n'
     assert (full.returncode, full.stderr) == (2, said)
-    closed = finished(['bash', '-o', 'pipefail', '-c', f'{command} | :', code], env=buffered)
+    closed = finished(['bash', '-o', 'pipefail', '-c', f'{command} | :', code], env=env)
     assert (closed.returncode, closed.stderr) == (0, '')
 
 

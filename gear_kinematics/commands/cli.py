@@ -104,6 +104,10 @@ class _Parser(argparse.ArgumentParser):
             hint = among(str(value), choices, most=len(choices))
             raise argparse.ArgumentError(action, f'invalid choice: {value!r}{hint}')
 
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """Print help; argparse would ignore that it cannot be written, as to a full disk."""
+        (file or sys.stderr).write(message)
+
     def refuse(self, unknown: Sequence[str]) -> NoReturn:
         """Report unknown options together with the known ones, or surplus arguments."""
         message = f'unrecognized arguments: {" ".join(unknown)}'
@@ -128,13 +132,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout.reconfigure(errors='backslashreplace')  # not every encoding has a ″
     called = next((word for word in words if not word.startswith('-')), '')
     try:
-        parser = make_parser(called)
-        options, unknown = parser.parse_known_args(words)
-        if unknown:
-            options.parser.refuse(unknown)
-        options.command_line = shlex.join(['gearkin', *words])
         # Overflows can be seen in the results.
         with closed_pipe_ignored(), np.errstate(all='ignore'):
+            options, unknown = make_parser(called).parse_known_args(words)
+            if unknown:
+                options.parser.refuse(unknown)
+            options.command_line = shlex.join(['gearkin', *words])
             return int(options.run(options))
     except (ValueError, OSError, RuntimeError) as error:
         complain(error)
