@@ -27,11 +27,11 @@ _TRIED, _FEWEST, _ROWS = 12, 10, 10_000
 _FIRST = 4  # number of columns among which the times are
 _ALIKE = 0.3  # least correlation of the steps of both encoders
 _LISTED = 600  # characters of the list of columns
-_WANTED = 'target|goal|desire|cmd|command|setpoint'
+_WANTED = 'target|action|goal|desire|cmd|command|setpoint'
 """Words in names of columns of what was commanded, not measured."""
 _NO_ANGLE = re.compile(
     r'(?i)torq|effort|force|curr|vel(?!_mapper)|speed|rpm|/ ?s|temp|time|stamp|control|elec|tau|'
-    rf'cell|acc(?!um)|dot|err|volt|power|^t$|^[ft][xyz]|^i_?[qd](?![a-z])|{_WANTED}'
+    rf'index|valid|cell|acc(?!um)|dot|err|volt|power|^t$|^[ft][xyz]|^i_?[qd](?![a-z])|{_WANTED}'
 )
 """Words in names of columns that are not proposed as angles."""
 _LIKELY = re.compile(

@@ -14,7 +14,8 @@ import numpy as np
 from gear_kinematics.measurement.names import meaning
 
 MOMENT = re.compile(
-    r'(\d{1,4}[-./](\d\d?|[a-z]{3})[-./]\d{2,4}[T ] ?)?\d?\d:\d\d(:\d\d([.,]\d+)?|[.,]\d+)\s?'
+    r'(\d+ days? |\d{1,4}[-./](\d\d?|[a-z]{3})[-./]\d{2,4}[T ] ?)?'
+    r'\d?\d:\d\d(:\d\d([.,]\d+)?|[.,]\d+)\s?'
     r'(Z|UTC|[AP]M|[+-]\d\d:?\d\d)?',
     re.ASCII | re.IGNORECASE,
 )

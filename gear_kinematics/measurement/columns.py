@@ -89,7 +89,10 @@ def find_columns(
         ValueError: if a name is unknown or occurs more than once.
     """
     units = {name: meaning(name).unit for name in header}
-    units |= {name: usual_unit(unit) for name, unit in below.items()}
+    units |= {
+        name: usual_unit(unit) and meaning(f'{name} [{unit}]').unit  # Grad of a Winkel
+        for name, unit in below.items()
+    }
     named = {}
     for role in ROLES:
         if name := getattr(given, role):

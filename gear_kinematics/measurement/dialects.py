@@ -28,7 +28,7 @@ from gear_kinematics.measurement.cells import (
     numbers,
     weight,
 )
-from gear_kinematics.measurement.names import known_units, meaning, usual_unit
+from gear_kinematics.measurement.names import FOREIGN, known_units, meaning, usual_unit
 from gear_kinematics.measurement.series import series_of
 
 _MOST_ROWS = 1_000_000  # 15 minutes at 1 kHz; a row takes up to 250 bytes besides those of pandas
@@ -45,18 +45,17 @@ _ANGLES = re.compile(
     r'(?i)(?:(?<!\d )|(?<=0\.1 )|(?<=0\.01 ))'
     r'\b(deg(ree)?s?|revolutions?|turns)\b(?!/|\.? *([CFK]|celsius)\b|[ -]of\b| per\b)'
 )
-"""Units of angles in titles and comments, such as `# angles in degrees`, but not in `deg C`, or of
-a single value as in `3 turns`."""
-_CODESYS = '[key]; [value]'
-"""Beginning of a trace of CODESYS, whose variables are below each other."""
+"""Units of angles in titles and comments, but not in `deg C`, or of a value as in `3 turns`."""
+_CODESYS = '[key]; [value]'  # begins a trace of CODESYS, whose variables are below each other
 _NO_NAMES = re.compile(r'(?i)[-+|:=\s]*|sep=.*\s*')
 """Lines above the numbers that are no names, as below the names in tables of psql."""
 _CLOCKS = {'name': 'ms', 'x_value': 's'}
 """Words, other than those for time, before names of channels with their own times; and units."""
 _FILETIME = re.compile(r'\d{18}')  # times of Windows, since 1601
-_TOPICS, _VALUE = (
-    ('topic', 'message path', 'series', 'signal', 'channel', 'label', 'field', 'name'),
-    'value',
+_VALUE = 'value'
+_TOPICS = (
+    *('topic', 'message path', 'series', 'signal', 'channel', 'label', 'field', 'name'),
+    *('key', 'entry', 'variable', 'tag'),
 )
 """Names of the columns of a table with a row for each value."""
 
@@ -260,8 +259,8 @@ def _layout(lines: Sequence[str]) -> _Layout:
     # A line that is not divided, such as a title, has no names.
     if any(len(_cells_above(line, separator, len(row))) >= min(2, len(row)) for line in above):
         found = _names(above, separator, max(map(len, samples)), 1 + max(numeric), row[0])
-        if not found[0][0] and MOMENT.fullmatch(row[0]):
-            found[0][0] = 'time'  # the index of pandas
+        if not found[0][0]:  # the index of pandas
+            found[0][0] = 'time' if MOMENT.fullmatch(row[0]) else '1'
     else:
         found = _joint_state(row) or ([str(k + 1) for k in range(len(row))], {}, {})
     titles = (line for line in above if len(cells_of(line.lstrip('#%/ '), separator)) < len(row))
@@ -289,8 +288,9 @@ def _names(
     rows = [row for row in rows if not all(map(_TYPES.fullmatch, filter(None, row)))]
     while len(rows) > 1 and len(rows[-1]) > 1 and len([*filter(None, rows[-1])]) == 1:
         del rows[-1]  # such as the rate of sampling, of catman
-    labelled = (row for row in rows[:-1] if re.search('(?i)unit|einheit', ''.join(row[:1])))
-    label = next((row for row in labelled if known_units(row[1:])), [])
+    labelled = (row[1:] for row in rows[:-1] if re.search('(?i)unit|einheit', ''.join(row[:1])))
+    labels = [known_units(row, FOREIGN) for row in labelled]  # Tektronix has one of each axis
+    label = max(labels, key=lambda label: len([*filter(None, label)]), default=[])
     alike = [row[:width] for row in rows if row[2:width] and len({*row[:width:2]}) == 1]
     pairs = {row[0].lower(): row[1::2] for row in alike}
     for key, names in pairs.items():
@@ -299,7 +299,7 @@ def _names(
         unit = _CLOCKS.get(key, meaning(key).unit)
         unit = 'filetime' if key == 'name' and _FILETIME.fullmatch(first) else unit
         clocks = {name: f'time of {name}' + f' [{unit}]' * bool(unit) for name in names}
-        units = known_units(pairs.get('unit') or pairs.get('') or label[1::2])
+        units = known_units(pairs.get('unit') or pairs.get('') or label[::2])
         columns = [one for name in names for one in (clocks[name], name)]
         return columns, _named(names, units), clocks
     fitting = [k for k, row in enumerate(rows) if len(row) >= numbers and not known_units(row)]
@@ -310,7 +310,7 @@ def _names(
     at = max([*whole, last], key=lambda k: (says[k], k))
     names, groups = rows[at], rows[at - 1] if at else []
     if label:  # such as Y_Unit_Label of LabVIEW
-        units = known_units(['', *label[1:]][len(label) > len(names) :])
+        units = ['', *label][len(label) >= len(names) :]
     else:
         units = next(filter(None, map(known_units, (*rows[at + 1 : at + 2], groups))), [])
     filled = [*filter(None, names)]

@@ -21,6 +21,8 @@ from gear_kinematics.bag.finding import BAG_NAME, COMPRESSED, TABLES, table_form
 from gear_kinematics.measurement.cells import numbers
 from gear_kinematics.measurement.dialects import TableFile, loaded, open_text
 
+_OBJECT = 0xDD000000  # begins the reference to an object, such as a table, in a file of MATLAB
+
 
 def _parquet(path: Path) -> TableFile:
     """Read columns of numbers, and the elements of vectors, as LeRobot writes them."""
@@ -45,9 +47,12 @@ def _mat(path: Path) -> TableFile:
     from scipy.io import loadmat  # noqa: PLC0415, of an extra
 
     columns: dict[str, Any] = {}
+    units: dict[str, str] = {}
 
     def add(name: str, value: Any) -> None:
         if isinstance(value, dict):
+            if isinstance(unit := value.get('Unit'), str) and unit:  # of dSPACE
+                units[f'{name}.Data'] = unit
             for key, inner in value.items():
                 add(f'{name}.{key}' if name else key, inner)
         elif all(isinstance(each, dict) for each in np.atleast_1d(value)):  # of scopes of Simulink
@@ -59,7 +64,7 @@ def _mat(path: Path) -> TableFile:
                 add(f'{above}{dot}{label if known else f"{own}[{k}]"}', signal)
         elif np.ndim(value) in {1, 2} and np.asarray(value).dtype.kind in 'iuf':
             values = np.squeeze(value)
-            if values.ndim == 1 and values.size > 1:
+            if values.ndim == 1 and values.size > 1 and values[0] != _OBJECT:
                 columns[name] = values
             elif values.ndim == 2:  # noqa: PLR2004, a matrix; Simulink has a row for each signal
                 values = min(values, values.T, key=len)
@@ -76,10 +81,13 @@ def _mat(path: Path) -> TableFile:
         return open_text(path)  # as save -ascii writes it
     add('', {key: value for key, value in found.items() if key[:1] not in '_#'})
     if len({name.partition('.')[0] for name in columns}) == 1:  # all are in one structure
-        columns = {name.partition('.')[2] or name: values for name, values in columns.items()}
+        columns, units = (
+            {name.partition('.')[2] or name: one for name, one in each.items()}
+            for each in (columns, units)
+        )
     if not columns:
         raise ValueError('no columns of numbers: save the vectors of a timetable or timeseries')
-    return loaded(columns)
+    return loaded(columns, units)
 
 
 def _of_hdf5(group: Any) -> dict[str, Any]:

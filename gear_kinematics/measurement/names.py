@@ -2,7 +2,7 @@
 """The names of a table's columns: their words and units, and what these mean."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -203,10 +203,10 @@ def usual_unit(text: str) -> str:
     return '' if plain in _NO_UNIT else _UNITS.get(plain, plain)
 
 
-def known_units(cells: Sequence[str]) -> list[str]:
-    """Return the units in the cells of a row if two or most are known, otherwise nothing."""
+def known_units(cells: Sequence[str], others: Collection[str] = ()) -> list[str]:
+    """Return the units in a row if two or most are known, or among others; otherwise nothing."""
     units = [usual_unit(cell) for cell in cells]
-    known = len([unit for unit in units if unit in _UNITS])
+    known = len([unit for unit in units if unit in _UNITS or unit in others])
     return units if known > 1 or 2 * known > len([*filter(None, units)]) else []
 
 

@@ -368,6 +368,10 @@ ENCODERS = {
     'counts of 16 bits': lambda t, r, o: written(
         [t, *in_counts(r) % 65536, o], 'time,rotor_counts,output_rad',
         ('{:.2f}', '{:.0f}', '{:.5f}')),
+    'AdvantageScope': lambda t, r, o: 'Timestamp,Key,Value\n' + ''.join(
+        f'{at:.2f},/Motor/Position,{rotor:.5f}\n{at:.2f},/Output/Position,{out:.5f}\n'
+        for at, rotor, out in zip(t, r, o, strict=True)),
+    'days of pandas': plain(',rotor,output', time=lambda v: f'0 days 00:00:{v:09.6f}'),
     'times of each side': lambda t, r, o: written(
         [t[:-1], r[:-1], t[1:], o[1:]], 'motor_time,motor_pos,output_time,output_pos', '{:.5f}'),
     'times of each side in groups': lambda t, r, o: written(
@@ -408,6 +412,8 @@ RAMPS = {
         'Time,Angle,Torque,Temp,U,I,P,n\ns,deg,ozf·in,°C,V,A,W,rpm', 8 * ['{:.6f}']),
     'Verdrehwinkel': lambda _, a, q: written(
         [q, a / ARCMIN], "Drehmoment [Nm];Verdrehwinkel [']", 2 * ['{:.6f}'], ';'),
+    'a row of units in German': lambda t, a, q: in_german(written(
+        [t, q, a * DEG], 'Zeit;Drehmoment;Winkel\ns;Nm;Grad', 3 * ['{:.6f}'], ';')),
     'τ and φ': lambda t, a, q: written([t, a, q], 't,φ,τ', 3 * ['{:.6f}']),
     'moteus': lambda t, a, q: written(
         [t, a * REV, q, t], '# bench\n#time,position,torque,q_current', 4 * ['{:.9f}']),
@@ -499,6 +505,9 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         (lambda t, _, o: written([t, 1e-3 * o, o], 'time,angle,torque%'), 'neither an angle and'),
         (lambda t, _, o: written([t, 1e-3 * o, o], 'time,angle,torque [mA]'),
          r'torque \[mA\] is in ma: convert it to one of N·m, '),
+        (lambda t, r, o: written([t, r, o], 'Horizontal Units,s,\nVertical Units,V,V\n'
+                                 'Labels,Motor position,Output position\nTIME,CH1,CH2'),
+         'Motor position is in v: convert it to one of rad'),
         (lambda t, _, o: written([t, 1e-3 * o, o], 'time,angle,torque_raw'), 'torque_raw is raw'),
         (lambda t, r, o: written([t, r * REV, o * REV], 'time,motor raw,output raw', '{:.5f}'),
          'motor raw is raw: give its unit with --angle-unit'),
@@ -721,12 +730,12 @@ def scope_without_labels(path, time, rotor, output):
 
 
 def control_desk(path, time, rotor, output):
-    """As dSPACE has it, with two signals of the same name."""
+    """As dSPACE has it, with a unit, and two signals of the same name."""
     io = pytest.importorskip('scipy.io')
-    names = zip(('Out1', 'Motor angle [rad]', 'Out1'), (time, rotor, output), strict=True)
-    signals = [{'Name': name, 'Data': values} for name, values in names]
+    names = zip(('Out1', 'Motor angle', 'Out1'), (time, DEG * rotor, output), strict=True)
+    signals = [{'Name': name, 'Data': values, 'Unit': 'deg'} for name, values in names]
     io.savemat(path, {'r': {'X': {'Name': '', 'Data': time}, 'Y': np.array(signals)}})
-    return Sources(time='X.Data', output='Y[2].Data')
+    return Sources(time='X.Data', output='Y[2].Data [rad]')
 
 
 def ascii_mat(path, time, rotor, output):
@@ -835,8 +844,22 @@ def test_units_of_daqmx_are_read(tmp_path, gear, reference):
 
 def test_a_file_of_matlab_without_numbers_is_refused(tmp_path, gear):
     pytest.importorskip('scipy.io').savemat(tmp_path / 'r.mat', {'name': 'bench 3'})
-    with pytest.raises(RecordingError, match='no columns of numbers: save the vectors of a time'):
+    refused = 'no columns of numbers: save the vectors of a time'
+    with pytest.raises(RecordingError, match=refused):
         read(tmp_path / 'r.mat', gear)
+    # The reference to a table or timetable.
+    reference = np.array([[0xDD000000], [2], [1], [1], [1], [1]], np.uint32)
+    pytest.importorskip('scipy.io').savemat(tmp_path / 'r.mat', {'T': reference})
+    with pytest.raises(RecordingError, match=refused):
+        read(tmp_path / 'r.mat', gear)
+
+
+def test_an_index_without_a_name_is_proposed_for_the_times(tmp_path, gear, reference):
+    t, r, o = reference('encoders')
+    path = saved(tmp_path, written([t, r, o], ',rotor,output'))
+    with pytest.raises(RecordingError, match=r'--time-column 1$') as caught:
+        read(path, gear, Sources(needs_times=True))
+    assert read(path, gear, followed(caught.value)).encoders.timed
 
 
 def test_the_sheets_of_a_workbook_that_have_numbers_are_named(tmp_path, gear):
