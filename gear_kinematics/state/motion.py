@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.state.reach import FLOOR, REGULAR, STALEST, Reading, RotorLimits
+from gear_kinematics.state.reach import FLOOR, REGULAR, STALEST, HeldUp, Reading, RotorLimits
 from gear_kinematics.state.wraps import LEAST_STEP
 from gear_kinematics.wire.batches import Array, once_for_joints
 
@@ -24,6 +24,7 @@ class Motion(NamedTuple):
     moving: Reading
     stamp: int  # ns, of the last one with the last position
     noise: float  # rad
+    held_up: HeldUp
 
 
 def all_in_reach(
@@ -63,7 +64,7 @@ def all_in_reach(
     noise = np.minimum.accumulate(np.append(known.noise, np.maximum(2.0 * sizes, FLOOR)))
     for k in np.flatnonzero(ended).tolist():
         ends = (0.0, 0, moved[k], took[k]), (0.0, 0, step[k - 1], span[k - 1])
-        if limits.least_speed(*ends, noise[k - 1]):
+        if limits.least_speed(*ends, noise[k - 1], 0.0):
             return None
         where = float(positions[rows[k - 2]]) if k > 1 else position
         moving = where, int(changed[k - 1]), float(moved[k]), int(took[k])
@@ -73,19 +74,22 @@ def all_in_reach(
         regular &= np.abs(each - usual) <= REGULAR * usual
     regular &= np.abs(steps - step[1:-1]) <= limits.even_step(usual)
     regular &= np.abs(steps) <= limits.speed * 1e-9 * np.diff(changed)
+    held_up = known.held_up
     for k in np.flatnonzero(~regular).tolist():
         ends = (
             (0.0, int(changed[k]), float(step[k + 1]), int(span[k + 1])),
             (0.0, 0, float(step[k]), int(span[k])),
         )
-        low, high = limits.reach(int(when[k]), int(until[k]), *ends, float(noise[k]))
+        held_up = held_up.before(int(when[k] - changed[k]), *ends)
+        late = held_up.late(int(changed[k]), int(when[k]))
+        low, high = limits.reach(int(when[k]), int(until[k]), *ends, float(noise[k]), late)
         if not low <= steps[k] <= high:
             return None
     if len(rows):
         before = float(positions[rows[-2]]) if len(rows) > 1 else position
         former = before, int(changed[-2]), float(step[-2]), int(span[-2])
     latest = float(positions[-1]), int(changed[-1]), float(step[-1]), int(span[-1])
-    return Motion(latest, former, moving, int(stamps[-1]), float(noise[-1]))
+    return Motion(latest, former, moving, int(stamps[-1]), float(noise[-1]), held_up)
 
 
 def _even(known: Motion, limits: RotorLimits, stamps: Array, positions: Array) -> Motion | None:
@@ -104,7 +108,7 @@ def _even(known: Motion, limits: RotorLimits, stamps: Array, positions: Array) -
     earlier, before, now = [since, *stamps[-3:].tolist()][-3:]
     former = float(positions[-2]), before, float(steps[-2]), before - earlier
     latest = float(positions[-1]), now, float(steps[-1]), now - before
-    return Motion(latest, former, known.moving, now, known.noise)
+    return Motion(latest, former, known.moving, now, known.noise, known.held_up)
 
 
 @once_for_joints

@@ -25,6 +25,7 @@ from gear_kinematics.state.reach import (
     FLOOR,
     REGULAR,
     STALEST,
+    HeldUp,
     Reading,
     RotorLimits,
     single_precision_step,
@@ -72,6 +73,7 @@ class Plausibility:
         self._moving: Reading = _UNKNOWN  # the last one before a standstill
         self._stamp = 0  # ns, of the last believed reading with the last position
         self._repeated = 0  # ns, the last stamp of several readings
+        self._held_up = HeldUp()
         self.noise = 2.0 * COARSEST
         """rad, of a reading: twice the resolution of the encoder, which is the smallest step of
         all, or difference between two in a row; at least `FLOOR`."""
@@ -101,6 +103,7 @@ class Plausibility:
         position, changed, step, span = self._last
         self._last = position, changed - time, step, span
         self._stamp -= time
+        self._held_up = HeldUp()
 
     def is_elsewhere(self, position: float, stamp: int) -> bool:
         """Return whether a restarted drive does not go on near the last position, and note it.
@@ -143,10 +146,10 @@ class Plausibility:
             self._restart(float(positions[0]), int(stamps[0]))
         found = None
         if not self._doubted:
-            known = self._last, self._former, self._moving, self._stamp, self.noise
+            known = self._last, self._former, self._moving, self._stamp, self.noise, self._held_up
             found = all_in_reach(Motion(*known), self.limits, stamps, positions)
         if found:
-            self._last, self._former, self._moving, self._stamp, self.noise = found
+            self._last, self._former, self._moving, self._stamp, self.noise, self._held_up = found
             self._look_always()
         elif fresh:
             self.reset()
@@ -169,7 +172,9 @@ class Plausibility:
             return self._hold(position, stamp)
         if self.period:
             step = last_step + math.remainder(step - last_step, self.period)
-        low, high = self.limits.reach(stamp, self._stamp, last, former, self.noise)
+        held_up = self._held_up.before(stamp - changed, last, former)
+        late = held_up.late(changed, stamp)
+        low, high = self.limits.reach(stamp, self._stamp, last, former, self.noise, late)
         if self.period:
             middle = 0.5 * (low + high)
             step = middle + math.remainder(step - middle, self.period)
@@ -177,6 +182,7 @@ class Plausibility:
         if not reached or (self._doubted and self._stays(position, step, stamp)):
             return self._doubt(position, stamp)
         self._doubted.clear()
+        self._held_up = held_up
         possible = self.wraps.counted if self.period else abs(last_step) > LEAST_STEP
         wraps = possible and self._wraps(step, stamp)
         clear = 2.0 * (high - low) < self.period
@@ -233,7 +239,9 @@ class Plausibility:
         held = stamp - self._last[1]
         if held > STALEST_NS:
             time = held * 1e-9 - STALEST
-            if speed := self.limits.least_speed(self._last, self._former, self.noise):
+            changed = self._last[1]
+            late = self._held_up.late(changed, changed)
+            if speed := self.limits.least_speed(self._last, self._former, self.noise, late):
                 way = speed * time - 0.5 * self.limits.acceleration * time * time
                 if way > self.noise:
                     return self._doubt(position, stamp)

@@ -2,7 +2,8 @@
 """How far a rotor can turn between two readings of its encoder, by its limits.
 
 A reading may be up to an interval, at most `STALEST`, older than its stamp says: stamps are late
-or early, and drivers repeat a reading until the next.
+or early, and drivers repeat a reading until the next. Messages that were held up come in a burst,
+and are as old as the interval before it.
 """
 
 import math
@@ -21,9 +22,33 @@ Reading = tuple[float, int, float, int]
 time since that, ns, which is 0 if it is not known, or after a standstill."""
 
 
-def _stale(last: Reading, former: Reading) -> float:
+class HeldUp(NamedTuple):
+    """A pause, ns, after which the messages that were held up come in a burst."""
+
+    end: int = 0
+    length: int = 0
+    usual: int = 0  # time between two readings before it
+
+    def late(self, last: int, stamp: int) -> float:
+        """Return by how much the time between two readings may exceed that of their stamps, ns.
+
+        In a burst it is the usual time. A burst lasts no longer than the pause before it.
+        """
+        left = self.length - (last - self.end)
+        return min(float(left), 1.25 * self.usual) - (stamp - last)
+
+    def before(self, span: int, last: Reading, former: Reading) -> 'HeldUp':
+        """Take the time until a reading, ns, after two others, and return the pause before it."""
+        _, end, _, length = last
+        left = self.length - (end - self.end)
+        if 2 * span >= length or length <= left:
+            return self
+        return HeldUp(end, length, max(former[3], self.usual if left > -self.length else 0))
+
+
+def _stale(last: Reading, former: Reading, late: float) -> float:
     """By how much a reading may be older than its stamp, s."""
-    return min(STALEST, 1.25e-9 * max(last[3], former[3]))
+    return max(min(STALEST, 1.25e-9 * max(last[3], former[3])), 1e-9 * late)
 
 
 class RotorLimits(NamedTuple):
@@ -40,16 +65,16 @@ class RotorLimits(NamedTuple):
         stale = (1.25 * (1.0 - REGULAR) * 1e-9) * span
         return FLOOR + 1.5 * self.acceleration * stale * stale
 
-    def least_speed(self, last: Reading, former: Reading, noise: float) -> float:
+    def least_speed(self, last: Reading, former: Reading, noise: float, late: float) -> float:
         """The speed, rad/s, that the rotor had at least; 0 if it can stand at once."""
         if not (last[3] and former[3]):
             return 0.0
-        time = (last[3] + former[3]) * 1e-9 + _stale(last, former)
+        time = (last[3] + former[3]) * 1e-9 + _stale(last, former, late)
         speed = (abs(last[2] + former[2]) - noise) / time - self.acceleration * time
         return speed if speed * abs(speed) > 2.0 * self.acceleration * noise else 0.0
 
     def reach(
-        self, stamp: int, until: int, last: Reading, former: Reading, noise: float
+        self, stamp: int, until: int, last: Reading, former: Reading, noise: float, late: float
     ) -> tuple[float, float]:
         """The least and the greatest step, rad, that the rotor can make until a stamp.
 
@@ -59,6 +84,7 @@ class RotorLimits(NamedTuple):
             last: the first reading with it.
             former: the one before.
             noise: rad, of a reading, see `Plausibility`.
+            late: ns, by which the time may exceed that of the stamps, see `HeldUp.late`.
         """
         slow, fast, stale = -self.speed, self.speed, STALEST
         _, changed, step, span = last
@@ -68,14 +94,16 @@ class RotorLimits(NamedTuple):
             fast = self.acceleration * min(held, 2.0 * elapsed)
             slow = -fast
         elif span:
-            stale, within = _stale(last, former), span * 1e-9
-            slow = fast = step / within
-            if former[3]:  # readings that are older than their stamps make one of them wrong
-                other = former[2] / (former[3] * 1e-9)
-                slow, fast = min(slow, other), max(fast, other)
-            doubt = self.acceleration * (within + stale) + noise / within
-            slow -= doubt + _UNEVEN * abs(slow)
-            fast += doubt + _UNEVEN * abs(fast)
+            stale = _stale(last, former, late)
+            if elapsed > 1e-9 * late:  # stamps of a burst tell no speed
+                within = span * 1e-9
+                slow = fast = step / within
+                if former[3]:  # readings that are older than their stamps make one of them wrong
+                    other = former[2] / (former[3] * 1e-9)
+                    slow, fast = min(slow, other), max(fast, other)
+                doubt = self.acceleration * (within + stale) + noise / within
+                slow -= doubt + _UNEVEN * abs(slow)
+                fast += doubt + _UNEVEN * abs(fast)
         time = elapsed + stale
         way, gained = self.speed * time, 0.5 * self.acceleration * time * time
         high = min(way, max(0.0, min(self.speed, fast) * time + gained))

@@ -24,7 +24,7 @@ TURN = 2.0 * math.pi
 START = 100 * SECOND
 LIMITS = 650.0, 6500.0  # rad/s and rad/s², the defaults
 RATES = (10, 25, 50, 100, 200, 500, 1000)
-KINDS = ('exact', 'quantised', 'hall', 'early', 'late', 'held', 'old', 'noisy', 'gaps')
+KINDS = ('exact', 'quantised', 'hall', 'early', 'late', 'burst', 'held', 'old', 'noisy', 'gaps')
 
 
 def motion(rate: int, count: int, generator) -> tuple[np.ndarray, np.ndarray]:
@@ -54,6 +54,12 @@ def disturbed(kind, times, angles, rate, generator) -> tuple[np.ndarray, np.ndar
         times = times + generator.uniform(0.0, min(0.9 / rate, 2e-3), count)
     elif kind == 'late':
         times = np.maximum.accumulate(times + (generator.random(count) < 0.05) * 3e-3)
+    elif kind == 'burst':  # stamped on arrival, after they were held up
+        times, gap = times.copy(), generator.uniform(1.0, 5.0) / rate
+        for start in generator.choice(times[1:], 3):
+            held = (times >= start) & (times < start + gap)
+            times[held] = start + gap + 5e-5 * np.arange(np.count_nonzero(held))
+        times = np.maximum.accumulate(times)
     elif kind == 'held':
         angles = angles[np.arange(count) // max(1, rate // 100) * max(1, rate // 100)]
     elif kind == 'old':  # by up to an interval, with stamps on a grid
