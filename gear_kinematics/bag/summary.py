@@ -51,9 +51,10 @@ class TopicSummary(NamedTuple):
     mean_rate: float | None  # mean rate, Hz; it differs from `rate` where messages come in bursts
     gaps: int  # periods longer than five median ones
     longest_gap: float  # longest of these periods, s
-    of_others: int = 0
-    """Messages without the rotor's joint or, on another topic, that of the first message; rate and
-    gaps leave them out."""
+    followed: str = ''  # joint of the rotor or, on another topic, that of the first message
+    of_others: int = (
+        0  # messages without the joint that is followed, which rate and gaps leave out
+    )
 
 
 class Summary(NamedTuple):
@@ -83,9 +84,8 @@ def summarise(
             raise
         unclear = str(error).removeprefix(f'{bag.path}: ')
     others = Counter[str]()
-    readers: dict[str, JointReader | None] = {}
-    if joints and joints[0]:
-        readers[rotor] = JointReader(joints[0])
+    followed = {rotor: joints[0]} if joints and joints[0] else {}
+    readers = {topic: JointReader(joint) for topic, joint in followed.items()}
     times = {topic: list[tuple[int, int]]() for topic in bag.topics}
     ends: list[int] = []
     stamped = {topic for topic, kind in bag.topics.items() if kind in _WITH_STAMPS} - bag.not_cdr
@@ -94,9 +94,10 @@ def summarise(
         for batch in bag.batches(bag.topics, progress, any_encoding=True):
             for topic, received, data in batch:
                 if topic in states:
-                    if topic not in readers:
-                        readers[topic] = _reader_of_first_joint(data)
-                    if not _has_joint(readers[topic], data):
+                    if topic not in followed:
+                        followed[topic] = _first_joint(data)
+                        readers[topic] = JointReader(followed[topic])
+                    if followed[topic] and not _has_joint(readers[topic], data):
                         others[topic] += 1
                         continue
                 stamp = header_stamp(data) if topic in stamped else 0
@@ -112,6 +113,7 @@ def summarise(
             'rotor' if name == rotor else _PARTS.get(base_name(name), ''),
             there.get(name, []),
             times[name],
+            followed.get(name, ''),
             others[name],
         )
         for name, kind in bag.topics.items()
@@ -122,31 +124,37 @@ def summarise(
     return Summary(duration, tuple(topics), unclear, damage)
 
 
-def _reader_of_first_joint(data: bytes) -> JointReader | None:
-    """Return a reader of the first joint in a message, if there is one that can be read."""
+def _first_joint(data: bytes) -> str:
+    """Return the first joint in a message, or '' if there is none that can be read."""
     with suppress(MalformedMessageError, RejectedInputError, IndexError):
-        reader = JointReader(joints_of(data)[0])
-        reader.read(data)
-        return reader
-    return None
+        joint = joints_of(data)[0]
+        JointReader(joint).read(data)
+        return joint
+    return ''
 
 
-def _has_joint(reader: JointReader | None, data: bytes) -> bool:
-    """Return whether a message has the joint of a reader, if there is a reader."""
+def _has_joint(reader: JointReader, data: bytes) -> bool:
+    """Return whether a message has the joint of a reader."""
     try:
-        if reader:
-            reader.read(data)
+        reader.read(data)
     except RejectedInputError as rejection:
         return str(rejection) != Rejection.JOINT_MISSING
     return True
 
 
 def _summary(
-    name: str, kind: str, part: str, joints: list[str], times: list[tuple[int, int]], others: int
+    name: str,
+    kind: str,
+    part: str,
+    joints: list[str],
+    times: list[tuple[int, int]],
+    followed: str,
+    others: int,
 ) -> TopicSummary:
     stamped, received = np.diff(np.array(times, np.int64).reshape(-1, 2), axis=0).T
     repeated = 2 * np.count_nonzero(stamped) < len(stamped)  # as without their nanoseconds
-    periods = (received if repeated else stamped).astype(np.float64) / SECOND
+    apart = 10 * np.count_nonzero(stamped < 0) > len(stamped)  # as of drivers with two clocks
+    periods = (received if repeated or apart else stamped).astype(np.float64) / SECOND
     periods = periods[periods > 0.0]  # the clock may be set back
     rate, mean, gaps, longest = None, None, 0, 0.0
     if len(times) >= _FEWEST and len(periods):
@@ -154,5 +162,5 @@ def _summary(
         long = periods[periods > _GAP * median]
         rate, gaps, longest = 1.0 / median, len(long), float(long.max(initial=0.0))
         mean = (len(times) - 1) / float(periods.sum())
-    numbers = rate, mean, gaps, longest, others
+    numbers = rate, mean, gaps, longest, followed, others
     return TopicSummary(name, kind, part, len(times) + others, tuple(joints), *numbers)

@@ -96,8 +96,11 @@ def _parts(summary: Summary, *, verbose: bool) -> Iterator[str]:
         if topic.rate and topic.mean_rate:
             rate = f'{number(topic.rate, _DIGITS)} Hz'
             mean = f'{number(topic.mean_rate, _DIGITS)} Hz on average'
+            of = f' of {topic.followed}' if topic.of_others else ''
             bursts = 10 * topic.gaps > topic.messages
-            often = f'{rate}, {mean}, {often}' if verbose else mean if bursts else rate
+            often = (
+                f'{rate}, {mean}{of}, {often}' if verbose else f'{mean if bursts else rate}{of}'
+            )
         joints = described(topic.joints, most=_JOINTS)
         kind = f' {topic.type},' if verbose else ''
         yield f'{topic.part} {topic.name}{joints}{kind} {often}'.lstrip()

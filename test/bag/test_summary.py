@@ -48,6 +48,15 @@ def test_stamps_that_repeat_tell_no_rate(tmp_path, stamp):
     assert (topic.rate, topic.gaps) == (pytest.approx(100.0), 0)
 
 
+def test_rate_of_drivers_with_two_clocks_is_that_of_reception(tmp_path):
+    messages = [
+        ('/motor', 10**18 + 10**7 * k, rotor_bytes(10**18 + 10**7 * k - k % 2 * 5 * 10**8))
+        for k in range(100)
+    ]
+    (topic,) = summary(write_bag(tmp_path / 'bag', messages, {'/motor': JOINT_STATE})).topics
+    assert (topic.rate, topic.gaps) == (pytest.approx(100.0), 0)
+
+
 def test_several_topics_are_told_apart_by_the_joint(tmp_path):
     path = write(tmp_path / 'bag', '/a', '/b')
     unclear = summary(path)
@@ -131,4 +140,5 @@ def test_drivers_with_a_message_each_leave_no_gaps_on_any_topic(tmp_path):
     path = write_bag(tmp_path / 'bag', messages, dict.fromkeys(topics, JOINT_STATE))
     for topic in summary(path, None, ['wrist']).topics:
         assert (topic.joints, topic.messages, topic.of_others) == (joints, 300, 200)
+        assert topic.followed == ('wrist' if topic.part == 'rotor' else 'elbow')
         assert (topic.rate, topic.gaps) == (pytest.approx(100.0), 0)

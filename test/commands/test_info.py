@@ -36,7 +36,10 @@ def test_messages_of_other_joints_are_counted(others, said, tmp_path, capsys):
     write_bag(tmp_path / 'bag', own + more, {ROTOR: JOINT_STATE})
     assert main(['info', str(tmp_path / 'bag'), '--joint', 'rotor']) == 0
     verb = 'is' if others == 1 else 'are'
-    assert f'; {said}on {ROTOR} {verb} of other joints;' in capsys.readouterr().out
+    told = capsys.readouterr().out
+    assert (
+        f'(joints rotor, wheel) 1e9 Hz of rotor; {said}on {ROTOR} {verb} of other joints;' in told
+    )
 
 
 def test_a_terminal_breaks_no_word(capsys):
