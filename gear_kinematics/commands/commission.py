@@ -11,6 +11,7 @@ from gear_kinematics.commands.encoders import (
     add_known_ratio,
     add_new_config,
     add_recordings,
+    ask_for_one_topic,
     known_ratio,
     say_columns,
     sources,
@@ -18,6 +19,7 @@ from gear_kinematics.commands.encoders import (
 from gear_kinematics.commands.joints import choose_joint
 from gear_kinematics.commands.output import (
     Console,
+    complain,
     message_progress,
     stopped_by_signals,
     warn_of_shared_memory,
@@ -75,7 +77,10 @@ def run(options: argparse.Namespace) -> ExitCode:
     )
     result = _hear(request) if options.live else _read(options, request)
     if result.between and not file:
-        write_parameters(result, path, options.actuator)
+        command = write_parameters(result, path, options.actuator)
+        if options.actuator and not options.quiet:
+            complain(f'start the node with {command}')
+            ask_for_one_topic(path)
     report = document(result, str(options.check or path))
     return reporter.write(report, [options.check] if file else [])
 

@@ -2,18 +2,21 @@
 """Options of several commands for recordings of encoders and torques, and for known ratios."""
 
 import argparse
+import re
 import sys
 from pathlib import Path
 from typing import Any
 
 from gear_kinematics.commands import arguments
 from gear_kinematics.commands.bags import add_rotor
+from gear_kinematics.commands.output import complain
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.columns import GIVEN_UNITS, Sources
 from gear_kinematics.measurement.formats import is_table
 from gear_kinematics.measurement.recording import Recording
 from gear_kinematics.parameters import default_config
 from gear_kinematics.report.document import printable
+from gear_kinematics.wire.nearest import listed
 
 _COLUMNS = {
     'angle': 'angle under torque',
@@ -22,6 +25,11 @@ _COLUMNS = {
     'output': 'angle of the output encoder',
     'time': 'time of a row (default unit: by name, or by the sampling)',
 }
+_OF_JOINTS = {
+    'motors': r'# (?:The joint .* on|a joint of) (\S+?)(?:, with .*)?\n +rotor_joint:',
+    'encoders': r'# a joint of (\S+)\n +output_encoder_joint:',
+}
+"""Topics in the comments of parameter files, by what is on them."""
 
 
 def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: bool = True) -> None:
@@ -105,6 +113,14 @@ def add_new_config(parser: argparse.ArgumentParser) -> None:
     output.add_argument('-o', '--output', default=default_config().name, metavar='FILE', help=text)
     text = 'write the gear to FILE, new or existing, as this actuator of an arm'
     output.add_argument('--actuator', default='', metavar='NAME', help=text)
+
+
+def ask_for_one_topic(path: Path) -> None:
+    """Say so if the file of an arm is from several topics, by the comments of its actuators."""
+    text = path.read_text('utf-8')
+    for kind, of_joint in _OF_JOINTS.items():
+        if len(topics := {*re.findall(of_joint, text)}) > 1:
+            complain(f'one topic has to have all {kind}: remap the drivers of {listed(topics)}')
 
 
 def teeth(text: str) -> tuple[int, int]:

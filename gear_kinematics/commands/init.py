@@ -7,7 +7,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from gear_kinematics.commands import ExitCode, arguments
-from gear_kinematics.commands.encoders import add_known_ratio, add_new_config, ratio_of_teeth
+from gear_kinematics.commands.encoders import (
+    add_known_ratio,
+    add_new_config,
+    ask_for_one_topic,
+    ratio_of_teeth,
+)
 from gear_kinematics.commands.files import check_targets
 from gear_kinematics.commands.joints import ask, can_ask, choose_joint, joints_of_arm
 from gear_kinematics.commands.output import Console, complain, warn_of_shared_memory
@@ -26,7 +31,7 @@ from gear_kinematics.parameters.new_config import (
 )
 from gear_kinematics.report.document import printable
 from gear_kinematics.wire.batches import JointStateBatch
-from gear_kinematics.wire.nearest import among, listed
+from gear_kinematics.wire.nearest import among
 
 _ASSUMED = 'could not be determined, and is assumed to be multi_turn'
 
@@ -87,9 +92,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         if len(blocks) < len(ratios):
             raise ValueError('two joints have nearly the same name: add each with --actuator')
         add_actuators(path, blocks, arm_head(command))
-        topics = set(re.findall(r'# The joint .* on (\S+), with', path.read_text('utf-8')))
-        if len(topics) > 1:
-            complain(f'one topic has to have all motors: remap the drivers of {listed(topics)}')
+        ask_for_one_topic(path)
         print(f'{path}: added {", ".join(map(printable, blocks))}. Start the node:')
     else:
         [(joint, ratio)] = ratios.items()

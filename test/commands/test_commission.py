@@ -73,11 +73,16 @@ def test_actuator_is_added_to_the_file_of_an_arm(bag, tmp_path, capsys, monkeypa
     monkeypatch.chdir(tmp_path)
     Path('arm.yaml').write_text(
         '/**:\n  ros__parameters:\n    actuators: [shoulder]\n    shoulder:  # mine\n'
-        "      gear_ratio: '-101'\n"
+        "      gear_ratio: '-101'\n      # a joint of /rotor_state\n      rotor_joint: shoulder\n"
+        '      # a joint of /lift\n      output_encoder_joint: lift\n'
     )
     one = 'commission', str(bag), '--actuator', 'elbow'
     assert main([*one, '-o', 'arm.yaml']) == 0
-    assert 'It is written to arm.yaml.' in capsys.readouterr().out
+    said, asked = capsys.readouterr()
+    assert 'It is written to arm.yaml.' in said
+    assert '-r output_encoder:=/output_encoder\n' in asked  # the head of the file has none
+    drivers = 'remap the drivers of /lift, /output_encoder\n'
+    assert asked.endswith(f'gearkin: one topic has to have all encoders: {drivers}')
     text = Path('arm.yaml').read_text()
     assert 'shoulder:  # mine' in text
     assert '      # The gear has the ratio -19 (' in text
