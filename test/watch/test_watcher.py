@@ -17,7 +17,7 @@ from types import SimpleNamespace
 from unittest.mock import Mock, patch
 
 import pytest
-from blocked_bags import wait_until
+from blocked_bags import refusal, wait_until
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from live import rotor_bytes
 from rcl_interfaces.msg import ParameterValue
@@ -627,36 +627,48 @@ def listening(monkeypatch, tmp_path):
 JOINTS = 'Repeat with --joint, and its topic if needed: brake, m1 on /motor/joint_states'
 JOINTS += '; gearkin init --arm sets up all'
 ROTOR = f'which joint is the rotor? {JOINTS}'
+RATIO = '--ratio wrist 1=-19 or --teeth 80/76; if it is no motor, name the motors by --joint'
+RATIOS = '--arm', '--ratio'
+SHOULDER = 'did you mean `shoulder`? there are: 2, shoulder, wrist 1'
+REMAP = 'Repeat with --topic, or remap all drivers to one: '
+ARM = (
+    DriverTopic('/arm/motors', ('shoulder', 'wrist 1', '2'), 250.0),
+    DriverTopic('/left/output_state', ('shoulder',), 250.0),
+)
+OTHER = DriverTopic('/b', ('m2',), 9.0)
+ALIKE = DriverTopic('/b', ('m.2', 'm_2'), 9.0)
 
 
 @pytest.mark.parametrize(
-    ('arguments', 'cause'),
+    ('heard', 'arguments', 'cause'),
     [
-        ([], ROTOR),
-        (['--joint', 'm11'], f"no joint 'm11'; did you mean `m1`? {JOINTS}"),
-        (['--topic', 'motor/joint_state'], ROTOR),
-        (['--topic', '/odd'], ROTOR),
-        (['--joint', 'm1', 'brake'], '--joint takes several joints only with --arm'),
-        (
-            ['--joint', 'm1'],
-            'what is the ratio of the gear? Give it, such as --ratio -19 or --teeth 80/76',
-        ),
+        ([], [], 'is the driver running, with the same ROS_DOMAIN_ID?'),
+        (DRIVERS, [], ROTOR),
+        (DRIVERS, ['--joint', 'm11'], f"no joint 'm11'; did you mean `m1`? {JOINTS}"),
+        (DRIVERS, ['--topic', 'motor/joint_state'], ROTOR),
+        (DRIVERS, ['--topic', '/odd'], ROTOR),
+        (DRIVERS, ['--joint', 'm1', 'brake'], '--joint takes several joints only with --arm'),
+        (DRIVERS, ['--joint', 'm1'], 'gear? Give it, such as --ratio -19 or --teeth 80/76'),
+        (ARM, [*RATIOS, 'shoulder=-3'], f'of wrist 1? Give it, such as {RATIO}'),
+        (ARM, [*RATIOS, 'sholder=-3'], f"--ratio: no joint 'sholder'; {SHOULDER}"),
+        (ARM, [*RATIOS, '-3', '-5'], 'one for each, such as m1=-19'),
+        (ARM, ['--arm', '--actuator', 'shoulder'], 'leave out --actuator'),
+        (ARM, ['--arm', '--joint', 'sholder'], f"no joint 'sholder'; {SHOULDER}"),
+        (DRIVERS[1:], [*RATIOS, '3'], f'of the arm? {REMAP}none with joints'),
+        ([DRIVERS[0], OTHER], [*RATIOS, '3'], f'{REMAP}/b, /motor/joint_states'),
+        ([ALIKE], [*RATIOS, '3'], 'nearly the same name: add each with --actuator'),
     ],
 )
-def test_init_says_why_it_writes_nothing(listening, capsys, arguments, cause):
-    assert main(['init', *arguments]) == 2
-    told = capsys.readouterr()
-    assert told.err == f'gearkin: {cause}\n'
-    assert '/motor/joint_states: brake, m1 at 1000 Hz\n' in told.out
+def test_init_says_why_it_writes_nothing(listening, monkeypatch, heard, arguments, cause):
+    monkeypatch.setattr(drivers, 'listen', lambda: list(heard))
+    assert refusal('init', *arguments, report='.*').endswith(cause)
     assert not list(listening.iterdir())
 
 
 @pytest.mark.usefixtures('listening')
-def test_init_names_a_missing_folder_before_it_listens(capsys):
-    assert main(['init', '-o', 'nowhere/a.yaml', '--joint', 'm1', '--ratio', '-19']) == 2
-    told = capsys.readouterr()
-    assert told.err == 'gearkin: nowhere/a.yaml: No such file or directory\n'
-    assert not told.out
+def test_init_names_a_missing_folder_before_it_listens():
+    named = ['-o', 'nowhere/a.yaml', '--joint', 'm1', '--ratio', '-19']
+    assert refusal('init', *named) == 'nowhere/a.yaml: No such file or directory'
 
 
 def test_init_writes_what_is_named(listening, capsys):
@@ -665,13 +677,9 @@ def test_init_writes_what_is_named(listening, capsys):
     written = NodeParameters.load(listening / 'a b.yaml')
     assert (written.rotor_joint, written.gear_ratio) == ('m1', '101/2')
     command = "gear_state_publisher --ros-args --params-file 'a b.yaml' -r rotor_state:="
-    assert f'{command}/motor/joint_states\n' in capsys.readouterr().out
-
-
-ARM = (
-    DriverTopic('/arm/motors', ('shoulder', 'wrist 1', '2'), 250.0),
-    DriverTopic('/left/output_state', ('shoulder',), 250.0),
-)
+    said = capsys.readouterr().out
+    assert '/motor/joint_states: brake, m1 at 1000 Hz\n' in said
+    assert f'{command}/motor/joint_states\n' in said
 
 
 def test_joints_of_a_topic_are_those_of_all_its_drivers(monkeypatch):
@@ -705,8 +713,8 @@ def test_init_sets_up_all_motors_of_an_arm(listening, monkeypatch, capsys):
     assert 'arm.yaml: added shoulder, wrist_1, joint_2. Start the node:' in said
     assert f'{command}\n' in file.read_text('utf-8')
     one = ['init', '--actuator', 'hand', '--topic', '/left/output_state', '-o', 'arm.yaml']
-    assert main([*one, '--teeth', '11/10']) == 2
-    assert "rotor_joint 'shoulder' belongs to shoulder and hand" in capsys.readouterr().err
+    told = refusal(*one, '--teeth', '11/10', report='.*')
+    assert "rotor_joint 'shoulder' belongs to shoulder and hand" in told
     monkeypatch.setattr(drivers, 'listen', lambda: list(DRIVERS))
     one = ['init', '--actuator', 'hand', '--joint', 'm1', '-o', 'arm.yaml']
     assert main([*one, '--teeth', '11/10']) == 0
@@ -717,46 +725,14 @@ def test_init_sets_up_all_motors_of_an_arm(listening, monkeypatch, capsys):
     assert f'remap the drivers of {both}\n' in capsys.readouterr().err
     before = file.read_text('utf-8')
     monkeypatch.setattr(drivers, 'listen', None)  # before anything is listened to
-    assert main([*one, '--ratio', '3']) == 2
-    assert 'arm.yaml: hand is in it already' in capsys.readouterr().err
+    assert 'arm.yaml: hand is in it already' in refusal(*one, '--ratio', '3')
     assert file.read_text('utf-8') == before
 
 
-@pytest.mark.parametrize(
-    ('heard', 'arguments', 'cause'),
-    [
-        (ARM, ['--ratio', 'shoulder=-3'], 'what is the ratio of the gear of wrist 1? Give it'),
-        (ARM, ['--ratio', 'sholder=-3'], "no joint 'sholder'; did you mean `shoulder`?"),
-        (ARM, ['--ratio', '-3', '-5'], 'one ratio for all joints, or one for each'),
-        (ARM, ['--actuator', 'shoulder'], 'leave out --actuator'),
-        (ARM, ['--joint', 'sholder', '2'], "no joint 'sholder'; did you mean `shoulder`?"),
-        (DRIVERS[1:], ['--ratio', '3'], 'which topic has the joints of the arm?'),
-        (
-            [DRIVERS[0], DriverTopic('/b', ('m2',), 9.0)],
-            ['--ratio', '3'],
-            'Repeat with --topic, or remap all drivers to one: /b, /motor/joint_states',
-        ),
-        ([DriverTopic('/b', ('m.2', 'm_2'), 9.0)], ['--ratio', '3'], 'nearly the same name'),
-    ],
-)
-def test_init_writes_no_arm_that_is_not_known(
-    listening, monkeypatch, capsys, heard, arguments, cause
-):
-    monkeypatch.setattr(drivers, 'listen', lambda: list(heard))
-    assert main(['init', '--arm', *arguments]) == 2
-    assert cause in capsys.readouterr().err
-    assert not list(listening.iterdir())
-
-
-def test_init_leaves_out_what_is_no_motor(listening, monkeypatch, capsys):
+def test_init_leaves_out_what_is_no_motor(listening, monkeypatch):
     others = DriverTopic('/hand', ('finger',), 100.0)
     monkeypatch.setattr(drivers, 'listen', lambda: [*ARM, others])
-    arm = ['init', '--arm', '--ratio', 'shoulder=-101', '--joint']
-    assert main([*arm, 'shoulder', '2']) == 2
-    assert '--ratio 2=-19 or --teeth 80/76; if it is no motor, name the motors by --joint' in (
-        capsys.readouterr().err
-    )
-    assert main([*arm, 'shoulder']) == 0
+    assert main(['init', '--arm', '--ratio', 'shoulder=-101', '--joint', 'shoulder']) == 0
     made = load_actuators(listening / 'actuator.yaml')
     assert [each.rotor_joint for each in made.values()] == ['shoulder']
 
@@ -788,11 +764,11 @@ def test_init_takes_the_number_or_the_name_of_a_joint(listening, monkeypatch, ca
     assert written == ['m1'] * known
 
 
-def test_init_without_an_answer_writes_nothing(listening, monkeypatch, capsys):
+def test_init_without_an_answer_writes_nothing(listening, monkeypatch):
     monkeypatch.setattr(init, 'can_ask', lambda: True)
     monkeypatch.setattr('sys.stdin', io.StringIO())  # as after Ctrl-D
-    assert main(['init', '--joint', 'm1']) == 2
-    assert 'no answer was given, and nothing is written' in capsys.readouterr().err
+    told = refusal('init', '--joint', 'm1', report='.*')
+    assert 'no answer was given, and nothing is written' in told
     assert not list(listening.iterdir())
 
 
@@ -843,13 +819,6 @@ def test_init_finds_the_encoder_where_the_rotor_turned_enough(
     assert (config.rotor_encoder, config.rotor_encoder_range) == written
     lines = capsys.readouterr().err.splitlines()
     assert [text in line for line, text in zip(lines, said, strict=True)] == [True] * len(said)
-
-
-def test_init_without_a_driver_says_so(listening, monkeypatch, capsys):
-    monkeypatch.setattr(drivers, 'listen', list)
-    assert main(['init']) == 2
-    assert 'no topic of type JointState: is the driver running' in capsys.readouterr().err
-    assert not list(listening.iterdir())
 
 
 # The server
