@@ -3,7 +3,7 @@
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -65,6 +65,15 @@ def load_calibration(
     """Load the calibration at `calibration_path`; raises ValueError if it cannot be used."""
     gear, path = config.gear, calibration_path(options, config, bag)
     return Calibration.load(path, gear) if path else None
+
+
+def joints_beside(bag: Path, options: argparse.Namespace) -> list[str]:
+    """Return the rotors' joints by the parameter file in a bag's folder, if it can be used."""
+    if arguments.in_bag_folder(bag, default_config().name):
+        with suppress(OSError, ValueError):  # such as a file for several nodes
+            configs = arguments.load_configs(options, bag)
+            return [config.rotor_joint for config in configs.values()]
+    return []
 
 
 def files_of(

@@ -3,8 +3,6 @@
 
 import argparse
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
-from pathlib import Path
 
 from rich.text import Text
 
@@ -15,7 +13,6 @@ from gear_kinematics.bag.summary import Summary, summarise
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Console, complain, message_progress
 from gear_kinematics.measurement.rotor_fields import recorded_questions
-from gear_kinematics.parameters import default_config
 from gear_kinematics.report.document import counted, number, printable
 
 _DIGITS = 4
@@ -44,7 +41,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     for path in found.bags:
         try:
             with Bag(path) as bag, message_progress(path.name, quiet=options.quiet) as progress:
-                examined = joints or _joints_beside(path, options)
+                examined = joints or bags.joints_beside(path, options)
                 summary = summarise(bag, options.rotor_topic, examined, progress)
                 asked = [*_questions(bag, summary, examined)]
         except (ValueError, OSError) as error:
@@ -57,15 +54,6 @@ def run(options: argparse.Namespace) -> ExitCode:
     for fault in faults:
         complain(fault)
     return ExitCode.UNUSABLE if faults else ExitCode.DONE
-
-
-def _joints_beside(path: Path, options: argparse.Namespace) -> list[str]:
-    """Return the rotors' joints by the parameter file in a bag's folder, if it can be used."""
-    if arguments.in_bag_folder(path, default_config().name):
-        with suppress(OSError, ValueError):  # such as a file for several nodes
-            configs = arguments.load_configs(options, path)
-            return [config.rotor_joint for config in configs.values()]
-    return []
 
 
 def _questions(bag: Bag, summary: Summary, joints: Sequence[str]) -> Iterator[str]:

@@ -28,7 +28,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--no-wait', action='store_true', help='do not wait for a subscriber before the start'
     )
     arguments.add_config(
-        parser, default='the topic is found by type and name alone', actuator=arguments.ALL
+        parser,
+        default='actuator.yaml beside the recording, to find the topic',
+        actuator=arguments.ALL,
     )
     arguments.group(parser, 'output').add_argument(
         '--as',
@@ -82,7 +84,8 @@ def _topic(bag: Bag, options: argparse.Namespace) -> str:
     configs = arguments.load_configs(options).values() if options.config else ()
     wanted = [each.rotor_joint for each in configs if each.rotor_joint]
     wanted = wanted or [options.joint] * bool(options.joint)
-    topic = find_rotor_topic(bag, options.rotor_topic, *wanted)
+    joints = wanted or bags.joints_beside(options.bag, options)
+    topic = find_rotor_topic(bag, options.rotor_topic, *joints)
     joints = joints_on(bag, [topic])[topic]
     if wanted and not {*wanted}.intersection(joints):
         hint = among(wanted[0], joints)

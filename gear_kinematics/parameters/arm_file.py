@@ -58,7 +58,8 @@ def _extended(path: Path, blocks: Mapping[str, Sequence[str]], head: Sequence[st
     arm['actuators'] = names = [*arm['actuators'], *blocks]
     if twice := [name for name in blocks if names.count(name) > 1]:
         remedy = 'delete it there, also from `actuators`, or give another name'
-        raise ConfigError(f'{path}: {", ".join(twice)} is in it already: {remedy}')
+        verb = 'is' if len(twice) == 1 else 'are'
+        raise ConfigError(f'{path}: {", ".join(twice)} {verb} in it already: {remedy}')
     indent, at, lines = ' ' * mapping.start_mark.column, _behind(text, mapping), ''
     if comments := re.compile(f'(?:{indent} *#.*\n)*').match(text, at):
         at = comments.end()

@@ -52,7 +52,7 @@ def test_the_file_of_an_arm_finds_the_topic_of_its_rotors(tmp_path, monkeypatch)
     states = {'/arm/motors': ['shoulder', 'elbow'], '/hand/motors': ['thumb', 'finger']}
     messages = [(topic, 1, rotor_bytes(1, names, [0.0, 0.0])) for topic, names in states.items()]
     bag = write_bag(tmp_path / 'bag', messages, dict.fromkeys(states, JOINT_STATE))
-    arguments = ['replay', str(bag), '--no-wait', '--config']
+    arguments = ['replay', str(bag), '--no-wait']
     played = []
 
     def play(_bag, topic, *_, **__):
@@ -60,9 +60,15 @@ def test_the_file_of_an_arm_finds_the_topic_of_its_rotors(tmp_path, monkeypatch)
         return Played()
 
     monkeypatch.setattr('gear_kinematics.ros.replay.play', play)
-    assert main([*arguments, str(config(tmp_path / 'arm.yaml'))]) == 0
-    assert played == ['/arm/motors']
+    assert main(arguments) == 2  # either topic
+    assert main([*arguments, '--config', str(config(tmp_path / 'arm.yaml'))]) == 0
+    config(bag / 'actuator.yaml')
+    assert main(arguments) == 0
+    assert played == 2 * ['/arm/motors']
+    # The file beside the recording only chooses among the topics.
+    assert main([*arguments, '--rotor-topic', '/hand/motors']) == 0
     other = config(
         tmp_path / 'other.yaml', **{f'{name}.rotor_joint': name.upper() for name in RATIOS}
     )
-    assert main([*arguments, str(other), '--rotor-topic', '/arm/motors']) == 2
+    wrong = '--config', str(other), '--rotor-topic', '/arm/motors'
+    assert main([*arguments, *wrong]) == 2

@@ -700,7 +700,8 @@ def test_joints_of_a_topic_are_those_of_all_its_drivers(monkeypatch):
 def test_init_sets_up_all_motors_of_an_arm(listening, monkeypatch, capsys):
     monkeypatch.setattr(drivers, 'listen', lambda: list(ARM))
     file, ratios = listening / 'arm.yaml', ['-101', 'wrist 1=50.5']
-    assert main(['init', '--arm', '-o', 'arm.yaml', '--ratio', *ratios]) == 0
+    all_motors = ['init', '--arm', '-o', 'arm.yaml', '--ratio', *ratios]
+    assert main(all_motors) == 0
     assert {
         name: (each.rotor_joint, each.gear_ratio) for name, each in load_actuators(file).items()
     } == {
@@ -723,6 +724,10 @@ def test_init_sets_up_all_motors_of_an_arm(listening, monkeypatch, capsys):
     assert '# The joint m1 on /motor/joint_states, with the gear ratio -10' in file.read_text()
     both = '/arm/motors, /motor/joint_states'
     assert f'remap the drivers of {both}\n' in capsys.readouterr().err
+    monkeypatch.setattr(drivers, 'listen', lambda: list(ARM))
+    again = [*all_motors, '--joint', 'shoulder', 'wrist 1']
+    assert main(again) == 2
+    assert 'arm.yaml: shoulder, wrist_1 are in it already' in capsys.readouterr().err
     before = file.read_text('utf-8')
     monkeypatch.setattr(drivers, 'listen', None)  # before anything is listened to
     assert 'arm.yaml: hand is in it already' in refusal(*one, '--ratio', '3')
