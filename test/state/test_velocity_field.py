@@ -20,17 +20,23 @@ SETTINGS = NodeParameters.load()
 TURN = 2.0 * math.pi
 
 
-def messages(factor, speed=100.0, rate=500, scatter=0.0, duration=1.0) -> list[bytes]:
+def heard(motion, rate, duration, settings=SETTINGS, *, doubted=False):
+    """The input after readings at a rate, and its samples; `motion` gives both fields."""
+    rotor, samples = RotorInput(settings), []
+    for time in np.arange(round(duration * rate)) / rate:
+        position, velocity = motion(time)
+        data = rotor_bytes(SECOND + round(time * SECOND), position=[position], velocity=[velocity])
+        with suppress(RejectedInputError):
+            samples.append(rotor.accept(data, int))
+    assert doubted or not rotor.rejected
+    return rotor, samples
+
+
+def steady(factor, speed=100.0, rate=500, scatter=0.0, duration=1.0):
     generator = np.random.default_rng(1)
-    times = np.arange(round(duration * rate)) / rate
-    return [
-        rotor_bytes(
-            SECOND + round(t * SECOND),
-            position=[speed * t],
-            velocity=[factor * speed + scatter * generator.normal()],
-        )
-        for t in times
-    ]
+    return heard(
+        lambda time: (speed * time, factor * speed + scatter * generator.normal()), rate, duration
+    )
 
 
 FAST, SLOW = {}, {'speed': 1.0, 'rate': 25, 'duration': 8.0}
@@ -50,8 +56,7 @@ FAST, SLOW = {}, {'speed': 1.0, 'rate': 25, 'duration': 8.0}
     (2.0, SLOW, None),  # whole rad/s, rounded up, of half as many
 ])  # fmt: skip
 def test_wrong_velocities_are_named_and_not_passed_on(factor, motion, meaning):
-    rotor = RotorInput(SETTINGS)
-    samples = [rotor.accept(data, int) for data in messages(factor, **motion)]
+    rotor, samples = steady(factor, **motion)
     found = rotor.velocity_field
     assert (found.meaning and found.meaning.values['meaning']) == meaning
     if meaning:
@@ -63,20 +68,13 @@ def test_wrong_velocities_are_named_and_not_passed_on(factor, motion, meaning):
 
 @pytest.mark.parametrize('right', [3.3, 3.8])
 def test_velocities_that_become_wrong_are_found_after_a_pause_of_a_second(right):
-    rotor, rate = RotorInput(SETTINGS), 100
-    for k in range(round((right + 1.6) * rate)):
-        velocity = [50.0 if k < right * rate else 477.0]
-        stamp = SECOND + k * SECOND // rate
-        rotor.accept(rotor_bytes(stamp, position=[50.0 * k / rate], velocity=velocity), int)
+    rotor, _ = heard(lambda t: (50.0 * t, 50.0 if t < right else 477.0), 100, right + 1.6)
     assert rotor.velocity_field.contradicts
 
 
 def test_velocities_that_become_right_are_named_in_a_recording():
     """As of a driver that sends zeros until it has measured for a while."""
-    rotor, rate = RotorInput(SETTINGS), 100
-    for k in range(4 * rate):
-        stamp, velocity = SECOND + k * SECOND // rate, [50.0 * (k >= 2 * rate)]
-        rotor.accept(rotor_bytes(stamp, position=[50.0 * k / rate], velocity=velocity), int)
+    rotor, _ = heard(lambda t: (50.0 * t, 50.0 * (t >= 2.0)), 100, 4.0)
     field = rotor.velocity_field
     assert (field.contradicts, field.meaning) == (False, None)
     said = str(field.in_recording)
@@ -104,13 +102,10 @@ COUNT = 2.0 * math.pi / 128.0
 def test_velocities_are_judged_by_their_mean_however_unsteady_the_motion_is(
     motion, factor, meaning
 ):
-    rotor, rate = RotorInput(SETTINGS), 500
-    for k in range(4000):
-        before, position = motion((k - 1) / rate), motion(k / rate)
-        velocity = [factor * (position - before) * rate]
-        data = rotor_bytes(SECOND + k * SECOND // rate, position=[position], velocity=velocity)
-        with suppress(RejectedInputError):
-            rotor.accept(data, int)
+    def fields(time):
+        return motion(time), factor * (motion(time) - motion(time - 0.002)) / 0.002
+
+    rotor, _ = heard(fields, 500, 8.0, doubted=True)
     found = rotor.velocity_field.meaning
     assert (found and found.values['meaning']) == meaning
 
@@ -130,16 +125,12 @@ def swinging(t):
 ])  # fmt: skip
 @pytest.mark.parametrize('held', [0.0, 0.2])
 def test_what_is_no_velocity_at_all_is_found_in_unsteady_motion(sent, wrong, held):
-    rotor, rate = RotorInput(replace(SETTINGS, max_rotor_acceleration=1e6)), 100
-    samples = []
-    for k in range(14 * rate):
-        t = k / rate
-        read = held * math.floor(t / held) if held else t  # a driver repeats readings
-        data = rotor_bytes(
-            SECOND + round(t * SECOND), position=[swinging(read)[0]], velocity=[sent(*swinging(t))]
-        )
-        with suppress(RejectedInputError):
-            samples.append(rotor.accept(data, int))
+    def fields(time):
+        read = held * math.floor(time / held) if held else time  # a driver repeats readings
+        return swinging(read)[0], sent(*swinging(time))
+
+    limits = replace(SETTINGS, max_rotor_acceleration=1e6)
+    rotor, samples = heard(fields, 100, 14.0, limits, doubted=True)
     assert rotor.velocity_field.contradicts == wrong
     named = Condition.VELOCITIES_ARE(meaning='an unknown quantity')
     assert rotor.velocity_field.meaning == (named if wrong else None)
@@ -147,17 +138,13 @@ def test_what_is_no_velocity_at_all_is_found_in_unsteady_motion(sent, wrong, hel
 
 
 def test_velocities_of_an_oscillation_that_is_sampled_seldom_are_right():
-    rotor, w = RotorInput(SETTINGS), 7.0 * math.tau
-    for t in np.arange(280) / 20.0:
-        position, velocity = 3.0 * math.sin(w * t), 3.0 * w * math.cos(w * t)
-        stamp = SECOND + round(t * SECOND)
-        rotor.accept(rotor_bytes(stamp, position=[position], velocity=[velocity]), int)
+    w = 7.0 * math.tau
+    rotor, _ = heard(lambda t: (3.0 * math.sin(w * t), 3.0 * w * math.cos(w * t)), 20, 14.0)
     assert rotor.velocity_field.in_recording is None
 
 
 def test_velocities_that_are_noise_around_zero_are_not_used():
-    rotor = RotorInput(SETTINGS)
-    samples = [rotor.accept(data, int) for data in messages(0.0, scatter=2.0)]
+    rotor, samples = steady(0.0, scatter=2.0)
     assert rotor.velocity_field.contradicts
     assert samples[-1].velocity is None
 
@@ -168,15 +155,13 @@ def test_velocities_that_are_noise_around_zero_are_not_used():
     (-0.02, None), (-0.06, Condition.POSITIONS_LATE), (-0.15, Condition.POSITIONS_LATE),
 ])  # fmt: skip
 def test_fields_that_are_late_in_unsteady_motion_are_named(delay, named, step):
-    rotor = RotorInput(SETTINGS)
-    for k in range(5000):
-        time = k / 500
+    def fields(time):
         position, speed = 40.0 * math.sin(5.0 * time), 200.0 * math.cos(5.0 * (time - delay))
-        position = step * math.floor(position / step) if step else position
-        stamp = SECOND + round(time * SECOND)
-        rotor.accept(rotor_bytes(stamp, position=[position], velocity=[speed]), int)
+        return step * math.floor(position / step) if step else position, speed
+
+    rotor, samples = heard(fields, 500, 10.0)
     meaning = rotor.velocity_field.meaning
-    assert rotor.last.velocity == pytest.approx(speed)
+    assert samples[-1].velocity == pytest.approx(fields(9.998)[1])
     assert (meaning and meaning.condition) is named
     if meaning:
         assert meaning.values == {'delay': pytest.approx(abs(delay), rel=0.05)}
@@ -199,12 +184,7 @@ def test_errors_of_positions_at_a_steady_speed_are_no_delay(eccentric, noise):
 @pytest.mark.parametrize('rate', [10, 20, 30, 100])
 def test_velocities_of_a_slow_driver_are_no_sign_of_late_positions(rate):
     """They are those of the end of the travel."""
-    rotor = RotorInput(SETTINGS)
-    for k in range(20 * rate):
-        time = k / rate
-        position, speed = 40.0 * math.sin(3.0 * time), 120.0 * math.cos(3.0 * time)
-        stamp = SECOND + round(time * SECOND)
-        rotor.accept(rotor_bytes(stamp, position=[position], velocity=[speed]), int)
+    rotor, _ = heard(lambda t: (40.0 * math.sin(3.0 * t), 120.0 * math.cos(3.0 * t)), rate, 20.0)
     assert rotor.velocity_field.meaning is None
 
 
@@ -225,12 +205,7 @@ def test_turns_that_pass_while_a_single_turn_encoder_is_stuck_stay_unknown(setti
 
 @pytest.mark.parametrize('speed', [2.0, 40.0, 200.0])
 def test_right_velocities_do_not_contradict_positions_that_wrap_unexpectedly(speed):
-    rotor = RotorInput(SETTINGS)
-    for k in range(10_000):
-        position = [speed * k / 1000 % TURN]
-        message = rotor_bytes(SECOND + k * SECOND // 1000, position=position, velocity=[speed])
-        with suppress(RejectedInputError):
-            rotor.accept(message, int)
+    rotor, _ = heard(lambda time: (speed * time % TURN, speed), 1000, 10.0, doubted=True)
     assert rotor.plausibility.jumps
     assert rotor.velocity_field.in_recording is None
 
@@ -242,18 +217,12 @@ def test_right_velocities_do_not_contradict_positions_that_wrap_unexpectedly(spe
     (lambda t: 20.0 * math.sin(20.0 * t), False),
 ])  # fmt: skip
 def test_velocities_of_an_unsteady_motion_show_that_an_encoder_is_stuck(velocity, stuck):
-    rotor, rate = RotorInput(SETTINGS), 200
-    for k in range(3 * rate):
-        stamp = SECOND + k * SECOND // rate
-        rotor.accept(rotor_bytes(stamp, position=[1.0], velocity=[velocity(k / rate)]), int)
+    rotor, _ = heard(lambda time: (1.0, velocity(time)), 200, 3.0)
     assert rotor.velocity_field.positions_stand == stuck
 
 
 def test_velocities_of_an_encoder_that_is_stuck_contradict_it():
-    rotor = RotorInput(SETTINGS)
-    for k in range(1000):
-        position = min(0.02 * k, 5.0)
-        rotor.accept(rotor_bytes(k * SECOND // 500 + 1, position=[position], velocity=[10.0]), int)
+    rotor, _ = heard(lambda time: (min(10.0 * time, 5.0), 10.0), 500, 2.0)
     assert rotor.velocity_field.meaning == Condition.POSITIONS_STAND()
 
 
