@@ -56,8 +56,7 @@ def all_in_reach(
     step, span = np.where(ended, 0.0, moved), np.where(ended, 0, took)
     # Left to `judge`: steps of the same stamp, which are added up, abrupt stops, and what may be
     # a wrap.
-    back = (moved[1:] * moved[:-1] < 0.0) & (np.abs(moved[1:]) > LEAST_STEP)
-    if np.any(when == changed[:-1]) or np.any(back):
+    if np.any(when == changed[:-1]) or np.any(np.abs(moved[1:]) > LEAST_STEP):
         return None
     sizes = np.abs([steps, steps - step[1:-1]])
     sizes = np.where(sizes > EQUAL, sizes, COARSEST).min(axis=0)

@@ -297,8 +297,8 @@ class RotorInput:
             if verdict is Belief.IMPLAUSIBLE:
                 raise RejectedInputError(Rejection.IMPLAUSIBLE)
             self.turns.lose()
-            if self.plausibility.wraps.period:  # then no slope of the positions is a speed
-                self.velocity_field.restart()
+            if self.plausibility.wraps.period:  # then no slope of the positions was a speed
+                self.velocity_field = VelocityField(float(1 / self._parameters.gear.gear_ratio))
         if stamp < (field := self.velocity_field).quiet_until:
             self.turns.update(position, stamp, velocity)
             field.add(velocity)

@@ -12,10 +12,14 @@ from dataclasses import dataclass, field
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.state.statuses import Condition, Fact
 
-LEAST_STEP = 0.7 * TURN  # rad, of a step back
-_FEWEST = 3  # equal steps back in a row between the same ends
+LEAST_STEP = 0.5 * TURN  # rad, of a step that may be a wrap
+_FEWEST = 3  # equal steps back in a row between the same ends, and no other steps as far
 _EQUAL = 0.02  # of their size: what they may differ by, as stamps are uneven
 _ENDS = 0.3  # of their size: most motion during a step, and what their ends may differ by
+_FEWEST_FAST, _SPREAD = 8, 0.15 * TURN
+"""Steps back in a row of a rotor that turns on by more than `_ENDS` of them between readings; and
+by how much their lower ends must differ, rad. A vibration of a third of the rate of the messages,
+or a half, can step back like that, but always to the same end."""
 _STEADY = 0.5  # of the greater speed: what the speeds before and after may differ by
 _RESERVE = 1.25  # times what is needed: limits that are proposed
 _MANY = 16  # wraps, whose mean shows that a range is another
@@ -35,6 +39,7 @@ class Wraps:
     _off: float = 0.0
     _squares: float = 0.0
     _steps: list[tuple[float, float, float]] = field(default_factory=list)
+    _fast: list[tuple[float, float]] = field(default_factory=list)
 
     @property
     def fact(self) -> Fact | None:
@@ -73,13 +78,16 @@ class Wraps:
         before, after = speeds
         motion = 0.5 * (before + after) * time
         size, low, high = abs(step - motion), min(end - step, end), max(end - step, end)
-        if (
-            not step * before < 0.0 > step * after
-            or size < (1.0 - _EQUAL) * TURN
-            or not (jump or size < (1.0 + _EQUAL) * TURN)
-            or abs(motion) > _ENDS * size
-            or abs(after - before) > _STEADY * max(abs(before), abs(after))
-        ):
+        equal = size >= (1.0 - _EQUAL) * TURN and (jump or size < (1.0 + _EQUAL) * TURN)
+        if not (step * before < 0.0 > step * after and equal):
+            if not self.period:
+                self._steps.clear()
+                self._fast.clear()
+            return False
+        change = abs(after - before)
+        if abs(motion) > _ENDS * size:
+            return not jump and change * time <= _EQUAL * TURN and self._note_fast(low, high)
+        if change > _STEADY * max(abs(before), abs(after)):
             return False
         found = size, low, high
         alike = [_EQUAL * size, _ENDS * size, _ENDS * size]
@@ -93,6 +101,17 @@ class Wraps:
         if len(self._steps) == _FEWEST and not self.period:
             self.period = sorted(self._steps)[_FEWEST // 2][0]
         return len(self._steps) == _FEWEST
+
+    def _note_fast(self, low: float, high: float) -> bool:
+        """Take the ends of a step back in fast motion, rad; return whether it is a known wrap."""
+        self._fast = [*self._fast[1 - _MANY :], (low, high)]
+        lows, highs = zip(*self._fast, strict=True)
+        if max(highs) - min(lows) > (1.0 + _EQUAL) * TURN:
+            self._fast.clear()
+        known = len(self._fast) >= _FEWEST_FAST and max(lows) - min(lows) >= _SPREAD
+        if known and not self.period:
+            self.period = TURN
+        return known
 
 
 def too_seldom(

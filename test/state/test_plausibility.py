@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from live import SECOND, rotor_bytes
 
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.plausibility import Plausibility
 from gear_kinematics.state.reach import STALEST
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition
@@ -242,6 +243,36 @@ def test_a_rotor_that_trembles_between_moves_by_a_turn_does_not_wrap(rest):
     rotor, _ = fed(MULTI, messages(np.arange(len(moved)) / 10, angles))
     assert rotor.referenced
     assert rotor.plausibility.jumped is None
+
+
+@pytest.mark.parametrize('velocities', [True, False])
+@pytest.mark.parametrize('rate', [10, 25, 50])
+@pytest.mark.parametrize('turns', [0.32, 0.4, 0.48, -0.36, 0.7, -0.55])
+def test_positions_that_wrap_are_named_where_the_rotor_turns_far_between_readings(
+    rate, turns, velocities
+):
+    times = np.arange(0.0, 6.0, 1.0 / rate)
+    speed = turns * TURN * rate
+    angles = np.mod(speed * times + 1.0, TURN)
+    velocity = {'velocity': [speed]} if velocities else {}
+    rotor = RotorInput(MULTI)
+    for stamp, angle in zip(START + np.round(times * SECOND).astype(int), angles, strict=True):
+        rotor.accept(rotor_bytes(int(stamp), position=[angle], **velocity), int)
+    assert rotor.plausibility.jumped == Condition.WRAPS(angle=TURN, setting=ANY)
+    assert not rotor.referenced
+    assert rotor.velocity_field.meaning is None
+
+
+@pytest.mark.parametrize('rate', [10, 50])
+@pytest.mark.parametrize('share', [0.2855, 2 / 7, 0.3, 0.305, 1 / 3, 0.334, 0.4, 0.4999, 0.5])
+def test_a_vibration_does_not_wrap_though_its_steps_back_are_those_of_wraps(rate, share):
+    angles = TURN * share * np.arange(20.0 * rate)
+    for size in np.linspace(0.9, 1.3, 9) * 0.5 * TURN / (1.0 - math.cos(TURN * share)):
+        for phase in np.linspace(0.0, TURN, 5):
+            judge = Plausibility(*LIMITS)
+            for n, angle in enumerate((size * np.sin(angles + phase)).tolist()):
+                judge.judge(angle, START + n * SECOND // rate)
+            assert judge.wraps.fact is None
 
 
 @pytest.mark.parametrize(('rate', 'speed', 'period'), [
