@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# EZMotionMMS2 1.0.2: a servo that stands at its goal of 1° is read at 0°, and so one degree less for 352 of 359 goals.
+# EZMotionMMS2 1.0.2: a servo that stands at its goal of 1° is read at 0°, and one degree less for 352 of 359 goals.
 #
 # These servos count 65536 a turn, and 1° is sent as 182 counts, which are 0.9998°. Expected of Read_Actual_Position():
 # 0.9998°. What happens: the angle is cut off to a whole degree, so that 0 comes back and a goal is never seen to be

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# go.einride.tech/can 0.17.0: a position beyond [min|max] of a .dbc is read as the limit, and a float of 1.5 as
+# go.einride.tech/can 0.17.0: a position beyond the range in a .dbc is read as its limit, and a float of 1.5 as
 # 1069547520.
 #
 # A signal of 16 bits with a factor of 0.001 has the range [-12.5|12.5] in its .dbc; the shaft has gone on to 20 rad.

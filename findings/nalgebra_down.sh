@@ -1,16 +1,15 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# nalgebra 0.35.0 (Rust): the angles of a flange that points straight down are those of a pose that is up to 49° away if
-# they come from a quaternion, and 60° away by euler_angles_ordered().
+# nalgebra 0.35.0 (Rust): the angles of a flange that points straight down are up to 49° off if its pose is a
+# quaternion.
 #
 # A flange at a roll of 20°, a pitch of -90° and a yaw of 10°, of which only the sum of roll and yaw is defined.
-# Expected of euler_angles(): a roll and a yaw with the sum of 30°, as it gives for a Rotation3 of these angles. What
-# happens for a UnitQuaternion of these angles: 10.8° and 8.4°, a pose that is 10.8° away. The case of ±90° is taken
-# only if an element of the matrix is exactly ±1, and here it is rounded to a little less. to_rotation_matrix() before
-# it is no help, as the quaternion's own euler_angles() does the same. At a pitch of 90°, 59 of 180 poses are more
-# than 1° away. Rotation3::euler_angles_ordered() about the same axes gives -30° and 0° for the first pose, which is
-# 60° away, with the documented flag that the angles are not unique; at 90° it is right, with the same flag. At -89.9°
-# all are exact.
+# Expected of euler_angles(): a roll and a yaw with the sum of 30°, as it gives for the Rotation3 of these angles. What
+# happens for their UnitQuaternion: 10.8° and 8.4°, a pose 10.8° away, as a pitch of ±90° is seen only where an element
+# of the matrix is exactly ±1, and rounding makes it a little less. At a pitch of 90°, 59 of 180 poses are more than 1°
+# away, up to 49°. to_rotation_matrix() before it is no help. euler_angles_ordered() of the Rotation3 gives -30° and 0°
+# for the first pose, which is 60° away, with the documented flag that the angles are not unique; at 90° it is right,
+# with the same flag. At -89.9° all are exact.
 # For us: keep the orientation of a flange as a quaternion, and make the pose from its angles again to check them.
 #
 # Exit code 0: still so. Needs cargo; installs the version into a temporary folder.

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# poekit 0.1.0: the mass matrix of an arm of two joints is that of the stretched arm at any angle of its elbow, and a
-# yaw of 0.5 rad is -0.5 rad.
+# poekit 0.1.0: the mass matrix of an arm is that of the stretched arm at any angle of its elbow, and a yaw of 0.5 rad
+# is -0.5 rad.
 #
 # An arm with two joints about z and two links of 1 m, each of 1 kg and 0.1 kg·m² about its middle, with its elbow at 2
 # rad. Expected of InertiaUtils.M_inertia_Aij(), by the angles that it is given: 1.284 kg·m² at the shoulder. What

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# se3kit 1.0.6: a roll of 0.3 rad is read back as -0.3 rad where the angles are about the turned axes, and a rotation of
-# 0.01 µrad is an error.
+# se3kit 1.0.6: a roll of 0.3 rad about turned axes is read back as -0.3 rad, and the axis of a rotation of 0.01 µrad is
+# an error.
 #
 # Rotation.from_rpy([0.3, 0.4, 0.5], extrinsic=False) makes the right matrix. Expected of as_rpy(extrinsic=False), or of
 # as_xyz(): the same angles. What happens: [-0.3, 0.4, 0.5], and by as_zyx(extrinsic=True) alike, since an element of
