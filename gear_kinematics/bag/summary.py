@@ -52,9 +52,7 @@ class TopicSummary(NamedTuple):
     gaps: int  # periods longer than five median ones
     longest_gap: float  # longest of these periods, s
     followed: str = ''  # joint of the rotor or, on another topic, that of the first message
-    of_others: int = (
-        0  # messages without the joint that is followed, which rate and gaps leave out
-    )
+    of_others: int = 0  # messages without that joint, which rate and gaps leave out
 
 
 class Summary(NamedTuple):
