@@ -143,8 +143,11 @@ def joints_on(bag: Bag, topics: Sequence[str]) -> dict[str, list[str]]:
     return joints
 
 
-def find_encoder_topic(bag: Bag, rotor: str, given: str | None = None) -> str:
+def find_encoder_topic(bag: Bag, rotor: str, given: str | None = None, *joints: str) -> str:
     """Return the output encoder's topic, given or by name, near the rotor's if possible, or ''.
+
+    Without one of that name, it is the only other topic with one of the encoders' `joints` that
+    the rotor's topic does not have.
 
     Raises BagError if the given one is missing, or several in other namespaces have the name.
     """
@@ -155,7 +158,13 @@ def find_encoder_topic(bag: Bag, rotor: str, given: str | None = None) -> str:
     if found := find_in_namespace(bag, [OUTPUT_ENCODER], rotor):
         return found[OUTPUT_ENCODER]
     named = [topic for topic in _of_type(bag.topics, wanted) if base_name(topic) == OUTPUT_ENCODER]
-    return _only(bag.path, named, OUTPUT_ENCODER) if named else ''
+    if named:
+        return _only(bag.path, named, OUTPUT_ENCODER)
+    others = [topic for topic in _of_type(bag.topics, wanted) if base_name(topic) not in TOPICS]
+    there = joints_on(bag, [rotor, *others[:_PEEKED]]) if any(joints) else {rotor: []}
+    own = {*joints}.difference(['', *there.pop(rotor)])
+    found_by_joint = [topic for topic, names in there.items() if own.intersection(names)]
+    return found_by_joint[0] if len(found_by_joint) == 1 else ''
 
 
 def missing_encoder(bag: Bag) -> str:

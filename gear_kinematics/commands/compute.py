@@ -54,13 +54,13 @@ def run(options: argparse.Namespace) -> ExitCode:
         if options.joint is None and first and '' in configs:
             taken = only_joint(bag, rotor, first)
             configs = {'': replace(configs[''], rotor_joint=taken)}
-        absolute = any(config.absolute for config in configs.values())
+        absolute = [each.output_encoder_joint for each in configs.values() if each.absolute]
         result = compute(
             bag,
             options.out,
             configs,
             topics=outputs_of(bag, rotor),
-            encoder_topic=find_encoder_topic(bag, rotor) if absolute else '',
+            encoder_topic=find_encoder_topic(bag, rotor, None, *absolute) if absolute else '',
             calibrations=calibrations,
             others=options.topics,
             files=bags.files_of(options, configs, options.bag),

@@ -43,7 +43,7 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: boo
     parser.add_argument('recordings', nargs=number, type=Path, metavar='BAG|TABLE', help=text)
     add_rotor(parser, configured=configured)
     recording = arguments.group(parser, 'recording')
-    text = 'topic of the output encoder (default: found by type and name)'
+    text = 'topic of the output encoder (default: found by type, name and joint)'
     recording.add_argument('--encoder-topic', metavar='NAME', help=text)
     arguments.group(parser, 'gear')  # before the columns, also where the command adds to it
     if configured:

@@ -149,7 +149,9 @@ def _validator(task: Task, bag: Bag, topics: Topics) -> Validator:
     further = {names[own]: topic for own, topic in found.items()}
     poses = further.pop(BODY_POSES, '')
     topics = topics._replace(poses=topics.poses or task.poses_topic or poses)
-    encoder = find_encoder_topic(bag, topics.rotor) if parameters.absolute else ''
+    encoder = ''
+    if parameters.absolute:
+        encoder = find_encoder_topic(bag, topics.rotor, None, parameters.output_encoder_joint)
     if TRANSMISSION_ERROR in further and not encoder:
         encoder = find_in_namespace(bag, [OUTPUT_ENCODER], topics.output).get(OUTPUT_ENCODER, '')
     return Validator(task, topics, further, encoder=encoder)
@@ -183,7 +185,9 @@ def _played(
     """Validate what a live node publishes for the recorded rotor states."""
     given, joints = {'rotor': task.rotor_topic}, [task.parameters.rotor_joint]
     rotor, *_ = find_topics(bag, given, outputs=False, joints=joints, namespace=task.namespace)
-    encoder = find_encoder_topic(bag, rotor) if task.parameters.absolute else ''
+    encoder, joint = '', task.parameters.output_encoder_joint
+    if task.parameters.absolute:
+        encoder = find_encoder_topic(bag, rotor, None, joint)
     task, taken = _of_only_joint(task, bag, rotor)
     total = count_due(bag, [rotor]) if progress else None
     messages = play(

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 from live import rotor_bytes
+from shipped_bags import write_bag
 
 from gear_kinematics.bag import Bag, BagError
 from gear_kinematics.bag.roles import Topics, find_encoder_topic, find_rotor_topic, find_topics
@@ -173,6 +174,17 @@ def test_topics_of_the_wanted_type_are_named_first():
 )
 def test_the_encoder_at_the_output_is_found_by_name(joint_states, given, found):
     assert find_encoder_topic(bag_with(joint_states), '/arm/rotor_state', given) == found
+
+
+@pytest.mark.parametrize(
+    ('joint', 'found'), [('shaft', '/encoder'), ('m1', ''), ('', ''), ('both', '')]
+)
+def test_an_encoder_of_another_topic_is_found_by_its_joint(tmp_path, joint, found):
+    """But not by one that is the rotor's as well, as in commands to a motor."""
+    joints = {'/motor': 'm1', '/command': 'm1', '/encoder': 'shaft', '/a': 'both', '/b': 'both'}
+    messages = [(topic, 1, rotor_bytes(1, [name], [0.0])) for topic, name in joints.items()]
+    with Bag(write_bag(tmp_path / 'bag', messages, dict.fromkeys(joints, JOINT_STATE))) as bag:
+        assert find_encoder_topic(bag, '/motor', None, joint) == found
 
 
 def test_outputs_of_another_node_are_not_those_of_the_one_that_is_named():
