@@ -31,7 +31,7 @@ _WANTED = 'target|action|goal|desire|cmd|command|setpoint'
 """Words in names of columns of what was commanded, not measured."""
 _NO_ANGLE = re.compile(
     r'(?i)torq|effort|force|curr|vel(?!_mapper)|speed|rpm|/ ?s|temp|time|stamp|control|elec|tau|'
-    rf'index|valid|cell|acc(?!um)|dot|err|volt|power|^t$|^[ft][xyz]|^i_?[qd](?![a-z])|{_WANTED}'
+    rf'index|valid|cell|acc(?!um)|dot|err|volt|power|^t$|^[ftm][xyz]|^i_?[qd](?![a-z])|{_WANTED}'
 )
 """Words in names of columns that are not proposed as angles."""
 _LIKELY = re.compile(

@@ -24,6 +24,7 @@ _NEGATIVE = re.compile(r'^\((\d[\d.,]*)\)$')
 """Negative numbers in brackets, as in accounts, which Excel writes."""
 _IDS = re.compile(r'((joint|motor|actuator|servo|axis|node|can|id|name|index) ?)+')
 """Names of the column of a table with a row for each joint."""
+_NAMES = 100  # words in a column that are compared with names
 _OFTEN = 0.9  # share of the rows that are of another joint than the one before
 MISSING = {'', 'nan', '-nan', 'inf', '-inf', 'null', 'none', '<na>', 'n/a', 'na', '-', '[]'}
 
@@ -69,6 +70,18 @@ def numbers(column: Any, point: str = '.') -> Any:
         return values if known >= others else np.full(len(values), np.nan)
     moments = _moments(text)
     return moments.to_numpy('datetime64[ns]') if moments.notna().any() else values
+
+
+def checked(column: Any, name: str, names: Sequence[str]) -> Any:
+    """Return a column; ValueError if a further row of names says another one, or another unit."""
+    if column.dtype.kind in 'iufbmM':
+        return column
+    text, (words, unit, *_) = column.astype(str).str.strip(), meaning(name)
+    for cell in text[text.str.match(r'[^\W\d]{2}')].unique()[:_NAMES]:
+        says = meaning(cell)
+        if cell != name and (cell in names or (says.words == words and says.unit != unit)):
+            raise ValueError(f'{name} goes on below as {cell}: divide the file there')
+    return column
 
 
 def _moments(text: Any) -> Any:

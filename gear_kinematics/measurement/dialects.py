@@ -22,6 +22,7 @@ from gear_kinematics.measurement.cells import (
     Element,
     are_divided,
     cells_of,
+    checked,
     elements_of,
     ids_of,
     may_be_divided,
@@ -38,21 +39,18 @@ _SEPARATORS = ';', '\t', ',', '|', ' '
 _COMMENT = ('#', '//', '%', 'sep=', 'SEP=')
 _BOMS = {b'\xef\xbb\xbf': 'utf-8-sig', b'\xff\xfe': 'utf-16', b'\xfe\xff': 'utf-16'}
 _TYPES = re.compile(r'(?i)[iuf]\d+|(float|double|u?int)\d*|(type|interp|blockpath|portindex): *.+')
-"""Cells of rows between names and numbers that give types, as INCA and Simulink write them."""
+"""Cells of rows that give types, as INCA and Simulink write them."""
+# Beginnings of CAN bus logs of candump, PCAN-View and CANoe.
 _FRAMES = re.compile(r'\s*\(\d+\.\d+\)\s+\w+\s+[0-9A-F]+#|;\$FILEVERSION|date \w{3} \w{3} \d')
-"""Beginnings of CAN bus logs of candump, PCAN-View and CANoe."""
 _ANGLES = re.compile(
     r'(?i)(?:(?<!\d )|(?<=0\.1 )|(?<=0\.01 ))'
     r'\b(deg(ree)?s?|revolutions?|turns)\b(?!/|\.? *([CFK]|celsius)\b|[ -]of\b| per\b)'
 )
 """Units of angles in titles and comments, but not in `deg C`, or of a value as in `3 turns`."""
 _CODESYS = '[key]; [value]'  # begins a trace of CODESYS, whose variables are below each other
-_NO_NAMES = re.compile(r'(?i)[-+|:=\s]*|sep=.*\s*')
-"""Lines above the numbers that are no names, as below the names in tables of psql."""
-_CLOCKS = {'name': 'ms', 'x_value': 's'}
-"""Words, other than those for time, before names of channels with their own times; and units."""
+_NO_NAMES = re.compile(r'(?i)[-+|:=\s]*|sep=.*\s*')  # lines without names, as of psql
+_CLOCKS = {'name': 'ms', 'x_value': 's'}  # words, and units, before channels with their own times
 _FILETIME = re.compile(r'\d{18}')  # times of Windows, since 1601
-_VALUE = 'value'
 _TOPICS = (
     *('topic', 'message path', 'series', 'signal', 'channel', 'label', 'field', 'name'),
     *('key', 'entry', 'variable', 'tag'),
@@ -175,11 +173,11 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
 
     lower = [name.lower().strip('_') for name in layout.names]
     sample = [cells_of(line, layout.separator) for line in lines[layout.start :][:_ROWS]]
-    topics = [name for name in _TOPICS if name in lower] if _VALUE in lower else []
+    topics = [name for name in _TOPICS if name in lower] if 'value' in lower else []
     keys = [layout.names[lower.index(name)] for name in topics] or ids_of(layout.names, sample)
     if keys:
         frame = read(range(len(lower)), 1).set_axis(layout.names, axis=1)
-        value = layout.names[lower.index(_VALUE)] if topics else ''
+        value = layout.names[lower.index('value')] if topics else ''
         return loaded(*series_of(frame, layout.point, keys[0], value, layout.units))
     elements = elements_of(layout.names, sample)
     arrays = {element.place for element in elements.values()}
@@ -196,9 +194,11 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
                     f'{layout.names[place]} has three decimals or none, as if points divided '
                     'thousands: write the numbers without these points'
                 )
-        columns = (one.of(frame) if isinstance(one, Element) else frame[one] for one in sources)
-        values = (numbers(column, layout.point) for column in columns)
-        return dict(zip(wanted, values, strict=True)), every
+        values = {}
+        for name, one in zip(wanted, sources, strict=True):
+            column = one.of(frame) if isinstance(one, Element) else frame[one]
+            values[name] = numbers(checked(column, name, layout.names), layout.point)
+        return values, every
 
     first = dict(zip(layout.names, layout.row, strict=False))
     units = layout.units | {

@@ -67,8 +67,8 @@ _SIZES: Mapping[str, Mapping[str, Any]] = {
         'kN·m knm': 1e3,
         'kg·cm kgcm kgfcm': 1e-2 * _KGF,
         'kg·m kgm kgfm': _KGF,
-        'lb·ft lbft ftlb lbfft ftlbf': 0.3048 * _LBF,
-        'lb·in lbin inlb lbfin inlbf': 0.0254 * _LBF,
+        'lb·ft lbft ftlb lbfft ftlbf ftlbs': 0.3048 * _LBF,
+        'lb·in lbin inlb lbfin inlbf inlbs': 0.0254 * _LBF,
         'oz·in ozin inoz ozfin': 0.0254 / 16.0 * _LBF,
     },
     'time': {
@@ -106,8 +106,8 @@ _PLAINER = {
     r'(?i)[ _]?(deg|rad|rev)[ _]?x100$': r'_c\1',
     r'(?i)[ _]?(deg|rad|rev)[ _]?x1000$': r'_m\1',
     r'(?i)(?<![a-z])([mk]?n|kgf?)[-_.*·⋅ ]([cm]?m)(?![a-z])': r'\1\2',
-    r'(?i)(?<![a-z])(ozf?|lbf?)[-_.*·⋅ ](in|ft)(?![a-z])': r'\1\2',
-    r'(?i)(?<![a-z])(in(?=[-.*·⋅])|ft)[-_.*·⋅ ](ozf?|lbf?)(?![a-z])': r'\1\2',
+    r'(?i)(?<![a-z])(ozf?|lb[fs]?)[-_.*·⋅ ](in|ft)(?![a-z])': r'\1\2',
+    r'(?i)(?<![a-z])(in(?=[-.*·⋅])|ft)[-_.*·⋅ ](ozf?|lb[fs]?)(?![a-z])': r'\1\2',
 }
 """Spellings in names, and what is read in their place."""
 _BRACKETS = re.compile(r'[\[(]\s*([^\])]*?)\s*[\])]')
@@ -195,7 +195,7 @@ def _role(
 def usual_unit(text: str) -> str:
     """Return the usual word for a unit, a text in lower case if it is unknown, or nothing."""
     plain = re.sub(r'\s|units?:', '', re.sub(*_MEGA, text).lower().replace('μ', 'µ'))
-    plain = re.sub(r'[-.*·⋅](?=(in|ft|lbf?|c?m)$)', '', plain.strip('[]').strip('()'))
+    plain = re.sub(r'[-.*·⋅](?=(in|ft|lb[fs]?|c?m)$)', '', plain.strip('[]').strip('()'))
     plain = re.sub(r'n(ewton)?[-_.*·⋅]?([cm]?)m(et(er|re)s?)?(?!\w)', r'n\2m', plain)
     outer, _, inner = plain.partition('(')  # as in "° (Degree)" and "(deg)"
     plain = (outer or inner).strip('()[].')

@@ -392,6 +392,7 @@ RAMPS = {
     'N·cm': lambda t, a, q: written([t, a * DEG, q * 100], 't,Angle [°],Torque [Ncm]'),
     'kg·cm': lambda t, a, q: written([t, a * DEG, q / 0.0980665], 't,angle_deg,torque_kgcm'),
     'lb-in': lambda t, a, q: written([t, a * DEG, q / 0.112985], 't,angle_deg,load [lb-in]'),
+    'lbs': lambda t, a, q: written([t, a * DEG, q / 0.112985], 't,angle_deg,Torque (in-lbs)'),
     'oz-in behind a name': lambda t, a, q: written(
         [t, a * DEG / 0.9, q / 0.00706155], 't,angle_gon,torque_oz-in', 3 * ['{:.6f}']),
     'N·cm behind a name': lambda t, a, q: written(
@@ -534,6 +535,12 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
          'turns by 45.8° under torque'),
         (lambda t, _, o: written([t, 1e-3 * o, np.round(1e3 * o)], 'time,angle,torque'),
          'torque has whole numbers: give its unit as in --torque-column .torque .Nmm'),
+        (lambda t, r, o: (written([t, r, o], 'time,rotor_rad,output_rad')
+                          + written([t, o, r], 'time,output_rad,rotor_rad')),
+         'output_rad goes on below as rotor_rad: divide the file there'),
+        (lambda t, r, o: (written([t, r, o], 'time,rotor_rad,output_rad')
+                          + written([t, r * DEG, o], 'time,rotor_deg,output_rad')),
+         'rotor_rad goes on below as rotor_deg'),
         (' (1764230000.000000) can0 141#A100000000000000\n', 'a log of CAN frames: decode'),
         ('date Thu Nov 26 09:12:33 2026\nbase hex\n', 'a log of CAN frames: decode'),
         ('t,angle [deg],force [N]\n0,1,2\n1,2,3\n', 'with their units, by --angle-column'),
