@@ -41,6 +41,7 @@ _LONGEST_REPEAT = 1.0  # s, for which a driver repeats a reading while the rotor
 _REPEATED = 0.05  # of the way meanwhile: what it may differ by from that at a steady speed
 _STEADY = 0.25  # of the speed: what it may change by meanwhile
 _FEW_STEPS = 3.0  # between readings: what a drive whose clock begins anew may turn meanwhile
+_UPTIME = 10**17  # ns, 3 years: stamps below are the time since a start, no date
 _LEAST_MOTION = 0.01  # rad between two readings of a rotor that moves
 _UNKNOWN = math.nan, 0, 0.0, 0
 
@@ -105,19 +106,21 @@ class Plausibility:
         self._stamp -= time
         self._held_up = HeldUp()
 
-    def is_elsewhere(self, position: float, stamp: int) -> bool:
-        """Return whether a restarted drive does not go on near the last position, and note it.
+    def judge_reset(self, position: float, last: int, stamp: int) -> Belief:
+        """Forget the readings, as the clock went back from a stamp to another, ns.
 
-        A stamp, ns, of the time since its start does not show how long that took.
+        It is a jump if a drive restarted elsewhere than near the last position, rad, and no longer
+        stamps by the date but by the time since its start, which does not show how long that took.
         """
         before, _, step, _ = self._last
-        moved = position - before
+        moved, near = position - before, _FEW_STEPS * abs(step) + self.noise
+        self.reset()
         # Turns of positions that repeat are unknown then, wherever the drive starts.
-        if self.period or not abs(moved) > _FEW_STEPS * abs(step) + self.noise:
-            return False
+        if self.period or not (stamp < _UPTIME < last and abs(moved) > near):
+            return BELIEVED
         self.jumps += 1
         self.jump = Jump(stamp, moved)
-        return True
+        return Belief.JUMP
 
     def judge(self, position: float, stamp: int) -> Belief:
         """Take the next reading, rad, with a stamp, ns, not before the last believed one."""

@@ -34,7 +34,6 @@ _new = tuple.__new__  # faster than RotorSample(...)
 _ENCODERS = {name for name in PARAMETERS if name.startswith(('rotor_', 'output_encoder_'))}
 _ENCODERS -= {'rotor_effort_factor'}
 """Parameters on which the turns depend that an absolute encoder at the output has found."""
-_UPTIME = 10**8 * SECOND  # ns, 3 years: stamps below are the time since a start, no date
 
 
 def _limits(parameters: NodeParameters) -> tuple[float, float, float]:
@@ -344,7 +343,6 @@ class RotorInput:
             self.resets += 1
             self.disorder.note_reset(self.received, last, stamp)
             self.turns.reset()
-            if stamp < _UPTIME < last and self.plausibility.is_elsewhere(position, stamp):
+            if self.plausibility.judge_reset(position, last, stamp) is Belief.JUMP:
                 self.turns.lose()
-            self.plausibility.reset()
             self.velocity_field.restart()
