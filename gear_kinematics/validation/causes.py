@@ -76,7 +76,7 @@ class FindingCause(Enum):
     ENCODER_UNKNOWN = (
         'the reference is not judged: no recorded output_encoder determines the turns'
     )
-    ERRORS_AGREE = 'as the encoders of rotor and output have it: {messages}'
+    ERRORS_AGREE = 'in agreement with both encoders: {messages}'
     ERRORS_DIFFER = (
         'error {error} rad against the encoders of rotor and output exceeds the tolerance of the '
         'angle, {tolerance} rad: {messages}' + _FIRST

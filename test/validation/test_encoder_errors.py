@@ -64,7 +64,7 @@ def test_errors_of_a_node_agree(homed, tmp_path):
     assert report.passed, explain(report)
     text = explain(report)
     for name in RATIOS:
-        assert f'{name}: {ERRORS}: as the encoders of rotor and output have it: 24' in text
+        assert f'{name}: {ERRORS}: in agreement with both encoders: 24' in text
     assert 'not compared' not in text
 
 
@@ -93,7 +93,7 @@ def test_what_the_recorder_lost_is_not_judged(tmp_path):
 
     report = judged(tmp_path, messages)
     assert report.passed, explain(report)
-    assert ': as the encoders of rotor and output have it: 2' in explain(report)
+    assert ': in agreement with both encoders: 2' in explain(report)
 
 
 def test_errors_without_the_encoder_are_not_compared(tmp_path):
