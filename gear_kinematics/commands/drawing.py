@@ -55,7 +55,10 @@ def recording(options: argparse.Namespace, config: NodeParameters) -> Trajectory
         message_progress(options.bag.name, quiet=options.quiet) as report_progress,
     ):
         whole = read_trajectory(options.bag, config, options.rotor_topic, report_progress)
-        return whole.between(start, start + (options.duration or math.inf))
+        shown = whole.between(start, start + (options.duration or math.inf))
+    if not shown.referenced:
+        complain('the turns of the rotor are not known: its angle may be off by whole turns')
+    return shown
 
 
 def warn_if_teeth_cannot_mesh(mechanism: Mechanism, module: float) -> None:

@@ -30,6 +30,7 @@ class Trajectory(NamedTuple):
     turns: Array  #: whole turns of the rotor
     angle: Array  #: angle beyond the turns, rad: φ2 is 2π turns + angle
     velocity: Array  #: rate of φ2, rad/s
+    referenced: bool = True  #: whether the number of turns is known
 
     @classmethod
     def at_constant_speed(cls, speed: float, turns: int) -> Self:
@@ -55,7 +56,8 @@ class Trajectory(NamedTuple):
             until = 'on' if end == np.inf else f'to {end:g} s'
             there = f'they are from 0 s to {self.time[-1]:g} s'
             raise ValueError(f'no rotor states from {start:g} s {until}; {there}')
-        return type(self)(*(column[inside] for column in self))
+        time, turns, angle, velocity = (column[inside] for column in self[:4])
+        return type(self)(time, turns, angle, velocity, self.referenced)
 
     def every(self, interval: float, *, closed: bool = False) -> Self:
         """Interpolate at even intervals, s.
@@ -102,4 +104,4 @@ def read_trajectory(
     positions = (turns - turns[0]) * TURN + angle
     with np.errstate(over='ignore', invalid='ignore'):
         velocity = np.where(np.isnan(velocity), np.gradient(positions, time), velocity)
-    return Trajectory(time, turns, angle, velocity)
+    return Trajectory(time, turns, angle, velocity, bool(samples.referenced[used].all()))

@@ -111,6 +111,12 @@ def test_unusable_input_gets_one_clear_line_and_no_file(arguments, cause, tmp_pa
     assert list(tmp_path.iterdir()) == []
 
 
+def test_angles_of_unknown_turns_are_drawn_with_a_warning(tmp_path, capsys):
+    single_turn = str(Path(SERVO).with_name('single_turn_encoder'))
+    assert main(['plot', 'output', str(tmp_path / 'a.svg'), '--bag', single_turn]) == 0
+    assert capsys.readouterr().err.startswith('gearkin: the turns of the rotor are not known')
+
+
 def test_of_a_gear_with_only_a_ratio_the_output_is_plotted(other_gear, tmp_path, capsys):
     out = tmp_path / 'a.png'
     assert main(['plot', 'output', str(out), '--config', str(other_gear), '--bag', SERVO]) == 0
