@@ -86,15 +86,6 @@ def test_stamp_older_by_more_than_a_second_resets_the_state(settings, age):
     assert accept(rotor_input, START - age + 1, 2.0).stamp == START - age + 1
 
 
-@pytest.mark.parametrize('direction', [1, -1])
-def test_direction_and_zero_give_the_rotor_angle_rate_and_torque(direction):
-    rotor_input = RotorInput(replace(SETTINGS, rotor_direction=direction, rotor_zero=0.75))
-    sample = accept(rotor_input, START, 30.5, [4.0], [0.25])
-    expected = oracle.rotor_angle_of(30.5, zero=0.75, direction=direction)
-    assert angle_error(sample, expected) < 1e-14
-    assert (sample.velocity, sample.effort) == (direction * 4.0, direction * 0.25)
-
-
 @pytest.mark.parametrize('settings', [SETTINGS, SINGLE_TURN], ids=['multi', 'single'])
 @pytest.mark.parametrize('direction', [1, -1])
 @pytest.mark.parametrize('declared', [0.0, 3.7, -250.0])
