@@ -8,6 +8,7 @@ and the recorder has settled; an output counts as extra only if its input would 
 
 from collections import Counter, deque
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -128,13 +129,13 @@ class Completeness:
         recording of each topic began, ns.
         """
         periods = np.diff(received, prepend=self._last or received[:1])
-        if len(periods) > _PERIODS and not self._strict:
+        if self._pause == _NEVER and len(periods) > _PERIODS and not self._strict:
             self._pause = max(_PAUSE, _PERIODS * float(np.median(periods)))
-        restarts = np.flatnonzero(periods > self._pause)
-        for rows in np.split(np.arange(len(received)), restarts):
-            if len(rows):
-                given = received[rows], stamp[rows], answered[:, rows]
-                self._update(*given, begun, back=rows[0] in restarts)
+        restarts = np.flatnonzero(periods > self._pause).tolist()
+        for first, end in pairwise([0, *restarts, len(received)]):
+            if first < end:
+                given = received[first:end], stamp[first:end], answered[:, first:end]
+                self._update(*given, begun, back=first in restarts)
 
     def _update(
         self,
