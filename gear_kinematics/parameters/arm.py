@@ -197,18 +197,17 @@ def unknown_parameters(
 
 def by_actuator(given: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     """Return the values that apply to each actuator, by names without that of the actuator."""
-    names = dict.fromkeys(given.get('actuators') or [''])
-    values = {}
-    for name in names:
-        own = {'frame_prefix': f'{name}_', **dict.fromkeys(_JOINTS, name)} if name else {}
-        own |= {key: value for key, value in given.items() if key.partition('.')[0] not in names}
-        prefix = f'{name}.'
-        own |= {
-            key.removeprefix(prefix): value
-            for key, value in given.items()
-            if name and key.startswith(prefix)
-        }
-        values[name] = own
+    common: dict[str, Any] = {}
+    values: dict[str, dict[str, Any]] = {name: {} for name in given.get('actuators') or ['']}
+    for key, value in given.items():
+        name, _, own = key.partition('.')
+        if name in values:
+            values[name][own] = value
+        else:
+            common[key] = value
+    for name, each in values.items():
+        default = {'frame_prefix': f'{name}_', **dict.fromkeys(_JOINTS, name)} if name else {}
+        values[name] = default | common | each
     return values
 
 
