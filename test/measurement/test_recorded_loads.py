@@ -10,6 +10,7 @@ from pathlib import Path
 import made_bags
 import numpy as np
 import pytest
+from blocked_bags import refusal
 
 from gear_kinematics.commands.cli import main
 from gear_kinematics.kinematics import Branch, Mechanism, solve
@@ -87,24 +88,23 @@ def test_overloads_are_found_to_the_sample(tmp_path, config, capsys, write):
     )
 
 
-def test_loads_of_angles_that_cannot_be_rad_are_refused(tmp_path, config, capsys):
+def test_loads_of_angles_that_cannot_be_rad_are_refused(tmp_path, config):
     path = table(tmp_path)
     path.write_text(
         path.read_text('utf-8').replace(' [deg]', '').replace('[mNm]', '[Nm]'), 'utf-8'
     )
-    assert main(['loads', str(path), '--config', str(config)]) == 2
-    assert 'as in degrees: give its unit with --angle-unit' in capsys.readouterr().err
+    said = refusal('loads', path, '--config', config)
+    assert 'as in degrees: give its unit with --angle-unit' in said
 
 
-def test_the_command_line_that_is_proposed_for_an_output_works(tmp_path, config, capsys):
+def test_the_command_line_that_is_proposed_for_an_output_works(tmp_path, config):
     path = table(tmp_path)
     head, *rows = path.read_text('utf-8').splitlines()
     counts = np.round(SPEED * TIME / -19.0 * 4096).astype(int)
     rows = [f'{row};{count}' for row, count in zip(rows, counts, strict=True)]
     path.write_text('\n'.join([f'{head};Output position', *rows]), 'utf-8')
-    words = ['loads', str(path), '--config', str(config)]
-    assert main(words) == 2
-    command = capsys.readouterr().err.split('for example: gearkin ')[1]
+    said = refusal('loads', path, '--config', config)
+    command = said.split('for example: gearkin ')[1]
     assert '--output-column' in command
     assert main(shlex.split(command)) == 1
 
