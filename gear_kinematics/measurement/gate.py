@@ -81,7 +81,10 @@ def gated(recording: Recording) -> Recording:
         return replace(recording, faults=(*recording.faults, fault))
     if not (steps := _steps(error, compared.ideal, _period(both.seconds))):
         return recording
-    kept, jumps = _followed(error, rows, steps, compared.period)
+    # A stray reading of the rotor shows in all rows that are interpolated from it.
+    per_reading = 2 * samples / len(both.rotor.stamp) if both.interpolated else 1.0
+    stays = math.ceil(_STAYS * max(1.0, per_reading))
+    kept, jumps = _followed(error, rows, steps, compared.period, stays)
     at = np.array(jumps, int)
     if np.abs(rotor[at] - rotor[at - 1]).max(initial=0.0) > _RANGE * compared.travel:
         return recording  # the range of the encoder is not a turn
@@ -256,11 +259,14 @@ def _rise(error: Array, beyond: Array, rows: NDArray[np.bool_]) -> float:
     return high - low
 
 
-def _followed(error: Array, rows: Array, steps: _Steps, period: float) -> tuple[Array, list[int]]:
+def _followed(
+    error: Array, rows: Array, steps: _Steps, period: float, stays: int
+) -> tuple[Array, list[int]]:
     """Follow the error from its longest part without an impossible step, in both directions.
 
-    After a gap, the error may also have changed by its range in that part. Returns the indices
-    that are reached, without stray readings, and those before which the error jumps for good.
+    It jumps where it `stays` elsewhere for so many rows. After a gap, the error may also have
+    changed by its range in that part. Returns the indices that are reached, without stray
+    readings, and those before which the error jumps for good.
     """
     edges = [0, *(1 + np.flatnonzero(steps.impossible)).tolist(), len(error)]
     parts = list(pairwise(edges))
@@ -269,24 +275,24 @@ def _followed(error: Array, rows: Array, steps: _Steps, period: float) -> tuple[
     spread = float(np.ptp(error[kept[0]]))
     for step, others in ((1, parts[longest + 1 :]), (-1, parts[:longest][::-1])):
         last = parts[longest][1] - 1 if step > 0 else parts[longest][0]
-        reached, beyond = error[slice(*parts[longest])][::-step][:_STAYS], False
+        reached, beyond = error[slice(*parts[longest])][::-step][:stays], False
         for begin, end in others:
             near, far = (begin, end - 1) if step > 0 else (end - 1, begin)
             gap = abs(rows[near] - rows[last]) > _STAYS
             # The interpolation mixes some of a stray rotor reading into its neighbours.
-            level = np.median(error[begin:end][::step][:_STAYS])
+            level = np.median(error[begin:end][::step][:stays])
             place = begin if step > 0 else end
             off = abs(math.remainder(level - np.median(reached), period))
             moved = off > steps.limit + spread * gap
             if moved or steps.slipped[place - 1]:
-                if end - begin < _STAYS and not steps.slipped[place - 1]:
+                if end - begin < stays and not steps.slipped[place - 1]:
                     continue
                 jumps.append(place)
                 beyond, reached = True, reached[:0]
             if not beyond:
                 kept.append(np.arange(begin, end))
             last = far
-            reached = np.concatenate([error[begin:end][::-step], reached])[:_STAYS]
+            reached = np.concatenate([error[begin:end][::-step], reached])[:stays]
     return np.sort(np.concatenate(kept)), sorted(jumps)
 
 

@@ -272,6 +272,22 @@ def test_a_stray_reading_that_hardly_leaves_the_limit_is_no_jump(clean, gate):
     assert len(after.encoders.measured) >= len(before.encoders.measured) - 1
 
 
+@pytest.mark.parametrize('seed', range(4))
+def test_late_readings_of_the_rotor_are_no_slips(tmp_path, seed):
+    """Of 2 %, the stamp is 20 to 60 ms late; the output is sampled at other moments."""
+    random = np.random.default_rng(seed)
+    times = np.arange(6000) / 100.0
+    late = np.where(random.random(6000) < 0.02, random.uniform(0.02, 0.06, 6000), 0.0)
+    strokes, then = ramped_strokes(math.radians(70.0), 1.6, 0.3), times + 0.0037
+    output = with_play(strokes(then), 5.0 * ARC_MINUTE) + random.normal(0.0, 3e-5, 6000)
+    columns = {'rotor_time_s': times, 'rotor_rad': -19.0 * strokes(times - late)}
+    columns |= {'output_time_s': then, 'output_rad': output}
+    write_csv(tmp_path / 'both.csv', **columns)
+    after = gated(read_table(tmp_path / 'both.csv', Sources(), RATIO))
+    assert {fault.what for fault in after.faults} == {Observation.STRAY}
+    assert len(after.encoders.measured) > 5000
+
+
 def test_wraps_of_encoders_of_one_turn_are_no_faults(clean, gate):
     clean[:, 1:] = np.remainder(clean[:, 1:], 2.0 * np.pi)
     before, after = gate(clean)
