@@ -274,7 +274,7 @@ def test_a_stray_reading_that_hardly_leaves_the_limit_is_no_jump(clean, gate):
 
 @pytest.mark.parametrize('seed', range(4))
 def test_late_readings_of_the_rotor_are_no_slips(tmp_path, seed):
-    """Of 2 %, the stamp is 20 to 60 ms late; the output is sampled at other moments."""
+    """The stamps of 2 % are 20 to 60 ms late; the output is sampled at other moments."""
     random = np.random.default_rng(seed)
     times = np.arange(6000) / 100.0
     late = np.where(random.random(6000) < 0.02, random.uniform(0.02, 0.06, 6000), 0.0)
