@@ -40,6 +40,12 @@ class Bench:
         self.gear.encoder_monitor.last_input = NOW
         return self.gear.encoder(rotor_bytes(stamp, [joint], [position]), int)
 
+    def move(self, states, *, start=0, step=1):
+        """Send the measured and the ideal angle of the output every so many milliseconds."""
+        for k, (measured, angle) in enumerate(states, start):
+            self.measure(START + k * step * MS, measured)
+            self.turn(START + k * step * MS, -19.0 * angle)
+
     def report(self, at=NOW):
         return self.gear.report(at, self.connections).get('transmission error')
 
@@ -98,11 +104,10 @@ def test_joint_is_looked_up_by_its_name():
 
 def swing(bench, amplitude, *, samples=400):
     """Move forward and backward, lagging by half the play in each direction."""
-    for k in range(samples):
-        angle = 0.2 * math.sin(k * math.tau / samples)
-        behind = -amplitude if math.cos(k * math.tau / samples) > 0.0 else amplitude
-        bench.measure(START + k * MS, angle + behind)
-        bench.turn(START + k * MS, -19.0 * angle)
+    phases = math.tau * np.arange(samples) / samples
+    angles = 0.2 * np.sin(phases)
+    behind = np.where(np.cos(phases) > 0.0, -amplitude, amplitude)
+    bench.move(zip(angles + behind, angles, strict=True))
 
 
 UNCHECKED = Condition.DIRECTION_NOT_CHECKED()
@@ -130,8 +135,7 @@ def test_report_has_the_figures_of_the_window():
         'peak to peak (rad)': pytest.approx(0.002, abs=1e-6),
     }
     assert re.fullmatch(r'0\.00[12]\d* ± \S+', report.texts['lost motion (rad)'])
-    bench.measure(START + 400 * MS, 0.0011)
-    bench.turn(START + 400 * MS, 0.0)
+    bench.move([(0.0011, 0.0)], start=400)
     assert bench.facts() == [Condition.TOO_LARGE(angle=pytest.approx(0.0021))]
 
 
@@ -139,9 +143,7 @@ def test_report_has_the_figures_of_the_window():
     ('off', 'which'), [(0.0, Condition.TOO_LARGE), (2.9, Condition.BEYOND_ANY_GEAR)]
 )
 def test_only_an_error_of_a_gear_suggests_another_limit(bench, off, which):
-    for k in range(2):
-        bench.measure(START + k * MS, off + 0.01 * k)
-        bench.turn(START + k * MS, 0.0)
+    bench.move([(off, 0.0), (off + 0.01, 0.0)])
     assert bench.facts() == [which(angle=pytest.approx(0.01))]
 
 
@@ -239,9 +241,7 @@ def test_change_of_a_parameter_loses_no_count(bench):
     bench.gear.apply(replace(SETTINGS, transmission_error_window=5.0), None)
     with pytest.raises(RejectedInputError):
         bench.measure(START + 399 * MS, math.nan)
-    for k in range(400, 800):  # as many as before
-        bench.measure(START + k * MS, 0.0)
-        bench.turn(START + k * MS, 0.0)
+    bench.move([(0.0, 0.0)] * 400, start=400)  # as many as before
     report = bench.report()
     assert report.facts == [NOT_FINITE]
     assert report.values['compared'] == 800
@@ -253,10 +253,8 @@ def test_change_of_a_parameter_loses_no_count(bench):
 
 def rest(bench, start, count, error, *, speed=0.0):
     """Send both encoders with a constant error at the output, which turns at a speed, rad/s."""
-    for k in range(start, start + count):
-        angle = 1e-3 * speed * k
-        bench.measure(START + k * MS, angle + error)
-        bench.turn(START + k * MS, -19.0 * angle)
+    angles = 1e-3 * speed * np.arange(start, start + count)
+    bench.move(zip(angles + error, angles, strict=True), start=start)
 
 
 @pytest.mark.parametrize('speed', [0.0, 2.0])
@@ -273,10 +271,9 @@ def test_slip_stays_a_warning_after_the_window_has_passed(degrees, speed):
 
 
 def test_size_of_a_slip_does_not_change_in_motion_where_the_encoder_is_late(bench):
-    for k in range(6000):
-        speed, moved = (3.0, 0.003 * (k - 4000)) if k > 4000 else (0.0, 0.0)
-        bench.measure(START + k * MS, moved - 0.02 * speed + 0.1 * (k > 2000))
-        bench.turn(START + k * MS, -19.0 * moved)
+    k = np.arange(6000)
+    moved = np.maximum(0.003 * (k - 4000), 0.0)
+    bench.move(zip(moved - 0.06 * (k > 4000) + 0.1 * (k > 2000), moved, strict=True))
     assert bench.encoder.slip_watch.slip.angle == pytest.approx(0.1, abs=1e-9)
 
 
@@ -290,12 +287,11 @@ def test_slip_is_found_after_the_clock_was_set_back(bench):
 
 @pytest.mark.parametrize('drift', [0.0, 2e-4, -2e-4])
 def test_slow_drift_in_steady_motion_is_a_slip(drift, bench):
-    for k in range(4000):
-        moving = max(0.0, 0.01 * k - 1.0)
-        angle = 5.0 * (0.5 * moving * moving if moving < 1.0 else moving - 0.5)  # up to 5 rad/s
-        late = -0.005 * 5.0 * min(moving, 1.0)  # rad, of an encoder that is 5 ms late
-        bench.measure(START + 10 * k * MS, angle + late + drift * moving)
-        bench.turn(START + 10 * k * MS, -19.0 * angle)
+    moving = np.maximum(0.0, 0.01 * np.arange(4000) - 1.0)
+    faster = np.minimum(moving, 1.0)
+    angle = 5.0 * (0.5 * faster**2 + moving - faster)  # up to 5 rad/s
+    late = -0.005 * 5.0 * faster  # rad, of an encoder that is 5 ms late
+    bench.move(zip(angle + late + drift * moving, angle, strict=True), step=10)
     slip = bench.encoder.slip_watch.slip
     assert bool(slip) == bool(drift)
     if slip:  # beyond the limit of 0.003 rad, since the speed is steady
@@ -308,9 +304,7 @@ def test_encoder_that_is_late_is_no_slip_where_the_speed_changes(late, bench):
     rates = np.repeat([0.0, 4.0, 10.0, -6.0, 0.0, 8.0, 1.0, 0.0], 437)  # rad/s of the output
     ramps = np.convolve(rates, np.full(61, 1.0 / 61), 'same')
     angles = 1e-3 * np.cumsum(ramps)
-    for k in range(100, len(angles) - 100):
-        bench.measure(START + k * MS, float(angles[k - late]))
-        bench.turn(START + k * MS, -19.0 * float(angles[k]))
+    bench.move(zip(np.roll(angles, late)[100:-100], angles[100:-100], strict=True))
     assert bench.encoder.slip_watch.slip is None
 
 
@@ -318,23 +312,20 @@ def test_encoder_that_is_late_is_no_slip_where_the_speed_changes(late, bench):
 def test_direction_is_checked_by_a_motion_alone(sense):
     """The wrong way round, the error grows by twice the travel."""
     bench = Bench(SETTINGS)
-    for k in range(3000):
-        angle = 0.05 * max(0.0, k - 1000) / 1000
-        bench.measure(START + k * MS, sense * angle)
-        bench.turn(START + k * MS, -19.0 * angle)
-        if k in {999, 2999}:
-            assert bench.report().values['direction checked'] is (sense > 0 and k > 1000)
+    bench.move([(0.0, 0.0)] * 1000)
+    assert bench.report().values['direction checked'] is False
+    angles = 5e-5 * np.arange(2000)
+    bench.move(zip(sense * angles, angles, strict=True), start=1000)
+    assert bench.report().values['direction checked'] is (sense > 0)
     bench.encoder.configure(replace(SETTINGS, output_encoder_direction=-1))
     assert not bench.encoder.direction_checked
 
 
 def test_single_wrong_readings_and_errors_within_the_limit_are_no_slip(bench):
-    for k in range(5000):
-        error = 0.0015 * math.sin(0.01 * k) if k % 50 else 1.0
-        angle = 0.5 * math.sin(0.003 * k)
-        late = 0.5 * math.sin(0.003 * (k - 5.0))  # the encoder is 5 ms late
-        bench.measure(START + k * MS, late + error)
-        bench.turn(START + k * MS, -19.0 * angle)
+    k = np.arange(5000)
+    error = np.where(k % 50, 0.0015 * np.sin(0.01 * k), 1.0)
+    late = 0.5 * np.sin(0.003 * (k - 5.0))  # the encoder is 5 ms late
+    bench.move(zip(late + error, 0.5 * np.sin(0.003 * k), strict=True))
     assert bench.encoder.slip_watch.slip is None
 
 
