@@ -3,11 +3,11 @@
 # LavenderSim 0.2.0: armature and friction of a motor, and the spring, limits and friction of a tendon, have no effect.
 #
 # Its README names "actuator dynamics" and "fixed tendons" among its features, and an armature and a fixed tendon as
-# those of two of its tasks. A motor gives 0.15 N·m to a rotor of 0.015 kg·m² for a second. Expected: 5 rad at 10 rad/s, less
-# than a hundredth of it with an armature of 10 kg·m² or a friction of 5 N·m, and an output that turns along where a
-# fixed tendon of 100 N·m/rad couples it to the rotor, or a stop at 0.1 rad. What happens: each of these gives the same,
-# -1.44 rad at 9.37 rad/s, while the output stands still, as nothing reads these values. The angle wraps at half a turn,
-# although the joint is limited to ±100 rad, and a torque sensor on the rotor reads 0. There is no warning.
+# those of two of its tasks. A motor gives 0.15 N·m to a rotor of 0.015 kg·m² for a second. Expected: 5 rad at 10 rad/s,
+# less than a hundredth of it with an armature of 10 kg·m² or a friction of 5 N·m, and an output that turns along where
+# a fixed tendon of 100 N·m/rad couples it to the rotor, or a stop at 0.1 rad. What happens: each of these gives the
+# same, -1.44 rad at 9.37 rad/s, while the output stands still, as nothing reads these values. The angle wraps at half a
+# turn, although the joint is limited to ±100 rad, and a torque sensor on the rotor reads 0. There is no warning.
 # For us: simulate a gear with MuJoCo.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
