@@ -140,6 +140,8 @@ class InputMonitor(DriverMonitor):
             yield _not_referenced(reference, self._encoder.clocks_apart)
         elif wrong := (reference and reference.disagreement) or _outside(rotor_input):
             yield wrong
+            if reference and (apart := self._encoder.clocks_apart):
+                yield apart
         yield from self._losses(grown, rotor_input.rejected, driver)
         for doubt in (rotor_input.velocity_field.meaning, plausibility.beyond_limits):
             if doubt:

@@ -195,6 +195,23 @@ def test_clocks_that_are_apart_are_named_before_the_fault_that_they_feign(late):
     assert [each.condition for each in bench.facts(NOW + 1.0)][1:] == [Condition.SLIPPED]
 
 
+@pytest.mark.parametrize('late', [0.0, 0.3])
+def test_clocks_that_are_apart_are_named_beside_a_disagreement_that_they_feign(late):
+    """Turns found at rest, and then motion with stamps of the encoder, or angles, that are off."""
+    settings = replace(SETTINGS, rotor_encoder='single_turn', transmission_error_max_gap=0.01)
+    bench = Bench(replace(settings, output_encoder_reference='absolute'))
+    for k in range(1, 2001):
+        moved = 0.002 * max(0, k - 1000)
+        position = math.remainder(-19.0 * moved, 2.0 * math.pi)
+        bench.gear.rotor(rotor_bytes(START + k * MS, position=[position]), int)
+        off = 0 if k <= 1000 else round(late * SECOND)
+        bench.measure(START + k * MS + off, moved + (0.6 if late == 0.0 and k > 1000 else 0.0))
+    facts = bench.gear.report(NOW, bench.connections)['rotor input'].facts
+    found = [each.condition for each in facts]
+    assert found[0] is Condition.DISAGREES
+    assert (Condition.CLOCKS_APART in found) == (late > 0.0)
+
+
 @pytest.mark.parametrize(('late', 'longest', 'found'), [
     (0.3, 0.01, False), (-0.12, 0.01, False), (0.12, 0.15, True), (0.09, 0.01, True),
 ])  # fmt: skip
