@@ -1,12 +1,12 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# x42s-stepper 0.2.0, y42-stepper 0.1.0, emm-stepper 1.1.0: a motor that is turned 360 times by 1° stands at 324°.
+# x42s-stepper 0.2.0, y42-stepper 0.1.0, emm-stepper 1.1.0: 12.6°, which are 112 pulses, are sent as 111.
 #
 # The three control closed-loop steppers from ZDT, whose firmware Emm takes pulses of 0.1125°, and whose firmware X
 # takes steps of 0.1°. Expected: the nearest whole number of them, so that 12.6°, 7 full steps, are 112 pulses. What
 # happens: degrees are cut off to pulses, also where the result is whole but for the last bit: 12.6° are 111 pulses, 1°
-# are 8 of 8.9, and 0.1° is none, although the answer is that it succeeded. 100 turns by 12.6° end at 1248.75°, those by
-# -12.6° too. Steps of the firmware X are rounded. A speed of 0.4 rpm is sent as 0. A motor is simulated that adds up
+# are 8 of 8.9, and 0.1° is none, although the answer is that it succeeded. 100 turns by 12.6° end at 1248.75°, 360 by 1° at
+# 324°, and those in the other direction likewise. Steps of the firmware X are rounded. A speed of 0.4 rpm is sent as 0. A motor is simulated that adds up
 # its moves.
 # For us: give pulses=round(degrees / 0.1125) and MotionMode.ABSOLUTE, which does not add errors up.
 #
