@@ -5,9 +5,9 @@
 # The three control closed-loop steppers from ZDT, whose firmware Emm takes pulses of 0.1125°, and whose firmware X
 # takes steps of 0.1°. Expected: the nearest whole number of them, so that 12.6°, 7 full steps, are 112 pulses. What
 # happens: degrees are cut off to pulses, also where the result is whole but for the last bit: 12.6° are 111 pulses, 1°
-# are 8 of 8.9, and 0.1° is none, although the answer is that it succeeded. 100 turns by 12.6° end at 1248.75°, 360 by 1° at
-# 324°, and those in the other direction likewise. Steps of the firmware X are rounded. A speed of 0.4 rpm is sent as 0. A motor is simulated that adds up
-# its moves.
+# are 8 of 8.9, and 0.1° is none, although the answer is that it succeeded. 100 turns by 12.6° end at 1248.75°, 360 by
+# 1° at 324°, and those in the other direction likewise. Steps of the firmware X are rounded. A speed of 0.4 rpm is sent
+# as 0. A motor is simulated that adds up its moves.
 # For us: give pulses=round(degrees / 0.1125) and MotionMode.ABSOLUTE, which does not add errors up.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
