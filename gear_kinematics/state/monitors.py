@@ -248,7 +248,10 @@ def _not_referenced(reference: TurnReference | None, apart: Fact | None) -> Fact
     """Return why the turns are not known."""
     if not reference:
         return Condition.NOT_REFERENCED()
-    if not (decision := reference.decision):
+    decision = reference.decision
+    if decision and decision.unambiguous:  # but slower motion has excluded these turns
+        decision = reference.refuted or decision
+    if not decision:
         why = Condition.NO_SAMPLES(count=SAMPLES)
     elif found := apart or decision.outside:
         why = found

@@ -182,12 +182,16 @@ class TurnReference:
         """Forget all errors, as the count has changed."""
         self._block = ErrorBlock(self.rotor.parameters)
         self.decision: Decision | None = None  # the latest on the present count
-        self._refuted = math.inf
-        """The least budget, rad, that could tell the turns apart and did not explain the distance:
-        that of faster motion explains more."""
+        self.refuted: Decision | None = None
+        """That of the least budget which could tell the turns apart and did not explain the
+        distance: that of faster motion explains more."""
         self.disagreement: Fact | None = None
         """How the encoder contradicts the present count; it stays until a block that can tell the
         turns apart agrees, as one in fast motion may agree with anything."""
+
+    @property
+    def _least_budget(self) -> float:
+        return self.refuted.budget if self.refuted else math.inf
 
     @property
     def checked(self) -> bool:
@@ -210,12 +214,12 @@ class TurnReference:
                 if decision.disagreement or decision.budget < decision.margin:
                     self.disagreement = decision.disagreement
                 if decision.unambiguous:
-                    alike = decision.budget <= _ALIKE * self._refuted
+                    alike = decision.budget <= _ALIKE * self._least_budget
                     if not referenced and alike and not doubt():
                         self._refer(decision)
                         return ()
-                elif decision.refuted:
-                    self._refuted = min(self._refuted, decision.budget)
+                elif decision.refuted and decision.budget < self._least_budget:
+                    self.refuted = decision
         return samples if referenced else ()
 
     def _refer(self, decision: Decision) -> None:

@@ -360,3 +360,7 @@ def test_motion_does_not_find_turns_that_the_rest_before_it_refutes(apart):
         measured = (turned + apart * math.tau) / -19.0
         gear.encoder(rotor_bytes(stamp, ['shaft'], [measured]), int)
     assert gear.referenced is not bool(apart)
+    if apart:  # what the rest has told, not the more that the motion could explain
+        why = Condition.UNEXPLAINED(used_deg=near(0.2 * 360.0 / 19), margin_deg=near(180.0 / 19))
+        report = gear.report(0.0, Connections())['rotor input']
+        assert Condition.NOT_FOUND(why=why) in report.facts
