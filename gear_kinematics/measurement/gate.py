@@ -25,6 +25,9 @@ _FEWEST = 50  # samples
 _LEAST_TRAVEL = math.radians(3.0)  # of the output, from which on the ratio shows
 _STEPS = 12.0  # times the 98 % quantile of steps of the error: beyond the error of any gear
 _LEAST_STEP = math.radians(0.25)
+_SPIKE, _LEAST_SPIKE, _WINDOW = 12.0, math.radians(0.02), 5
+"""Times the 90 % quantile of the distance from the medians of neighbours, and least distance, rad,
+that shows a stray reading; number of these neighbours on either side."""
 _STAYS = 4  # samples in a row that are no stray reading
 _REVERSAL = 4  # samples around a reversal in which the output may lag
 _DELAY = 0.01  # s between the encoders, by which either may be late
@@ -64,6 +67,7 @@ class _Steps(NamedTuple):
     impossible: NDArray[np.bool_]
     slipped: NDArray[np.bool_]  # those of them that are permanent, however small
     limit: float  # greatest step of a gear, rad
+    reverses: NDArray[np.bool_]  # those around a reversal
 
 
 def gated(recording: Recording) -> Recording:
@@ -85,6 +89,7 @@ def gated(recording: Recording) -> Recording:
     per_reading = 2 * samples / len(both.rotor.stamp) if both.interpolated else 1.0
     stays = math.ceil(_STAYS * max(1.0, per_reading))
     kept, jumps = _followed(error, rows, steps, compared.period, stays)
+    kept = kept[~_spikes(error, steps)[kept]]
     at = np.array(jumps, int)
     if np.abs(rotor[at] - rotor[at - 1]).max(initial=0.0) > _RANGE * compared.travel:
         return recording  # the range of the encoder is not a turn
@@ -167,7 +172,7 @@ def _steps(error: Array, ideal: Array, period: float) -> _Steps | None:
     near = np.lib.stride_tricks.sliding_window_view(np.pad(speeds, around), 2 * around + 1)
     lost[rows] = np.abs(steps[rows]) <= 2.2 * delay * near[rows].max(axis=1)
     slipped = _slipped(level, ideal, usually, reverses)
-    return _Steps(((np.abs(steps) > limit) & ~lost) | slipped, slipped, limit)
+    return _Steps(((np.abs(steps) > limit) & ~lost) | slipped, slipped, limit, reverses)
 
 
 def _stood_still(time: Array, still: Array, *, timed: bool) -> Observed:
@@ -294,6 +299,19 @@ def _followed(
             last = far
             reached = np.concatenate([error[begin:end][::-step], reached])[:stays]
     return np.sort(np.concatenate(kept)), sorted(jumps)
+
+
+def _spikes(error: Array, steps: _Steps) -> NDArray[np.bool_]:
+    """Find readings that leave the five before and the five after, however slow the motion, (n,).
+
+    At a reversal, a delay does the same.
+    """
+    level, far = usual(error), _WINDOW // 2 + 1
+    level = np.pad(level, far, 'edge')
+    off = np.minimum(np.abs(error - level[: -2 * far]), np.abs(error - level[2 * far :]))
+    off *= ~np.append(steps.reverses, True)
+    found: NDArray[np.bool_] = off > max(_SPIKE * float(np.quantile(off, 0.9)), _LEAST_SPIKE)
+    return found
 
 
 def _without(both: Encoders, rotor: Array, kept: Array, stray: Array) -> Encoders:

@@ -288,6 +288,21 @@ def test_late_readings_of_the_rotor_are_no_slips(tmp_path, seed):
     assert len(after.encoders.measured) > 5000
 
 
+@pytest.mark.parametrize('seed', range(3))
+def test_late_readings_in_slow_motion_change_no_lost_motion(gate, config, seed):
+    """At 0.2 rad/s, readings that are 20 to 60 ms late are wrong by 0.2° to 0.7°."""
+    random = np.random.default_rng(seed)
+    times = np.arange(6000) / 100.0
+    late = np.where(random.random(6000) < 0.02, random.uniform(0.02, 0.06, 6000), 0.0)
+    strokes = ramped_strokes(math.radians(70.0), 6.0, 1.5)
+    output = np.interp(times - late, times, with_play(strokes(times), 5.0 * ARC_MINUTE))
+    output += random.normal(0.0, 3e-5, 6000)
+    _, after = gate(np.column_stack([times, -19.0 * strokes(times), output]))
+    lost = measure(after, config).transmission.lost_motion
+    assert lost.value == pytest.approx(5.0 * ARC_MINUTE, abs=lost.expanded)
+    assert lost.expanded < 0.5 * ARC_MINUTE
+
+
 def test_wraps_of_encoders_of_one_turn_are_no_faults(clean, gate):
     clean[:, 1:] = np.remainder(clean[:, 1:], 2.0 * np.pi)
     before, after = gate(clean)
