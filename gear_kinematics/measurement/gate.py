@@ -25,7 +25,7 @@ _FEWEST = 50  # samples
 _LEAST_TRAVEL = math.radians(3.0)  # of the output, from which on the ratio shows
 _STEPS = 12.0  # times the 98 % quantile of steps of the error: beyond the error of any gear
 _LEAST_STEP = math.radians(0.25)
-_SPIKE, _LEAST_SPIKE, _WINDOW = 12.0, math.radians(0.02), 5
+_SPIKE, _LEAST_SPIKE, _WINDOW = 20.0, math.radians(0.02), 5
 """Times the 90 % quantile of the distance from the medians of neighbours, and least distance, rad,
 that shows a stray reading; number of these neighbours on either side."""
 _STAYS = 4  # samples in a row that are no stray reading
