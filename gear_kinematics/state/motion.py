@@ -80,8 +80,7 @@ def all_in_reach(
             (0.0, 0, float(step[k]), int(span[k])),
         )
         held_up = held_up.before(int(when[k] - changed[k]), *ends)
-        late = held_up.late(int(changed[k]), int(when[k]))
-        low, high = limits.reach(int(when[k]), int(until[k]), *ends, float(noise[k]), late)
+        low, high = limits.reach(int(when[k]), int(until[k]), *ends, float(noise[k]), held_up)
         if not low <= steps[k] <= high:
             return None
     if len(rows):

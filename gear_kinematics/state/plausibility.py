@@ -176,8 +176,7 @@ class Plausibility:
         if self.period:
             step = last_step + math.remainder(step - last_step, self.period)
         held_up = self._held_up.before(stamp - changed, last, former)
-        late = held_up.late(changed, stamp)
-        low, high = self.limits.reach(stamp, self._stamp, last, former, self.noise, late)
+        low, high = self.limits.reach(stamp, self._stamp, last, former, self.noise, held_up)
         if self.period:
             middle = 0.5 * (low + high)
             step = middle + math.remainder(step - middle, self.period)

@@ -28,6 +28,7 @@ class HeldUp(NamedTuple):
     end: int = 0
     length: int = 0
     usual: int = 0  # time between two readings before it
+    speed: float = math.inf  # rad/s, before it
 
     def late(self, last: int, stamp: int) -> float:
         """Return by how much the time between two readings may exceed that of their stamps, ns.
@@ -43,7 +44,10 @@ class HeldUp(NamedTuple):
         left = self.length - (end - self.end)
         if 2 * span >= length or length <= left:
             return self
-        return HeldUp(end, length, max(former[3], self.usual if left > -self.length else 0))
+        if left > -self.length:  # readings of the burst before tell no speed
+            return HeldUp(end, length, max(former[3], self.usual))
+        speed = abs(former[2]) / former[3] * 1e9 if former[3] else math.inf
+        return HeldUp(end, length, former[3], speed)
 
 
 def _stale(last: Reading, former: Reading, late: float) -> float:
@@ -74,7 +78,7 @@ class RotorLimits(NamedTuple):
         return speed if speed * abs(speed) > 2.0 * self.acceleration * noise else 0.0
 
     def reach(
-        self, stamp: int, until: int, last: Reading, former: Reading, noise: float, late: float
+        self, stamp: int, until: int, last: Reading, former: Reading, noise: float, held_up: HeldUp
     ) -> tuple[float, float]:
         """The least and the greatest step, rad, that the rotor can make until a stamp.
 
@@ -84,7 +88,7 @@ class RotorLimits(NamedTuple):
             last: the first reading with it.
             former: the one before.
             noise: rad, of a reading, see `Plausibility`.
-            late: ns, by which the time may exceed that of the stamps, see `HeldUp.late`.
+            held_up: the last pause.
         """
         slow, fast, stale = -self.speed, self.speed, STALEST
         _, changed, step, span = last
@@ -94,8 +98,14 @@ class RotorLimits(NamedTuple):
             fast = self.acceleration * min(held, 2.0 * elapsed)
             slow = -fast
         elif span:
+            late = held_up.late(changed, stamp)
             stale = _stale(last, former, late)
-            if elapsed > 1e-9 * late:  # stamps of a burst tell no speed
+            if elapsed <= 1e-9 * late:  # stamps of a burst tell no speed, those before it do
+                since = (stamp - held_up.end + held_up.length) * 1e-9
+                fast = (1.0 + _UNEVEN) * held_up.speed + self.acceleration * (since + stale)
+                fast += noise / (max(held_up.usual, 1) * 1e-9)
+                slow = -fast
+            else:
                 within = span * 1e-9
                 slow = fast = step / within
                 if former[3]:  # readings that are older than their stamps make one of them wrong

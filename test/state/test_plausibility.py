@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from live import SECOND, rotor_bytes
 
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.belief import BELIEVED, Belief
 from gear_kinematics.state.plausibility import Plausibility
 from gear_kinematics.state.reach import STALEST
 from gear_kinematics.state.rotor_input import RotorInput
@@ -243,6 +244,24 @@ def test_a_rotor_that_trembles_between_moves_by_a_turn_does_not_wrap(rest):
     rotor, _ = fed(MULTI, messages(np.arange(len(moved)) / 10, angles))
     assert rotor.referenced
     assert rotor.plausibility.jumped is None
+
+
+@pytest.mark.parametrize('wrong', [0.0, 0.8, -1.0, 1.5])
+def test_a_wrong_reading_in_a_burst_is_out_of_reach_at_the_speed_before_it(wrong):
+    """At 40 rad/s and 500 Hz the driver is held up for 11 ms; then 5 readings come at once.
+
+    In 13 ms the rotor can reach 125 rad/s, and 0.25 rad in 2 ms; a reading has a noise of 0.16 rad,
+    as no finer steps were seen.
+    """
+    arrivals = [START + 2_000_000 * k for k in range(100)]
+    arrivals += [arrivals[-1] + 11_000_000 + 10_000 * k for k in range(5)]
+    judge = Plausibility(*LIMITS)
+    beliefs = [
+        judge.judge(0.08 * k + (wrong if k == 103 else 0.0), stamp)
+        for k, stamp in enumerate(arrivals)
+    ]
+    assert beliefs.pop(103) is (Belief.IMPLAUSIBLE if wrong else BELIEVED)
+    assert {*beliefs} == {BELIEVED}
 
 
 @pytest.mark.parametrize('velocities', [True, False])
