@@ -250,8 +250,8 @@ def test_a_rotor_that_trembles_between_moves_by_a_turn_does_not_wrap(rest):
 def test_a_wrong_reading_in_a_burst_is_out_of_reach_at_the_speed_before_it(wrong):
     """At 40 rad/s and 500 Hz the driver is held up for 11 ms; then 5 readings come at once.
 
-    In 13 ms the rotor can reach 125 rad/s, and 0.25 rad in 2 ms; a reading has a noise of 0.16 rad,
-    as no finer steps were seen.
+    In 13 ms the rotor can reach 125 rad/s, and 0.25 rad in 2 ms; a reading has a noise of
+    0.16 rad, as no finer steps were seen.
     """
     arrivals = [START + 2_000_000 * k for k in range(100)]
     arrivals += [arrivals[-1] + 11_000_000 + 10_000 * k for k in range(5)]
