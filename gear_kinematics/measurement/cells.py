@@ -24,6 +24,11 @@ _NEGATIVE = re.compile(r'^\((\d[\d.,]*)\)$')
 """Negative numbers in brackets, as in accounts, which Excel writes."""
 _IDS = re.compile(r'((joint|motor|actuator|servo|axis|node|can|id|name|index) ?)+')
 """Names of the column of a table with a row for each joint."""
+_TOPICS = (
+    *('topic', 'message path', 'series', 'signal', 'channel', 'label', 'field', 'name'),
+    *('key', 'entry', 'variable', 'tag'),
+)
+"""Names, the likeliest first, of the column of a table with a row for each value."""
 _NAMES = 100  # words in a column that are compared with names
 _OFTEN = 0.9  # share of the rows that are of another joint than the one before
 MISSING = {'', 'nan', '-nan', 'inf', '-inf', 'null', 'none', '<na>', 'n/a', 'na', '-', '[]'}
@@ -185,6 +190,16 @@ def elements_of(names: Sequence[str], rows: Sequence[Sequence[str]]) -> dict[str
             many = max(map(len, arrays))
             keys = [f'{column}[{k}]' for k in range(many)] if many > 1 else [column]
             found |= {key: Element(place, place, k) for k, key in enumerate(keys)}
+    return found
+
+
+def topics_of(names: Sequence[str], rows: Sequence[Sequence[str]]) -> list[int]:
+    """Return the columns that say which series a row is of; names are in lower case."""
+    found = []
+    for place in (names.index(name) for name in _TOPICS if name in names):
+        cells = [row[place] for row in rows if place < len(row)]
+        if len({*cells}) < len(cells) or not all(map(str.isdecimal, cells)):  # no number of a row
+            found.append(place)
     return found
 
 

@@ -27,6 +27,7 @@ from gear_kinematics.measurement.cells import (
     ids_of,
     may_be_divided,
     numbers,
+    topics_of,
     weight,
 )
 from gear_kinematics.measurement.names import FOREIGN, known_units, meaning, usual_unit
@@ -51,11 +52,6 @@ _CODESYS = '[key]; [value]'  # begins a trace of CODESYS, whose variables are be
 _NO_NAMES = re.compile(r'(?i)[-+|:=\s]*|sep=.*\s*')  # lines without names, as of psql
 _CLOCKS = {'name': 'ms', 'x_value': 's'}  # words, and units, before channels with their own times
 _FILETIME = re.compile(r'\d{18}')  # times of Windows, since 1601
-_TOPICS = (
-    *('topic', 'message path', 'series', 'signal', 'channel', 'label', 'field', 'name'),
-    *('key', 'entry', 'variable', 'tag'),
-)
-"""Names of the columns of a table with a row for each value."""
 
 
 class TableFile(NamedTuple):
@@ -173,8 +169,8 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
 
     lower = [name.lower().strip('_') for name in layout.names]
     sample = [cells_of(line, layout.separator) for line in lines[layout.start :][:_ROWS]]
-    topics = [name for name in _TOPICS if name in lower] if 'value' in lower else []
-    keys = [layout.names[lower.index(name)] for name in topics] or ids_of(layout.names, sample)
+    topics = topics_of(lower, sample) if 'value' in lower else []
+    keys = [layout.names[place] for place in topics] or ids_of(layout.names, sample)
     if keys:
         frame = read(range(len(lower)), 1).set_axis(layout.names, axis=1)
         value = layout.names[lower.index('value')] if topics else ''

@@ -247,6 +247,9 @@ ENCODERS = {
     'units above names': plain('ms,deg,deg\ntime,rotor,output', angle=DEG, unit=1e3),
     'meta lines of three cells above names with units': plain(
         'bench,3,x\nTime (s),Rotor (deg),Output (deg)', angle=DEG),
+    'an index called key, and a value of something else': lambda t, r, o: written(
+        [range(len(t)), t, r, o, t], 'key,time,rotor,output,value',
+        ('{:.0f}', '{:.2f}', '{:.5f}', '{:.5f}', '{:.1f}')),
     'texts among the values': lambda t, r, o: 'time,topic,value\n' + ''.join(
         f'{at:.2f},rotor,{rotor:.5f}\n{at:.2f},output,{out:.5f}\n{at:.2f},state,idle\n'
         for at, rotor, out in zip(t, r, o, strict=True)),
