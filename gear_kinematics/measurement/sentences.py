@@ -15,6 +15,7 @@ from gear_kinematics.wire.joint_reader import Rejection
 NAMED = 3  # moments of a kind that are named
 
 # Parts of several sentences
+_THINNED = ', as no more are kept in memory: rates and speeds are those of these'
 _RESTS = 'At zero torque the output rests anywhere within {hysteresis:arcmin}′'
 _PLAY = _RESTS + '; backlash: {low:arcmin.2} to {high:arcmin.2}′, the rest friction'
 _DEVIATES = 'In one direction the output deviates by {error:arcmin}′ peak to peak'
@@ -76,9 +77,9 @@ class Observation(Enum):
     SET_BACK_AFTER = 'the clock was set back by {size:si} s after {seconds:si.6} s'
     SET_BACK_FAR = '{topic}: the clock was set back; the last {count} states are left out'
     REJECTED = '{topic}: {count} states {cause}'
-    STATES_THINNED = '{topic}: one state of {every} is used: no more are kept in memory'
+    STATES_THINNED = '{topic}: one state of {every} is used' + _THINNED
     STATES_OUT_OF_ORDER = '{topic}: {count} states out of order'
-    ROWS_THINNED = 'one row of {every} is used: no more are kept in memory'
+    ROWS_THINNED = 'one row of {every} is used' + _THINNED
     ROWS_LEFT_OUT = '{rows} rows were left out: no numbers, or too large'
     NO_TIMES = '{rows} rows without a time in {column} were left out'
     TIMES_OUT_OF_ORDER = 'the time in {column} is out of order in {rows} rows: left out'
@@ -92,7 +93,8 @@ class Observation(Enum):
     NOT_THE_RATIO = 'The recording does not have the ratio {assumed}: {why}.'
     WRAPS_UNCOUNTED = (
         "the rotor's position stays within a turn and jumps by more than half of it: sample often "
-        'enough to count its wraps, and set rotor_encoder to single_turn'
+        'enough to count its wraps, shorten a recording of which one sample of several is used, '
+        'and set rotor_encoder to single_turn'
     )
     EXCHANGED = 'the output turns more than the rotor: exchange the two'
     UPSIDE_DOWN = (

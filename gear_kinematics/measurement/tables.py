@@ -167,7 +167,8 @@ class _Samples:
         self.said = [f'time [{clock.unit}] from {named}' if clock else 'no times']
         self.said += map(described, self.found, self.found.values())
         rows = min(map(np.count_nonzero, usable.values())) if together is None else len(together)
-        self.said.append(f'{self.used} of {rows} rows')
+        thinned = f', one in {self._every} of the file' if self._every > 1 else ''
+        self.said.append(f'{self.used} of {rows} rows{thinned}')
 
     def _loaded(
         self, table: TableFile, clock: Column | None, clocks: set[str]
@@ -175,9 +176,9 @@ class _Samples:
         """Load columns by name; also return the column of times with its unit, if it has any."""
         rest = nanoseconds_of(clock.name, table.names) if clock else None
         wanted = {column.name for column in self.found.values()} | clocks | {rest or ''}
-        raw, every = table.load(sorted(wanted - {''}))
-        if every > 1:
-            self.remarks.append(Observation.ROWS_THINNED(every=every))
+        raw, self._every = table.load(sorted(wanted - {''}))
+        if self._every > 1:
+            self.remarks.append(Observation.ROWS_THINNED(every=self._every))
         if dates := [c.name for c in self.found.values() if raw[c.name].dtype.kind == 'M']:
             raise ValueError(f'{dates[0]} has dates in place of numbers')
         if clock and not self._sources.time:

@@ -206,6 +206,7 @@ def test_long_files_are_read_in_part(tmp_path, config, monkeypatch):
     recording = read(write_csv(tmp_path / 'r.csv', **columns), config)
     np.testing.assert_array_equal(recording.locked.angle, rows[::4] / 2**12)
     assert recording.remarks == (Observation.ROWS_THINNED(every=4),)
+    assert recording.columns[-1] == '250 of 250 rows, one in 4 of the file'
 
 
 def test_long_bags_are_read_in_part(tmp_path, config, monkeypatch):
