@@ -325,6 +325,32 @@ def test_encoder_that_is_late_is_no_slip_where_the_speed_changes(late, bench):
     assert bench.encoder.slip_watch.slip is None
 
 
+def test_slip_in_fast_motion_is_found_in_slow_motion(bench):
+    """The encoder is 5 ms late; the output slips while it becomes slower for the second time."""
+    speed = np.convolve(np.repeat([5.0, 0.0, 5.0, 0.0], 600), np.full(101, 1.0 / 101), 'same')
+    angles = 1e-3 * np.cumsum(speed)
+    slipped = 0.1 * (np.arange(len(angles)) >= 1800)
+    bench.move(zip(angles - 5e-3 * speed + slipped, angles, strict=True))
+    assert bench.encoder.slip_watch.slip.angle == pytest.approx(0.1, abs=0.003)
+
+
+def test_slips_within_the_limit_at_each_stop_add_up(bench):
+    """0.002 rad at each of five stops, of which each is compared with the first."""
+    stands = np.repeat([True, False] * 5, 600)
+    angles = 5e-3 * np.cumsum(~stands)
+    crept = 0.002 / 600 * np.cumsum(stands)
+    bench.move(zip(angles + crept, angles, strict=True))
+    assert bench.encoder.slip_watch.slip
+
+
+def test_slip_is_found_where_several_angles_have_the_same_stamp(bench):
+    """1 kHz with stamps in units of 50 ms."""
+    for k in range(3000):
+        bench.measure(START + k // 50 * 50 * MS, 0.1 * (k > 1000))
+        bench.turn(START + k * MS, 0.0)
+    assert bench.encoder.slip_watch.slip.angle == pytest.approx(0.1)
+
+
 @pytest.mark.parametrize('sense', [1, -1])
 def test_direction_is_checked_by_a_motion_alone(sense):
     """The wrong way round, the error grows by twice the travel; 0.005 rad show nothing."""
