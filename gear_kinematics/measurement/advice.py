@@ -19,6 +19,7 @@ from gear_kinematics.measurement.names import (
     TIME_UNITS,
     TORQUE_UNITS,
     meaning,
+    usual_unit,
 )
 from gear_kinematics.measurement.recording import Array
 
@@ -118,17 +119,18 @@ def _completed(
 def _examples(table: TableFile) -> Iterator[Mapping[str, str]]:
     """Yield columns that may be both encoders or angle and torque, the likeliest first."""
     names = [name for name in table.names if name and list(table.names).count(name) == 1]
+    units = {name: usual_unit(table.units.get(name, '')) or meaning(name).unit for name in names}
     known, others = {'', *ANGLE_UNITS}, {*FOREIGN, *TORQUE_UNITS, *TIME_UNITS}
     angles = [
         name
         for name in filterfalse(_NO_ANGLE.search, names)
-        if (unit := meaning(name).unit) in known or (unit not in others and _LIKELY.search(name))
+        if units[name] in known or (units[name] not in others and _LIKELY.search(name))
     ]
-    torques = [n for n in names if _TORQUE.search(n) or meaning(n).unit in TORQUE_UNITS]
+    torques = [name for name in names if _TORQUE.search(name) or units[name] in TORQUE_UNITS]
     likely = [*filter(_LIKELY.search, angles)]
     raw, _ = table.load((likely if len(likely) > 1 else angles)[:_TRIED])
     raw = {name: array.astype(float) for name, array in raw.items() if array.dtype.kind in 'iuf'}
-    pairs = [*_alike(raw)]
+    pairs = [*_alike(raw, {name: ANGLE_UNITS.get(unit) or 0.0 for name, unit in units.items()})]
     yield from ({'rotor': rotor, 'output': output} for sure, rotor, output in pairs if sure)
     for angle, torque in product(likely, torques):
         if angle != torque:
@@ -136,9 +138,12 @@ def _examples(table: TableFile) -> Iterator[Mapping[str, str]]:
     yield from ({'rotor': rotor, 'output': output} for sure, rotor, output in pairs if not sure)
 
 
-def _alike(columns: Mapping[str, Array]) -> Iterator[tuple[bool, str, str]]:
+def _alike(
+    columns: Mapping[str, Array], sizes: Mapping[str, float]
+) -> Iterator[tuple[bool, str, str]]:
     """Yield the pairs of columns that move alike, the likeliest first, and in each the faster.
 
+    `sizes` are those of their units, 0 where unknown: then both are taken to have the same unit.
     A pair is sure if both move much alike and their names do not contradict that.
     """
     pairs = {}
@@ -147,6 +152,8 @@ def _alike(columns: Mapping[str, Array]) -> Iterator[tuple[bool, str, str]]:
             continue
         pair = np.array([columns[rotor], columns[output]])[:, :_ROWS]
         pair = np.diff(pair[:, np.isfinite(pair).all(axis=0)])
+        if sizes[rotor] and sizes[output]:
+            pair *= [[sizes[rotor]], [sizes[output]]]
         if pair.shape[1] > _FEWEST and (spread := np.std(pair, axis=1))[0] > spread[1] > 0.0:
             likeness = abs(np.corrcoef(pair)[0, 1])
             named = not (meaning(rotor).on_output or meaning(output).on_rotor)

@@ -584,6 +584,10 @@ UNTOLD = {
     'counts as raw readings': lambda t, r, o: written(
         [t, *in_counts(r, o)], 'time,motor_raw,output_raw'),
     'degrees': plain(angle=DEG),
+    'turns of a drive beside degrees': lambda t, r, o: written(
+        [t * 1e3, r * REV, o * DEG], 'Time (ms),PL.FB (Rev),FB2.P (deg)', 3 * ['{:.5f}']),
+    'turns beside degrees, in a row of units': lambda t, r, o: written(
+        [t, r * REV, o * DEG], 'Time,FB1,FB2\ns,rev,deg', 3 * ['{:.5f}']),
     'degrees at which the output differs': plain(angle=DEG, unit=10.0),
     'angles of unknown sides': plain('t,pos_a,pos_b', angle=DEG),
     'no names': plain(''),
