@@ -12,6 +12,7 @@ from operator import mul
 
 import numpy as np
 
+from gear_kinematics.state.reach import FLOOR
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.wire.batches import Array
 from gear_kinematics.wire.cdr import SECOND
@@ -274,16 +275,19 @@ class VelocityField:
                 return True
         (first, start, _), *_, (last, end, _) = readings
         time, slow, far = (last - first) * 1e-9, stride > 1, abs(end - start) >= travel
-        if slow and not far:
+        stands = all(abs(position - end) <= FLOOR for _, position, _ in readings)
+        if slow and not (far or stands):
             return False
         velocities = [velocity for _, _, velocity in readings[1:]]
         mean = sum(velocities) / len(velocities)
         if not far and abs(mean) * time < travel:
             return False
-        slope = (end - start) / time
-        for (s, p, _), (t, q, _) in pairwise(readings[::stride]):
-            if abs((q - p) / (t - s) * 1e9 - slope) > _STEADY * abs(slope):
-                return True
+        slope = 0.0 if stands else (end - start) / time
+        if not stands and any(
+            abs((q - p) / (t - s) * 1e9 - slope) > _STEADY * abs(slope)
+            for (s, p, _), (t, q, _) in pairwise(readings[::stride])
+        ):
+            return True
         most = (_STEADY if slope else _STANDS) * max(abs(mean), abs(slope))
         if any(abs(velocity - mean) > most for velocity in velocities):
             return True

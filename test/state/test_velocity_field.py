@@ -221,8 +221,14 @@ def test_velocities_of_an_unsteady_motion_show_that_an_encoder_is_stuck(velocity
     assert rotor.velocity_field.positions_stand == stuck
 
 
-def test_velocities_of_an_encoder_that_is_stuck_contradict_it():
-    rotor, _ = heard(lambda time: (min(10.0 * time, 5.0), 10.0), 500, 2.0)
+@pytest.mark.parametrize('noise', [0.0, 0.002])
+@pytest.mark.parametrize(('speed', 'duration'), [(10.0, 2.0), (-1.0, 10.0)])
+def test_velocities_of_an_encoder_that_is_stuck_contradict_it(speed, duration, noise):
+    def fields(time):
+        error = noise * math.sin(1e6 * time)
+        return math.copysign(min(abs(speed) * time, 4.0), speed) + error, speed
+
+    rotor, _ = heard(fields, 500, duration)
     assert rotor.velocity_field.meaning == Condition.POSITIONS_STAND()
 
 
