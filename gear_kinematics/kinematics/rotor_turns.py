@@ -258,7 +258,7 @@ class RotorTurns:
                 self._gap += (elapsed - self._gap) / (self._gaps + 1)
             self._gaps = min(self._gaps + 1, _MOST_GAPS) if wide else max(self._gaps - 1, 0)
             outside = abs(apparent + period * more - expected) - 0.5 * width
-            if wide or outside > _NOISE + (period - width - outside) / 8.0:
+            if wide or outside > _NOISE + (period - width - outside) / 5.0:
                 self.referenced = False
                 self.unknown_gaps += 1
                 self.longest_gap = max(self.longest_gap, elapsed)

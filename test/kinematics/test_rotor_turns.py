@@ -173,6 +173,15 @@ def test_counting_goes_on_from_the_nearest_turn_after_a_gap(side):
     assert_at(tracker.position, side * (5 * TAU + 3.5))
 
 
+@pytest.mark.parametrize('rate', [500, 1000, 2000, 4000, 20_000])
+def test_steps_of_a_hall_sensor_lose_no_turn(rate):
+    """It resolves a sixth of a turn, more than the rotor can turn between two readings."""
+    tracker = homed(0.0)
+    for n in range(1, 5 * rate):
+        tracker.update(math.tau / 6.0 * (n * 50 // rate % 6), n * 10**9 // rate)
+    assert tracker.referenced
+
+
 def reachable(v0: float, v1: float, acceleration: float, elapsed: float, side: int) -> float:
     """Simulate the farthest turn from speed v0 to v1: full acceleration while v1 is in reach."""
     steps = 2000
