@@ -44,7 +44,7 @@ class HeldUp(NamedTuple):
         left = self.length - (end - self.end)
         if 2 * span >= length or length <= left:
             return self
-        if left > -self.length:  # readings of the burst before tell no speed
+        if left + length > -self.length:  # readings of the burst before tell no speed
             return HeldUp(end, length, max(former[3], self.usual))
         speed = abs(former[2]) / former[3] * 1e9 if former[3] else math.inf
         return HeldUp(end, length, former[3], speed)
@@ -100,7 +100,9 @@ class RotorLimits(NamedTuple):
         elif span:
             late = held_up.late(changed, stamp)
             stale = _stale(last, former, late)
-            if elapsed <= 1e-9 * late:  # stamps of a burst tell no speed, those before it do
+            before = held_up.late(changed - span, changed)
+            # Stamps of a burst tell no speed, those before it do.
+            if late >= stamp - changed or before >= span:
                 since = (stamp - held_up.end + held_up.length) * 1e-9
                 fast = (1.0 + _UNEVEN) * held_up.speed + self.acceleration * (since + stale)
                 fast += noise / (max(held_up.usual, 1) * 1e-9)

@@ -264,6 +264,24 @@ def test_a_wrong_reading_in_a_burst_is_out_of_reach_at_the_speed_before_it(wrong
     assert {*beliefs} == {BELIEVED}
 
 
+@pytest.mark.parametrize('first', range(100, 113))
+@pytest.mark.parametrize('held', [[5], [5, 37], [37, 5]])
+def test_readings_that_were_held_up_are_believed_at_each_phase_of_a_motion(first, held):
+    """The rotor oscillates with up to 100 rad/s and 2500 rad/s², and 50 readings in a second.
+
+    They come at once after the driver was held up, or soon after that again.
+    """
+    times = 0.02 * np.arange(200)
+    arrivals = times.copy()
+    for count in held:
+        burst = slice(first, first + count)
+        arrivals[burst] = times[first + count] - 5e-6 * np.arange(count, 0, -1)
+        first += count + 3
+    judge = Plausibility(*LIMITS)
+    for angle, stamp in zip(4.0 * np.sin(25.0 * times), np.round(arrivals * SECOND), strict=True):
+        assert judge.judge(float(angle), START + int(stamp)) is BELIEVED
+
+
 @pytest.mark.parametrize('velocities', [True, False])
 @pytest.mark.parametrize('rate', [10, 25, 50])
 @pytest.mark.parametrize('turns', [0.32, 0.4, 0.48, -0.36, 0.7, -0.55])
