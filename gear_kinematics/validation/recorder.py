@@ -31,6 +31,7 @@ LOST = 'that the recorder says that it lost'
 _SETTLING_TIME = 1_000_000_000  # ns after which a recorder has settled, or a node hears a driver
 _PAUSE, _PERIODS = 500_000_000, 10.0
 """ns, and usual periods, without inputs that a driver needs for a restart."""
+_MOST_BACK = 0.1  # of the inputs, that a node can miss so: no driver restarts all the time
 _QUIET_TIME = 150_000_000  # ns without a loss after which it has settled earlier
 _MAX_END = 500_000_000  # ns by which outputs may end before their inputs
 HOLE = 1.5  # median periods between inputs; beyond, an input between them was not recorded
@@ -51,7 +52,8 @@ class Missing:
         """s from the last input with an output to the last input, if that is too long."""
         self._after = Occurrences()  # inputs after the last one with an output
         self._after_since = 0  # when the first of them was received, ns
-        self._back: int | None = None  # when a driver without an output yet came back, ns
+        self._missed = Occurrences()  # inputs before the node heard the driver again
+        self._judged = 0  # inputs
         self._last_answered: int | None = None  # when it was received, ns
 
     def leave_out(self, answered: Flags, cause: str) -> None:
@@ -59,28 +61,23 @@ class Missing:
         if count := int(np.count_nonzero(~answered)):
             self.left_out[cause] += count
 
-    def update(
-        self, received: Array, stamp: Array, answered: Flags, *, back: bool = False
-    ) -> None:
-        """Judge inputs, (n,), by whether they have their output.
-
-        Before the first of them, the driver may have restarted, and now is `back`.
-        """
-        if back:
-            self._judge_after()
-            self._back = int(received[0])
+    def update(self, received: Array, stamp: Array, answered: Flags) -> None:
+        """Judge inputs, (n,), by whether they have their output."""
+        self._judged += len(received)
         end = 0
         if answered.any():
-            first, end = int(np.argmax(answered)), len(answered) - int(np.argmax(answered[::-1]))
-            self._after.add(stamp[:first])
-            soon = self._back is not None and received[first] - self._back <= _SETTLING_TIME
-            self._judge_after(BACK if soon else '')
-            self._back = None
-            self.inputs.add(stamp[first:end][~answered[first:end]])
+            end = len(answered) - int(np.argmax(answered[::-1]))
+            self.judge_after()
+            self.inputs.add(stamp[:end][~answered[:end]])
             self._last_answered = int(received[end - 1])
         if not self._after.count and end < len(received):
             self._after_since = int(received[end])
         self._after.add(stamp[end:])
+
+    def judge_after(self, *, back: bool = False) -> None:
+        """Judge the inputs after the last output; the driver may just have come `back`."""
+        (self._missed if back else self.inputs).add_all(self._after)
+        self._after = Occurrences()
 
     def close(self, last: int, *, strict: bool, lost: int) -> None:
         """Judge the inputs after the last output; the `last` input was received at this time, ns.
@@ -89,21 +86,18 @@ class Missing:
         """
         late = self._after.count and last - self._after_since > _MAX_END
         if strict or late or self._last_answered is None:
-            self._judge_after()
+            self.judge_after()
         elif self._after.count:
             self.left_out[AFTER] += self._after.count
         if late and self._last_answered is not None:
             self.ended_early = (last - self._last_answered) * 1e-9
+        if self._missed.count > _MOST_BACK * self._judged:
+            self.inputs.add_all(self._missed)
+        elif self._missed.count:
+            self.left_out[BACK] += self._missed.count
         if not strict and 0 < self.inputs.count <= lost:
             self.left_out[LOST] += self.inputs.count
             self.inputs = Occurrences()
-
-    def _judge_after(self, excuse: str = '') -> None:
-        if not excuse:
-            self.inputs.add_all(self._after)
-        elif self._after.count:
-            self.left_out[excuse] += self._after.count
-        self._after = Occurrences()
 
 
 class Completeness:
@@ -118,6 +112,7 @@ class Completeness:
         self._start = self._settled = -_NEVER if strict else _NEVER
         """When all topics were recorded, and the last loss until the recorder settled, ns."""
         self._last = 0  # when the last input was received, ns
+        self._back: int | None = None  # when a driver without an output yet came back, ns
         self._pause = float(_NEVER)  # ns without inputs after which the driver may have restarted
 
     def update(
@@ -151,15 +146,26 @@ class Completeness:
         if self._start == _NEVER and begun.keys() >= names:
             self._start = self._settled = max(begun[name] for name in names)
         self._settle(received[~answered.all(axis=0)])
-        judged = received > self._settled
-        all_judged = judged.all()
-        rows = [*zip(self.topics.values(), answered, strict=True)]
-        for missing, has_output in (*rows, (self._on_all, answered.any(axis=0))):
-            if all_judged:
-                missing.update(received, stamp, has_output, back=back)
-                continue
-            missing.leave_out(has_output[~judged], BEFORE)
-            missing.update(received[judged], stamp[judged], has_output[judged])
+        on_any = np.asarray(answered.any(axis=0))
+        rows = [*zip(self.topics.values(), answered, strict=True), (self._on_all, on_any)]
+        judged = heard = int(np.count_nonzero(received <= self._settled))
+        if back:
+            self._back = int(received[0])
+            for missing, _ in rows:
+                missing.judge_after()
+        soon = False
+        if self._back is not None and on_any[judged:].any():
+            heard += int(np.argmax(on_any[judged:]))
+            soon = int(received[heard]) - self._back <= _SETTLING_TIME
+            self._back = None
+        for missing, has_output in rows:
+            missing.leave_out(has_output[:judged], BEFORE)
+            if soon:
+                before = slice(judged, heard)
+                missing.update(received[before], stamp[before], has_output[before])
+                missing.judge_after(back=True)
+            rest = slice(heard if soon else judged, None)
+            missing.update(received[rest], stamp[rest], has_output[rest])
 
     def _settle(self, losses: Array) -> None:
         """Add further losses to the uninterrupted series of losses at the start."""

@@ -232,6 +232,32 @@ def test_inputs_that_a_node_misses_after_a_restart_of_the_driver_fail_nothing(
     assert [t.missing for t in validate(messages, config, strict=True).topics] == 2 * [count]
 
 
+def test_after_a_restart_outputs_of_one_topic_alone_are_missing(traffic, config):
+    """The other one shows that the node heard the driver at once."""
+    back = stamp_of(traffic[100][0]) + 3 * SECOND
+    there = [m for m in traffic[100] if not back - 2 * SECOND < stamp_of(m) < back]
+    lost = [m for m in there if m.topic == POSES and 0 <= stamp_of(m) - back < SECOND // 2]
+    report = validate([m for m in there if m not in lost], config)
+    assert report.verdict == Verdict.FAIL
+    assert [t.missing for t in report.topics] == [0, len(lost)]
+    assert [t.left_out for t in report.topics] == [{}, {}]
+
+
+def test_a_driver_that_often_pauses_does_not_restart_each_time(traffic, config):
+    """It sends for 0.3 s in each second, and the node misses two thirds of that."""
+    begin = stamp_of(traffic[100][0])
+    active = [m for m in traffic[100] if stamp_of(m) - begin < 0.3 * SECOND]
+    messages = [
+        shifted(m, second * SECOND)
+        for second in range(12)
+        for m in active
+        if m.topic == ROTOR or second < 2 or stamp_of(m) - begin >= 0.2 * SECOND
+    ]
+    report = validate(messages, config)
+    assert report.verdict == Verdict.FAIL
+    assert [t.missing for t in report.topics] == [200, 200]
+
+
 def test_an_output_for_a_rejected_input_is_extra(traffic, config):
     """Its input was recorded, but has no output."""
     messages = list(traffic[500][:3000])
