@@ -37,8 +37,13 @@ class DriverLog:
         self._topic = node.resolve_topic_name(ROTOR_STATE)
         self._missing = 0  # updates since there was a publisher
         self._said = self._faults()
-        self._before: dict[str, RotorSample] = {}  # the silence
-        self.awaited = False  # whether it was logged that the driver is missing or silent
+        self._silent = False  # whether it was logged that the driver is missing or silent
+        self._before: dict[str, RotorSample] = {}  # the silence of actuators, which was logged
+
+    @property
+    def awaited(self) -> bool:
+        """Whether it was logged that an actuator has no messages, so that `heard` is wanted."""
+        return self._silent or bool(self._before)
 
     def _warn_of_missing(self) -> None:
         """Warn once of each joint of an arm that has been missing for too long beside others."""
@@ -53,6 +58,8 @@ class DriverLog:
                 stopped = 'no more messages of', '; other joints are still heard'
                 how = stopped if joint in there else ('no joint', among(joint, there))
                 lacking[how][name] = repr(joint)
+                if each.last:
+                    self._before[name] = each.last
         for (what, hint), joints in lacking.items():
             text = f'{what} {", ".join(joints.values())} on {self._topic}{hint}'
             self._log.warning(labelled(', '.join(joints), text))
@@ -73,28 +80,29 @@ class DriverLog:
             self._log.warning(labelled(key[0], f'{faults[key]}. {faults[key].advice}'))
         self._said = faults | {key: fact for key, fact in said.items() if not key[2]}
         self._missing = 0 if publishers else self._missing + 1
-        if self.awaited:
+        if self._silent:
             return
         last = {name: each.last for name, each in self._inputs.items() if each.last}
         timeouts = (each.parameters.input_timeout for each in self._inputs.values())
         if last and silence > max(timeouts):
             self._log.warning(f'{self._topic} has stopped: no input for {silence:.1f} s')
-            self.awaited, self._before = True, last
+            self._silent, self._before = True, last
         elif not last and self._missing > _SEARCH and (others := Graph(self._node).drivers()):
             self._log.warning(
                 f'{self._topic} has no publisher; there are: {listed(others)}; choose one with '
                 f'-r {ROTOR_STATE}:=<topic>, or with ros2 launch {ROTOR_STATE}:=<topic>'
             )
-            self.awaited = True
+            self._silent = True
         else:
             self._warn_of_missing()
 
     def heard(self, samples: Mapping[str, RotorSample]) -> None:
-        """Take the first samples by actuator while the driver was awaited."""
-        self.awaited, before, self._before = False, self._before, {}
+        """Take samples by actuator while some are awaited; their first are compared."""
+        silent, self._silent = self._silent, False
+        returned = [name for name in samples if name in self._before]
         elsewhere = []
         for name, sample in samples.items():
-            moved = sample.position.since(before.get(name, sample).position)
+            moved = sample.position.since(self._before.pop(name, sample).position)
             if abs(moved) > _ELSEWHERE:
                 turned = f'the rotor is {math.degrees(moved):.0f}° from where it was'
                 elsewhere.append(labelled(name, turned))
@@ -102,5 +110,6 @@ class DriverLog:
             self._said |= self._faults()
             at = '; '.join(elsewhere)
             self._log.warning(f'{self._topic} is heard again, but {at}: {_HOME}')
-        else:
-            self._log.info(f'{self._topic} is heard now')
+        elif silent or returned:
+            which = '' if silent else ', '.join(returned)
+            self._log.info(labelled(which, f'{self._topic} is heard now'))

@@ -131,6 +131,32 @@ def test_positions_that_wrap_are_named_once_instead_of_every_jump():
     assert (wraps[0], wraps[1][: len(said)]) == ('W', said)
 
 
+@pytest.mark.parametrize(
+    ('position', 'said'),
+    [
+        (5.0, ('I', 'elbow: /rotor_state is heard now')),
+        (0.0, ('W', AWAY.format(-286).replace('the rotor', 'elbow: the rotor'))),
+    ],
+)
+def test_joint_of_an_arm_that_stops_and_its_return_are_a_line_each(position, said):
+    graph = Graph()
+    inputs = {name: RotorInput(NodeParameters.load()) for name in ('shoulder', 'elbow')}
+    graph.driver_log = DriverLog(graph, inputs, lambda: ['rotor'])
+    for stamp in range(1, 12):
+        heard = {}
+        for name, each in inputs.items():
+            if name == 'elbow' and 2 < stamp < 9:
+                each.received, each.of_others = each.received + 1, each.of_others + 1
+            else:
+                data = rotor_bytes(stamp * SECOND, position=[position if stamp > 2 else 5.0])
+                heard[name] = each.accept(data, lambda: SECOND)
+        if graph.driver_log.awaited:
+            graph.driver_log.heard(heard)
+        graph.driver_log.update(2, 0.0)
+    stopped = "elbow: no more messages of 'rotor' on /rotor_state; other joints are still heard"
+    assert graph.logged == [('W', stopped), said]
+
+
 @pytest.mark.live
 def test_node_logs_silence_of_its_joint_on_a_shared_topic(make, capfd):
     node = make('/shared')
