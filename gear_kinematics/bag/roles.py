@@ -146,8 +146,7 @@ def joints_on(bag: Bag, topics: Sequence[str]) -> dict[str, list[str]]:
 def find_encoder_topic(bag: Bag, rotor: str, given: str | None = None, *joints: str) -> str:
     """Return the output encoder's topic, given or by name, near the rotor's if possible, or ''.
 
-    Without one of that name, it is the only other topic with one of the encoders' `joints` that
-    the rotor's topic does not have.
+    Without one of that name, it is `topic_with_joint`.
 
     Raises BagError if the given one is missing, or several in other namespaces have the name.
     """
@@ -160,10 +159,16 @@ def find_encoder_topic(bag: Bag, rotor: str, given: str | None = None, *joints: 
     named = [topic for topic in _of_type(bag.topics, wanted) if base_name(topic) == OUTPUT_ENCODER]
     if named:
         return _only(bag.path, named, OUTPUT_ENCODER)
-    others = [topic for topic in _of_type(bag.topics, wanted) if base_name(topic) not in TOPICS]
-    there = joints_on(bag, [rotor, *others[:_PEEKED]]) if any(joints) else {rotor: []}
-    own = {*joints}.difference(['', *there.pop(rotor)])
-    found_by_joint = [topic for topic, names in there.items() if own.intersection(names)]
+    return topic_with_joint(bag, rotor, *joints)
+
+
+def topic_with_joint(bag: Bag, rotor: str, *joints: str) -> str:
+    """Return the only topic with joints that the rotor's topic does not have, or ''."""
+    there = _of_type(bag.topics, TOPICS[OUTPUT_ENCODER].type)
+    others = [topic for topic in there if base_name(topic) not in TOPICS]
+    names = joints_on(bag, [rotor, *others[:_PEEKED]]) if any(joints) else {rotor: []}
+    own = {*joints}.difference(['', *names.pop(rotor)])
+    found_by_joint = [topic for topic in names if own.intersection(names[topic])]
     return found_by_joint[0] if len(found_by_joint) == 1 else ''
 
 

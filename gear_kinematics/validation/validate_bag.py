@@ -20,6 +20,7 @@ from gear_kinematics.bag.roles import (
     in_namespace,
     joints_on,
     only_joint,
+    topic_with_joint,
 )
 from gear_kinematics.bag.schedule import count_due
 from gear_kinematics.fleet.processes import Work
@@ -149,11 +150,12 @@ def _validator(task: Task, bag: Bag, topics: Topics) -> Validator:
     further = {names[own]: topic for own, topic in found.items()}
     poses = further.pop(BODY_POSES, '')
     topics = topics._replace(poses=topics.poses or task.poses_topic or poses)
-    encoder = ''
+    encoder, joint = '', parameters.output_encoder_joint
     if parameters.absolute:
-        encoder = find_encoder_topic(bag, topics.rotor, None, parameters.output_encoder_joint)
+        encoder = find_encoder_topic(bag, topics.rotor, None, joint)
     if TRANSMISSION_ERROR in further and not encoder:
-        encoder = find_in_namespace(bag, [OUTPUT_ENCODER], topics.output).get(OUTPUT_ENCODER, '')
+        near = find_in_namespace(bag, [OUTPUT_ENCODER], topics.output)
+        encoder = near.get(OUTPUT_ENCODER) or topic_with_joint(bag, topics.rotor, joint)
     return Validator(task, topics, further, encoder=encoder)
 
 

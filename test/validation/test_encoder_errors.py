@@ -21,7 +21,6 @@ from gear_kinematics.validation.validate_bag import validate
 
 ERRORS = '/transmission_error'
 MILLISECOND = 1_000_000  # ns
-TOPICS = dict.fromkeys((ROTOR, OUTPUT, ENCODER, ERRORS), JOINT_STATE)
 
 
 def recording(actuators, homed: int = -1) -> list[tuple[str, int, bytes]]:
@@ -46,7 +45,8 @@ def recording(actuators, homed: int = -1) -> list[tuple[str, int, bytes]]:
         if k % 2:
             later = stamp + 7 * MILLISECOND // 10
             measured = [a / float(r) + 0.01 for a, r in zip(angles, RATIOS.values(), strict=True)]
-            data = rotor_bytes(later, names, measured)
+            joints = [each.output_encoder_joint for each in actuators.values()]
+            data = rotor_bytes(later, joints, measured)
             messages.append((ENCODER, later + 1000, data))
             publish(arm.encode_errors(arm.encoder(data, int)[0]))
     return messages
@@ -54,8 +54,10 @@ def recording(actuators, homed: int = -1) -> list[tuple[str, int, bytes]]:
 
 def judged(path, messages, **more):
     own = {f'{name}.output_encoder_joint': name for name in RATIOS}
-    file = config(path / 'arm.yaml', **own, **more)
-    return validate(write_bag(path / 'bag', messages(load_actuators(file)), TOPICS), file)
+    file = config(path / 'arm.yaml', **(own | more))
+    recorded = messages(load_actuators(file))
+    topics = dict.fromkeys((topic for topic, *_ in recorded), JOINT_STATE)
+    return validate(write_bag(path / 'bag', recorded, topics), file)
 
 
 @pytest.mark.parametrize('homed', [-1, 251])
@@ -103,6 +105,16 @@ def test_errors_without_the_encoder_are_not_compared(tmp_path):
     report = judged(tmp_path, messages)
     assert report.passed, explain(report)
     assert 'recorded, but not compared: transmission_error' in explain(report)
+
+
+def test_an_encoder_whose_topic_was_remapped_is_found_by_its_joints(tmp_path):
+    def messages(actuators):
+        renamed = {ENCODER: '/arm/encoders'}
+        return [(renamed.get(topic, topic), *rest) for topic, *rest in recording(actuators)]
+
+    joints = {f'{name}.output_encoder_joint': f'{name}_encoder' for name in RATIOS}
+    report = judged(tmp_path, messages, **joints)
+    assert explain(report).count(f'{ERRORS}: in agreement with both encoders: 24') == len(RATIOS)
 
 
 def test_errors_of_other_outputs_are_not_kept_beside_computed_ones(tmp_path):
