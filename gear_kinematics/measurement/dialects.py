@@ -12,9 +12,7 @@ from functools import partial
 from itertools import takewhile
 from operator import itemgetter
 from pathlib import Path
-from typing import IO, Any, NamedTuple
-
-import numpy as np
+from typing import Any, NamedTuple
 
 from gear_kinematics.measurement.cells import (
     MISSING,
@@ -32,13 +30,15 @@ from gear_kinematics.measurement.cells import (
 )
 from gear_kinematics.measurement.names import FOREIGN, known_units, meaning, usual_unit
 from gear_kinematics.measurement.series import series_of
+from gear_kinematics.measurement.texts import BLOCK, Rows, encoding_of
 
 _MOST_ROWS = 1_000_000  # 15 minutes at 1 kHz; a row takes up to 250 bytes besides those of pandas
-_HEAD, _BLOCK = 2**16, 2**17  # bytes that show the dialect; characters that are read at a time
+_HEAD = 2**16  # bytes that show the dialect
 _ROWS, _BEGIN = 100, 3  # rows that show the kinds of columns; rows of numbers that begin a table
 _SEPARATORS = ';', '\t', ',', '|', ' '
 _COMMENT = ('#', '//', '%', 'sep=', 'SEP=')
-_BOMS = {b'\xef\xbb\xbf': 'utf-8-sig', b'\xff\xfe': 'utf-16', b'\xfe\xff': 'utf-16'}
+_WRAPPED = re.compile(r'(?<![^,;\t\n])"[^"\n]*(\n[^"\n]*){1,3}"(?=[,;\t\n])')
+"""Cells with line breaks, as of names in workbooks."""
 _TYPES = re.compile(r'(?i)[iuf]\d+|(float|double|u?int)\d*|(type|interp|blockpath|portindex): *.+')
 """Cells of rows that give types, as INCA and Simulink write them."""
 # Beginnings of CAN bus logs of candump, PCAN-View and CANoe.
@@ -94,30 +94,6 @@ class _Layout(NamedTuple):
     remark: str = ''
 
 
-class _Rows(io.TextIOBase):
-    """Passes on one row in `every`, so that pandas need not parse the others."""
-
-    def __init__(self, file: IO[str], every: int) -> None:
-        self._file, self._every, self._skip = file, every, 0
-        self._newlines = io.IncrementalNewlineDecoder(None, translate=True)
-
-    def read(self, _size: int | None = None) -> str:
-        chosen = b''
-        while not chosen and (text := self._file.read(_BLOCK) + self._file.readline()):
-            # Numpy finds rows in bytes faster than Python does in text.
-            block = self._newlines.decode(text, final=True).encode()
-            ends = 1 + np.flatnonzero(np.frombuffer(block, np.uint8) == ord('\n'))
-            if not block.endswith(b'\n'):
-                sizes = np.diff(ends, prepend=0, append=len(block))
-                if len(sizes) == 1 or sizes[-1] >= sizes[:-1].min() - 1:  # otherwise it was cut
-                    ends = np.append(ends, len(block))
-            begins = np.append(0, ends)[self._skip : len(ends) : self._every].tolist()
-            pairs = zip(begins, ends[self._skip :: self._every].tolist(), strict=True)
-            chosen = b''.join(block[begin:end] for begin, end in pairs)
-            self._skip = (self._skip - len(ends)) % self._every
-        return chosen.decode()
-
-
 def open_text(path: Path, content: bytes | None = None) -> TableFile:
     """Open a text, which may be compressed, or the `content` of a workbook, in its dialect.
 
@@ -133,10 +109,11 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
 
     with opened(mode='rb', compression='infer', is_text=False) as file:
         head = file.handle.read(_HEAD)
-        size = len(head) + sum(map(len, iter(partial(file.handle.read, _BLOCK), b'')))
-    encoding = _encoding(head)
+        size = len(head) + sum(map(len, iter(partial(file.handle.read, BLOCK), b'')))
+    encoding = encoding_of(head)
     decoded = partial(opened, mode='r', compression='infer', encoding=encoding, errors='replace')
     text = codecs.getincrementaldecoder(encoding)('replace').decode(head).rstrip('\0')
+    text = _WRAPPED.sub(lambda name: name[0].replace('\n', '\v'), text.replace('\r\n', '\n'))
     lines = [*io.StringIO(text, newline=None)]
     if size > _HEAD and not (lines := lines[:-1]):
         raise ValueError(f'the first row is longer than {_HEAD} characters')
@@ -148,14 +125,15 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
         key = frame['time'].where(frame['key'].str.endswith('.Variable', na=False)).ffill()
         rows = frame.assign(key=key)[frame['key'].isna()]
         return loaded(*series_of(rows, '.', 'key', 'value', {}))
-    layout = _layout(lines)
+    layout = _layout([line.replace('\v', ' ') for line in lines])
+    start = layout.start + ''.join(lines[: layout.start]).count('\v')
 
     def read(places: Sequence[int], every: int, kind: Any = None) -> Any:
         with decoded() as file:
-            for _ in range(layout.start):  # pandas would heed quotation marks in them
+            for _ in range(start):  # pandas would heed quotation marks in them
                 file.handle.readline()
             return pd.read_csv(
-                _Rows(file.handle, every),
+                Rows(file.handle, every),
                 sep=r'\s+' if layout.separator == ' ' else layout.separator,
                 decimal=layout.point if layout.point != layout.separator else '.',
                 header=None,
@@ -201,22 +179,6 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
         name: 'rad' for name, one in elements.items() if isinstance(one.key, str)
     }
     return TableFile(names, units, layout.clocks, first, load, layout.remark)
-
-
-def _encoding(head: bytes) -> str:
-    """Return the encoding of a text; ValueError if it is not text."""
-    if encoding := next((_BOMS[mark] for mark in _BOMS if head.startswith(mark)), ''):
-        return encoding
-    if 0 in head.rstrip(b'\0'):  # with which a crash can leave the end
-        zeros = head[::2].count(0), head[1::2].count(0)
-        if min(zeros) == 0 and max(zeros) > len(head) // 4:
-            return 'utf-16-le' if zeros[1] else 'utf-16-be'
-        raise ValueError('not text')
-    try:
-        codecs.getincrementaldecoder('utf-8')().decode(head)
-    except UnicodeDecodeError:
-        return 'cp1252'
-    return 'utf-8'
 
 
 def _layout(lines: Sequence[str]) -> _Layout:

@@ -2,10 +2,11 @@
 """The formats of tables, and the libraries that read those that are not text.
 
 A table becomes a recording in steps, each in a module of its own: `open_table` here chooses the
-reader; `dialects` finds names, units and numbers in a text, whose `cells` are numbers, times or
-arrays, and `series` divides those with a row for each value; `names` has the words and units in
-names, by which `columns` chooses, or `advice` proposes columns; `clocks` gives the rows their
-times; `assumed_units` doubts units that are not given; and `tables` decides which rows are used.
+reader; `texts` decodes a text, in which `dialects` finds names, units and numbers, whose `cells`
+are numbers, times or arrays, and `series` divides those with a row for each value; `names` has the
+words and units in names, by which `columns` chooses, or `advice` proposes columns; `clocks` gives
+the rows their times; `assumed_units` doubts units that are not given; and `tables` decides which
+rows are used.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping

@@ -10,17 +10,18 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.encoder_step import UNITS
 
 _VOCABULARY = {
-    'rotor': 'rotor motor mot odrive antrieb moteur motore 电机',
+    'rotor': 'rotor motor mot odrive antrieb moteur motore 电机 モータ モーター',
     'output': 'output out load gearbox shaft link joint abtrieb ausgang sortie uscita salida 输出 '
-    '负载 关节',
-    'input': 'input eingang entrée ingresso entrada 输入',
+    '输出轴 负载 负载端 关节 出力 出力軸 負荷 負荷側',
+    'input': 'input eingang entrée ingresso entrada 输入 输入轴 入力 入力軸',
     'angle': 'position positions pos angle ang encoder enc theta θ φ ϕ deflection twist rotation '
-    'winkel drehwinkel verdrehwinkel angolo ángulo angulo 位置 角度',
+    'winkel drehwinkel verdrehwinkel angolo ángulo angulo posición posizione 位置 角度 编码器',
     'torque': 'torque torques effort efforts trq tq tau τ drehmoment moment couple coppia '
-    '扭矩 力矩',
+    '扭矩 力矩 转矩 トルク',
     'current': 'current',
     'time': 'time t stamp timestamp timestamps today datetime elapsed zeit uhrzeit temps tempo '
-    'tiempo tout xtime ts zeitstempel horodatage 时间 x',
+    'tiempo tout xtime ts zeitstempel horodatage 时间 时间戳 '
+    '時間 x',
     'filling': 'header receive log measured actual act filtered raw field data value values '
     'feedback state states axis angular rotary present sensor abs side in ist host pi ros system '
     'unix epoch fb fbk ave estimate scalars signals date datum utc wall application main plc prg '
@@ -57,7 +58,7 @@ _SIZES: Mapping[str, Mapping[str, Any]] = {
         "arcmin ′ '": _DEG / 60.0,
         'arcsec ″': _DEG / 3600.0,
         'gon': TURN / 400.0,
-        'counts count cnt inc increments ticks pulse pulses lsb steps qc': None,  # by turn
+        'counts count cnt inc increment increments ticks pulse pulses lsb steps qc': None,
     },
     'torque': {
         'N·m nm': 1.0,

@@ -363,6 +363,10 @@ ENCODERS = {
         [t, r, o], 'robot_time,motor_ang,gearbox_ang'),
     'Chinese': lambda t, r, o: written(
         [t, r * DEG, o * DEG], '时间\uff08s\uff09,电机角度\uff08°\uff09,输出角度\uff08°\uff09'),
+    'Chinese of Windows': plain('时间戳,电机编码器(deg),输出轴角度(deg)', angle=DEG, code='gbk'),
+    'Japanese of Windows': plain('時間,モータ位置[deg],出力軸角度[deg]', angle=DEG, code='cp932'),
+    'Spanish, with line breaks': plain(
+        '"Banco ""A"""\nTiempo;"Posición\r\nmotor\n[deg]";Posición salida [°]', ';', angle=DEG),
     'a row for each joint': lambda t, r, o: 'sec,nanosec,id,joint_name,position_deg\n' + ''.join(
         f'{at // 1:.0f},{at % 1 * 1e9:.0f},{k},{name},{value * DEG:.5f}\n'
         for at, *values in zip(t + 1.79e9, r, o, strict=True)
@@ -784,7 +788,7 @@ def workbook(path, time, rotor, output):
     pytest.importorskip('openpyxl')
     pd = pytest.importorskip('pandas')
     rows = zip(time, DEG * rotor, output, strict=True)
-    head = [('Bench 3', None, None), ('Time', 'Rotor', 'Output'), ('s', '°', 'rad')]
+    head = [('Bench 3', None, None), ('Time', 'Rotor\nangle', 'Output'), ('s', '°', 'rad')]
     pd.DataFrame([*head, *rows]).to_excel(path, header=False, index=False)
     return Sources()
 

@@ -1,0 +1,58 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Texts of any size: their encoding, and one row in n."""
+
+import codecs
+import io
+import re
+from typing import IO
+
+import numpy as np
+
+BLOCK = 2**17  # characters that are read at a time
+_BOMS = {b'\xef\xbb\xbf': 'utf-8-sig', b'\xff\xfe': 'utf-16', b'\xfe\xff': 'utf-16'}
+_EASTERN = {
+    'cp932': re.compile(rb'(\x83[\x40-\x96]|\x81\x5b){2}'),
+    'gb18030': re.compile(rb'([\xb0-\xf7][\xa1-\xfe]){2}'),
+}
+"""Two Katakana, or Chinese characters, in succession in encodings of Windows."""
+
+
+class Rows(io.TextIOBase):
+    """Passes on one row in `every`, so that pandas need not parse the others."""
+
+    def __init__(self, file: IO[str], every: int) -> None:
+        self._file, self._every, self._skip = file, every, 0
+        self._newlines = io.IncrementalNewlineDecoder(None, translate=True)
+
+    def read(self, _size: int | None = None) -> str:
+        """Return some of the chosen rows, or nothing at the end."""
+        chosen = b''
+        while not chosen and (text := self._file.read(BLOCK) + self._file.readline()):
+            # Numpy finds rows in bytes faster than Python does in text.
+            block = self._newlines.decode(text, final=True).encode()
+            ends = 1 + np.flatnonzero(np.frombuffer(block, np.uint8) == ord('\n'))
+            if not block.endswith(b'\n'):
+                sizes = np.diff(ends, prepend=0, append=len(block))
+                if len(sizes) == 1 or sizes[-1] >= sizes[:-1].min() - 1:  # otherwise it was cut
+                    ends = np.append(ends, len(block))
+            begins = np.append(0, ends)[self._skip : len(ends) : self._every].tolist()
+            pairs = zip(begins, ends[self._skip :: self._every].tolist(), strict=True)
+            chosen = b''.join(block[begin:end] for begin, end in pairs)
+            self._skip = (self._skip - len(ends)) % self._every
+        return chosen.decode()
+
+
+def encoding_of(head: bytes) -> str:
+    """Return the encoding of a text; ValueError if it is not text."""
+    if encoding := next((_BOMS[mark] for mark in _BOMS if head.startswith(mark)), ''):
+        return encoding
+    if 0 in head.rstrip(b'\0'):  # with which a crash can leave the end
+        zeros = head[::2].count(0), head[1::2].count(0)
+        if min(zeros) == 0 and max(zeros) > len(head) // 4:
+            return 'utf-16-le' if zeros[1] else 'utf-16-be'
+        raise ValueError('not text')
+    try:
+        codecs.getincrementaldecoder('utf-8')().decode(head)
+    except UnicodeDecodeError:
+        return next((code for code in _EASTERN if _EASTERN[code].search(head)), 'cp1252')
+    return 'utf-8'
