@@ -6,8 +6,8 @@
 # a mean of -0.5. A chirp with the "start frequency" f0 = 1 Hz and a bandwidth of 9 Hz begins at 10 Hz, falls to 1 Hz
 # and rises again. Differentiator(f_max=300) is documented to hold for signals "up to a frequency of approximately
 # f_max", with f_max = 1e3 as a "cutoff at 1kHz" and 3 times the highest signal frequency as a practical choice. What
-# happens: of an angle that vibrates at 100 Hz it gives 43 % of the speed, 64° late, as f_max is in rad/s, as the formula
-# s / (1 + s / f_max) has it, not in Hz as the corner of a Butterworth filter of the same library. PID has the same
+# happens: of an angle that vibrates at 100 Hz it gives 43 % of the speed, 64° late, as f_max is in rad/s, as in the
+# formula s / (1 + s / f_max), not in Hz as the corner of a Butterworth filter of the same library. PID has the same
 # f_max. There is no warning.
 # For us: give f_max in rad/s, make a triangle of amplitude 2 and add 1, and check where a chirp begins.
 #

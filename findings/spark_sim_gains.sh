@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# robotpy-rev 2026.0.4: in a simulated SPARK MAX, I acts at a thousandth of what REV documents, and D at 750 times
+# robotpy-rev 2026.0.4: in a simulated SPARK MAX, I acts at a thousandth of what REV documents, and D at 750 times.
 #
 # Expected of a SparkMaxSim: the output of the controller that REV prints on its page on closed-loop control: it runs
 # each ms and adds I times the error to its integral, so that an I of 0.001 gives full output 1 s after an error of 1

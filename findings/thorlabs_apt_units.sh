@@ -1,6 +1,6 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# thorlabs-apt-device 0.3.8: by the conversions that it documents, 45.6° are read as 45°, and 2.4 mm/s as 1200
+# thorlabs-apt-device 0.3.8: by the conversions that it documents, 45.6° are read as 45°, and 2.4 mm/s as 1200.
 #
 # Expected: its module `utils` shows how to build conversions from counts, and they give what was sent: to_mm =
 # partial(from_pos, factor=1/34304), to_mmps = partial(from_vel, factor=1/34304, t=2048/6e6). What happens: from_pos()

@@ -7,7 +7,8 @@
 # torque mode. Expected: the torque is written before the mode, and 0.5 is the same torque in both. What happens: the
 # mode is changed first, and the servo turns with the 1000 steps of the former limit until the change has been saved and
 # waited for. 0.5 is 500 steps as a limit and 972 as a torque. A speed of -60, in the range of -32767 to 32767 of the
-# documentation, is sent as -32708, as its sign is not changed to the bit 15. A port answers here as a servo does.
+# documentation, is sent as -32708, as its sign is not changed to the bit 15. A port stands in for the servo, with the
+# registers that Feetech's own library for the HLS series has.
 # For us: write the steps to register 44 with packet_handler.write2ByteTxRx() before write_torque().
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
