@@ -54,7 +54,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         if options.joint is None and first and '' in configs:
             taken = only_joint(bag, rotor, first)
             configs = {'': replace(configs[''], rotor_joint=taken)}
-        absolute = [each.output_encoder_joint for each in configs.values() if each.absolute]
+        absolute = [each.distinct_encoder_joint for each in configs.values() if each.absolute]
         result = compute(
             bag,
             options.out,

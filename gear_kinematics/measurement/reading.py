@@ -73,7 +73,7 @@ def _read_bag(
     damage, heard = None, TopicMessages()
     with open_bag(path) as bag:
         rotor = find_rotor_topic(bag, sources.rotor_topic, parameters.rotor_joint)
-        joint = parameters.output_encoder_joint
+        joint = parameters.distinct_encoder_joint
         encoder = find_encoder_topic(bag, rotor, sources.encoder_topic, joint)
         if both and not encoder:
             raise RecordingError(f'{path}: {missing_encoder(bag)}')

@@ -229,6 +229,12 @@ class NodeParameters:
         return self.output_joint if default else self.frame_prefix + self.output_joint
 
     @property
+    def distinct_encoder_joint(self) -> str:
+        """Joint of the encoder at the output; '' if messages of the node itself have that name."""
+        joint = self.output_encoder_joint
+        return '' if joint == self.output_name else joint
+
+    @property
     def joint_names(self) -> list[str]:
         """Names of all joints in messages and in the URDF, of which `output_name` is the last.
 

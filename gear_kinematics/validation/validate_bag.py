@@ -150,7 +150,7 @@ def _validator(task: Task, bag: Bag, topics: Topics) -> Validator:
     further = {names[own]: topic for own, topic in found.items()}
     poses = further.pop(BODY_POSES, '')
     topics = topics._replace(poses=topics.poses or task.poses_topic or poses)
-    encoder, joint = '', parameters.output_encoder_joint
+    encoder, joint = '', parameters.distinct_encoder_joint
     if parameters.absolute:
         encoder = find_encoder_topic(bag, topics.rotor, None, joint)
     if TRANSMISSION_ERROR in further and not encoder:
@@ -187,7 +187,7 @@ def _played(
     """Validate what a live node publishes for the recorded rotor states."""
     given, joints = {'rotor': task.rotor_topic}, [task.parameters.rotor_joint]
     rotor, *_ = find_topics(bag, given, outputs=False, joints=joints, namespace=task.namespace)
-    encoder, joint = '', task.parameters.output_encoder_joint
+    encoder, joint = '', task.parameters.distinct_encoder_joint
     if task.parameters.absolute:
         encoder = find_encoder_topic(bag, rotor, None, joint)
     task, taken = _of_only_joint(task, bag, rotor)

@@ -79,6 +79,20 @@ def part(messages, begin, end=6.0):
     return [m for m in messages if begin <= (m[1] - START) / SECOND < end]
 
 
+@BOTH
+def test_outputs_on_another_topic_are_not_their_own_encoder(tmp_path, config):
+    """Those of an actuator of an arm have the name of the encoder's joint by default."""
+    config = replace(config, output_encoder_joint=config.output_joint)
+    types = {ROTOR: JOINT_STATE, '/arm/states': JOINT_STATE, POSES: TYPES[POSES]}
+    messages = [
+        (topic.replace(OUTPUT, '/arm/states'), *rest)
+        for topic, *rest in recorded(config, error=STEP)
+        if topic in {ROTOR, OUTPUT, POSES}
+    ]
+    bag = write_bag(tmp_path / 'bag', messages, types)
+    assert texts(validate_bag(Task(bag, config, output_topic='/arm/states'))) == [UNJUDGED]
+
+
 @pytest.mark.parametrize('strict', [False, True])
 @pytest.mark.parametrize('start', np.random.default_rng(3).uniform(-3.0, 3.0, 4).tolist())
 @BOTH
