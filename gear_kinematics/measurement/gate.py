@@ -304,13 +304,15 @@ def _followed(
 def _spikes(error: Array, steps: _Steps) -> NDArray[np.bool_]:
     """Find readings that leave the five before and the five after, however slow the motion, (n,).
 
-    At a reversal, a delay does the same.
+    They leave both to the same side, unlike those in which play is crossed. At a reversal, a delay
+    does the same.
     """
     level, far = usual(error), _WINDOW // 2 + 1
     level = np.pad(level, far, 'edge')
-    off = np.minimum(np.abs(error - level[: -2 * far]), np.abs(error - level[2 * far :]))
-    off *= ~np.append(steps.reverses, True)
-    found: NDArray[np.bool_] = off > max(_SPIKE * float(np.quantile(off, 0.9)), _LEAST_SPIKE)
+    before, after = error - level[: -2 * far], error - level[2 * far :]
+    off = np.minimum(np.abs(before), np.abs(after)) * ~np.append(steps.reverses, True)
+    most = max(_SPIKE * float(np.quantile(off, 0.9)), _LEAST_SPIKE)
+    found: NDArray[np.bool_] = (off > most) & (before * after > 0.0)
     return found
 
 

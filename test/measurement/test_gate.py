@@ -303,6 +303,16 @@ def test_late_readings_in_slow_motion_change_no_lost_motion(gate, config, seed):
     assert lost.expanded < 0.5 * ARC_MINUTE
 
 
+@pytest.mark.parametrize(('rate', 'play'), [(20.0, 10.0), (100.0, 90.0)])
+def test_play_that_is_crossed_slowly_is_no_stray_reading(gate, rate, play):
+    times = np.arange(20.0 * rate) / rate
+    ideal = ramped_strokes(math.radians(70.0), 7.0, 1.5)(times)
+    noise = np.random.default_rng(1).normal(0.0, 1e-5, len(times))
+    output = with_play(ideal, play * ARC_MINUTE) + noise
+    before, after = gate(np.column_stack([times, -19.0 * ideal, output]))
+    assert after is before
+
+
 def test_wraps_of_encoders_of_one_turn_are_no_faults(clean, gate):
     clean[:, 1:] = np.remainder(clean[:, 1:], 2.0 * np.pi)
     before, after = gate(clean)
