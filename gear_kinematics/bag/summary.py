@@ -82,7 +82,10 @@ def summarise(
             raise
         unclear = str(error).removeprefix(f'{bag.path}: ')
     others = Counter[str]()
-    followed = {rotor: joints[0]} if joints and joints[0] else {}
+    followed = {}
+    if rotor and joints and joints[0]:
+        recorded = joints_on(bag, [rotor])[rotor]
+        followed[rotor] = next((joint for joint in joints if joint in recorded), joints[0])
     readers = {topic: JointReader(joint) for topic, joint in followed.items()}
     times = {topic: list[tuple[int, int]]() for topic in bag.topics}
     ends: list[int] = []

@@ -122,6 +122,12 @@ def test_rate_and_gaps_are_those_of_the_joint_on_a_shared_topic(shared_path):
     assert (topic.rate, topic.gaps) == (pytest.approx(200.0, rel=1e-3), 0)
 
 
+def test_the_rate_is_that_of_the_first_joint_that_is_recorded(tmp_path):
+    (topic,) = summary(write(tmp_path / 'bag', '/motor'), None, ['m0', 'm2', 'm1']).topics
+    assert (topic.followed, topic.of_others) == ('m2', 0)
+    assert topic.rate == pytest.approx(100.0)
+
+
 def test_joints_of_the_rotor_topic_are_known_where_none_is_the_wanted_one():
     found = summary(BAGS / 'constant_speed_3000rpm', None, ['m1'])
     rotor = found.topics[0]
