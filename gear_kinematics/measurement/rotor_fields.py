@@ -48,8 +48,8 @@ def questions(
         ratio: gear ratio if known, to recognise velocities of the output.
         limits: of the rotor's speed, rad/s, and acceleration, rad/s², up to which its turns are
             to be counted.
-        steps: whether to name steps of the positions, too, that a rotor cannot make by the default
-            limits.
+        steps: whether to name rejected positions and steps of the clock, too, and steps of the
+            positions that a rotor cannot make by the default limits.
     """
     states = decode_joint_states(data, joint)
     stamp = states.stamped(received)
@@ -94,14 +94,19 @@ def questions(
 def _impossible_steps(
     data: Sequence[bytes], received: Sequence[int], joint: str, period: float
 ) -> Iterator[Fact]:
-    """Yield that the encoder jumped, or else that readings were implausible, by default limits."""
+    """Yield jumps of the encoder or of the clock, and rejected positions, by default limits."""
     parameters = replace(NodeParameters.load(), rotor_joint=joint, rotor_encoder_range=period)
     rotor = RotorInput(parameters)
     rotor.accept_batch(data, received)
+    known = {Rejection.JOINT_MISSING, Rejection.ARRAY_SIZES}
     if jumped := rotor.plausibility.jumped:
         yield jumped
-    elif (count := rotor.rejected[Rejection.IMPLAUSIBLE]) and not rotor.plausibility.beyond_limits:
-        yield Condition.REJECTED(counts={Rejection.IMPLAUSIBLE: count})
+    if jumped or rotor.plausibility.beyond_limits:
+        known.add(Rejection.IMPLAUSIBLE)
+    if counts := {cause: count for cause, count in rotor.rejected.items() if cause not in known}:
+        yield Condition.REJECTED(counts=counts)
+    if step := rotor.disorder.clock_step:
+        yield step
 
 
 def kind_of_encoder(data: Sequence[bytes], received: Sequence[int], joint: str) -> list[Value]:

@@ -94,6 +94,19 @@ def test_steps_that_no_rotor_can_make_are_named(readings, wrap, tmp_path):
         assert said.startswith('rejected: implausible 2' if readings < 3 else jumps)
 
 
+def test_rejected_positions_and_a_clock_that_is_set_back_are_named():
+    positions, stamped = ROTOR.copy(), stamps(TIMES)
+    positions[[200, 300, 301]] = math.nan, math.inf, 1e300
+    stamped[500:] -= 295_000_000
+    pairs = zip(map(int, stamped), positions, strict=True)
+    data = [rotor_bytes(stamp, position=[position]) for stamp, position in pairs]
+    told = [*map(str, questions(data, [0] * len(data), 'rotor', steps=True))]
+    assert told == [
+        'rejected: position not finite 2, position too large 1, out of order 29',
+        f'the clock was set back by at least 0.285 s just after {stamped[499] / 1e9:.3f} s',
+    ]
+
+
 @pytest.mark.parametrize('counts', [16384.0, 100.0])
 def test_counts_of_an_encoder_are_named(counts):
     """They are no rad, unlike positions with one decimal, and those of a rotor at rest."""
