@@ -3,12 +3,12 @@
 # mini-cheetah-motor-driver-socketcan 0.4.3: enabling a motor at 1.2 rad makes this its zero, and new constants change
 # all motors.
 #
-# Expected of enable_motor(): the motor is enabled and its position is 1.2 rad, as before. What happens: the command that
-# sets the zero is sent first, against a kick at the start, as a comment in the source says but no documentation. So the
-# zero that was set at a stop is lost, and all later commands are 1.2 rad off, as after each disable_motor() and
-# enable_motor(). change_motor_constants() of one motor changes the table of its type: a second motor of this type, whose
-# range has stayed at ±12.5 rad, is read at 2.4 rad where it stands at 1.2 rad. A motor that keeps its angle and its zero
-# answers here instead of the socket.
+# Expected of enable_motor(): the motor is enabled and its position is 1.2 rad, as before. What happens: the command
+# that sets the zero is sent first, against a kick at the start, as a comment in the source says but no documentation.
+# So the zero that was set at a stop is lost, and all later commands are 1.2 rad off, as after each disable_motor() and
+# enable_motor(). change_motor_constants() of one motor changes the table of its type: a second motor of this type,
+# whose range has stayed at ±12.5 rad, is read at 2.4 rad where it stands at 1.2 rad. A motor that keeps its angle and
+# its zero answers here instead of the socket.
 # For us: send the frame that enables alone, and keep the ranges of each motor yourself.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
