@@ -3,11 +3,12 @@
 # node-red-node-smooth 0.1.2 (npm): one null makes 90 rad of a mean of 100 rad, and a deviation of 0.03 mrad is 0.2 mrad
 # or NaN.
 #
-# JSON has no NaN, so that a lost reading is null. Expected of the mean of 10: null is left out with a remark, as "abc"
-# is. What happens: null and an empty text are 0, and true is 1: the mean of a joint that stands at 100 rad is 90 rad
-# for 10 readings. Expected of the standard deviation of ten angles with 0.03 mrad of noise: 0.03 mrad, whatever their
-# mean. What happens: it comes from the difference of two sums of squares, which is right at 1 rad, 0.21 mrad at 10 000
-# rad, and NaN at 100 000 rad.
+# JSON has no NaN, so that a lost reading is null. By the README, what is no number "will try to be made into a number
+# and rejected if that fails". Expected of the mean of 10: null is left out with a remark, as "abc" is. What happens:
+# null and an empty text are made into 0, and true into 1: the mean of a joint that stands at 100 rad is 90 rad for 10
+# readings. Expected of the standard deviation of ten angles with 0.03 mrad of noise: 0.03 mrad, whatever their mean.
+# What happens: it comes from the difference of two sums of squares, which is right at 1 rad, 0.21 mrad at 10 000 rad,
+# and NaN at 100 000 rad.
 # For us: leave null out before this node, and subtract a fixed angle before a deviation. A made-up runtime of Node-RED
 # drives it here.
 #
