@@ -187,7 +187,9 @@ def unknown_parameters(
         elif key in COMMON and group in branches:
             hint = f'; give `{key}` without `{group}.`, as it holds for all actuators'
         else:
-            hint = nearest(name, all_known)
+            first, _, rest = name.partition('.')
+            unlisted = rest in known and not nearest(first, branches)
+            hint = f'; `{first}` is not in `actuators`' if unlisted else nearest(name, all_known)
         faults.append(f'unknown parameter `{name}`{hint}')
     if faults:
         single = f', and for each actuator such as `{own[0]}`' if own else ''

@@ -95,6 +95,7 @@ FAULTS = [
         '`elbow.rotor_jiont`; did you mean `elbow.rotor_joint`?',
         'and for each actuator such as `shoulder.ring_teeth`',
     ),
+    ({'wrist.a.cam_phase': 0.5, 'wrist.rotor_zero': 1.0}, '_zero`; `wrist` is not in `actuators`'),
     ({'elbow.c.cam_phase': 0.5, 'shoulder.branches': ['c']}, '`c` is not in `elbow.branches`'),
     (
         {'elbow.executor': 'auto', 'elbow.home_file': 'x'},
