@@ -55,6 +55,8 @@ def _extended(path: Path, blocks: Mapping[str, Sequence[str]], head: Sequence[st
             f'{path}: it is not the file of one arm, which has a list of `actuators`'
         )
     [arm], [(mapping, listed)] = arms, found
+    if not arm['actuators'] and 'rotor_joint' in arm:
+        raise ConfigError(f'{path}: it is the file of a single gear: give another name with -o')
     arm['actuators'] = names = [*arm['actuators'], *blocks]
     if twice := [name for name in blocks if names.count(name) > 1]:
         remedy = 'delete it there, also from `actuators`, or give another name'

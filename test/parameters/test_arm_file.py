@@ -73,6 +73,11 @@ def test_a_new_file_begins_with_its_head(tmp_path):
             'it is not the file of one arm',
         ),
         (
+            '/**:\n  ros__parameters:\n    actuators: []\n    rotor_joint: m1\n',
+            ELBOW['elbow'],
+            'it is the file of a single gear: give another name with -o',
+        ),
+        (
             f'{LIST}\n/b: {{ros__parameters: {{actuators: [a]}}}}',
             ELBOW['elbow'],
             'it is not the file of one',
