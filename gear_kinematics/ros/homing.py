@@ -11,6 +11,7 @@ from std_srvs.srv import Trigger
 
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.arm import full_name, labelled
+from gear_kinematics.parameters.files import ConfigError
 from gear_kinematics.parameters.home_file import read_home, write_home
 from gear_kinematics.ros.actuator import Actuator, RefusedError
 from gear_kinematics.state.statuses import Condition
@@ -20,7 +21,11 @@ def restored(
     node: Node, path: Path, actuators: Mapping[str, NodeParameters]
 ) -> Mapping[str, float]:
     """Set the zeros of the home file, if any, and return them by actuator; raises ConfigError."""
-    if not (home := read_home(path, actuators, node.get_fully_qualified_name())):
+    try:
+        home = read_home(path, actuators, node.get_fully_qualified_name())
+    except ConfigError as error:
+        raise ConfigError(f'{error}; to start without it, delete it and home again') from error
+    if not home:
         return {}
     zeros, homed = home
     named = {full_name(name, 'rotor_zero'): zero for name, zero in zeros.items()}

@@ -196,5 +196,5 @@ def test_output_angle_is_the_same_after_the_node_was_killed(tmp_path, monkeypatc
     assert process.returncode == 2
     assert error == (
         f'gear_state_publisher: {tmp_path}/home.yaml: its schema is None, not '
-        "'gear_kinematics/home/1'\n"
+        "'gear_kinematics/home/1'; to start without it, delete it and home again\n"
     )
