@@ -143,7 +143,8 @@ class RotorInput:
             return self._take(stamp or self._clock(now), position, velocity, effort)
         except RejectedInputError as rejection:
             self.rejected[str(rejection)] += 1
-            self.missing_joint = self.missing_joint or rejection.detail
+            if not self.missing_joint and str(rejection) == Rejection.JOINT_MISSING:
+                self.missing_joint = rejection.detail
             if self.last:
                 self._leave_others()
             raise

@@ -62,7 +62,7 @@ class RejectedInputError(ValueError):
 
     @property
     def detail(self) -> str:
-        """The joints of the message, if the wanted one is missing; otherwise ''."""
+        """The joints of the message, if the wanted one is missing, or its sizes; otherwise ''."""
         return self._describe()
 
 
@@ -77,6 +77,17 @@ def describe_missing(joint: str, data: bytes) -> str:
         there = f'more than one joint in it; there are: {listed(names)}'
         return there if names else 'no joint in it'
     return f'no joint {joint!r} in it{among(joint, names)}'
+
+
+def describe_sizes(joint: bytes, data: bytes) -> str:
+    """Say how often a JointState names a joint, or which of its arrays has another length."""
+    layout = joint_state_layout(data)
+    names = joint_names(layout)
+    if names.count(joint) > 1:
+        return f'it names {joint.decode(errors="backslashreplace")!r} {names.count(joint)} times'
+    counts = zip(('position', 'velocity', 'effort'), layout.arrays, strict=True)
+    wrong = [f'{count} in {field}' for field, (_, count) in counts if count not in {0, len(names)}]
+    return f'{len(names)} in name, but {" and ".join(wrong)}'
 
 
 def joints_of(data: bytes) -> list[str]:
@@ -214,15 +225,15 @@ class _Joint:
     def __init__(self, layout: MessageLayout, joint: bytes) -> None:
         self._joint = joint
         index = joint_index(layout, joint)
-        fit = arrays_fit(layout, joint)
+        self._fits = arrays_fit(layout, joint)
         self.offsets = [
-            offset + 8 * index if fit and index is not None and count else None
+            offset + 8 * index if self._fits and index is not None and count else None
             for offset, count in layout.arrays
         ]
         """Those of its position, velocity and effort; None for one that is absent."""
         self.present = [offset for offset in self.offsets if offset is not None]
         self.missing = index is None
-        self._fault = Rejection.POSITION_MISSING if fit else Rejection.ARRAY_SIZES
+        self._fault = Rejection.POSITION_MISSING if self._fits else Rejection.ARRAY_SIZES
 
     def pick_from(self, offsets: Sequence[int]) -> Callable[[Sequence[Any]], tuple[Any, ...]]:
         """Make a function that takes the joint's numbers out of all, and None behind them."""
@@ -237,7 +248,10 @@ class _Joint:
         if stamp > LATEST:
             raise RejectedInputError(Rejection.STAMP_OUT_OF_RANGE)
         if position is None:
-            raise _missing(self._joint, data) if self.missing else RejectedInputError(self._fault)
+            if self.missing:
+                raise _missing(self._joint, data)
+            sizes = partial(describe_sizes, self._joint, data)
+            raise RejectedInputError(self._fault, str if self._fits else sizes)
         if not -LARGEST_ANGLE <= position <= LARGEST_ANGLE:  # NaN compares false
             if math.isfinite(position):
                 raise RejectedInputError(Rejection.POSITION_TOO_LARGE)

@@ -193,3 +193,19 @@ def test_missing_joint_is_told_with_those_that_there_are(joint, names, detail):
     assert (str(rejected.value), rejected.value.detail) == ('joint missing', detail)
     assert decode_joint_states([data], joint).missing_joint == detail
     assert next(iter(JointsReader([joint, 'm9']).read(data))).detail == detail
+
+
+@pytest.mark.parametrize(
+    ('names', 'position', 'effort', 'detail'),
+    [
+        (['m1', 'm2'], [1.0, 2.0], [0.5], '2 in name, but 1 in effort'),
+        (['m1', 'm2'], [1.0], [0.5], '2 in name, but 1 in position and 1 in effort'),
+        (['m1', 'm1'], [1.0, 2.0], [], "it names 'm1' 2 times"),
+        (['m1'], [], [0.5], ''),
+    ],
+)
+def test_sizes_that_do_not_fit_are_told(names, position, effort, detail):
+    data = rotor_bytes(SECOND, names, position, [], effort)
+    with pytest.raises(RejectedInputError) as rejected:
+        JointReader('m1').read(data)
+    assert rejected.value.detail == detail
