@@ -37,8 +37,8 @@ from gear_kinematics.wire.topics import JOINT_STATES, LOAD_TOPICS, TRANSMISSION_
 
 _FRAME = 'stator'
 _TOPICS = Topics()
-_DOUBTS = {FindingCause.REPEATED_STAMPS, FindingCause.JUMPED}
-"""Causes in the input that explain wrong or missing outputs, if there are any."""
+_DOUBTS = {FindingCause.REPEATED_STAMPS, FindingCause.JUMPED}  # of wrong or missing outputs
+_OF_COUNTS = {FindingCause.BEYOND_LIMITS}  # of missing or additional ones alone
 _NONE: Mapping[str, str] = MappingProxyType({})
 
 
@@ -161,8 +161,9 @@ class Validator:
         findings = *self._found(), *checked
         passed = not any(finding.fails for finding in findings) and all(t.passed for t in topics)
         if not passed:
-            doubts = [replace(each, explains=True) for each in findings if each.cause in _DOUBTS]
-            findings = *doubts, *(each for each in findings if each.cause not in _DOUBTS)
+            known = _DOUBTS if any(t.wrong or t.faults for t in topics) else _DOUBTS | _OF_COUNTS
+            doubts = [replace(each, explains=True) for each in findings if each.cause in known]
+            findings = *doubts, *(each for each in findings if each.cause not in known)
         start = rotor.first_stamp or 0
         series = (output.series.series(output.name, start) for output in self.outputs)
         return BagReport(

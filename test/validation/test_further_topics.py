@@ -24,6 +24,8 @@ from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation import output_topics
 from gear_kinematics.validation.causes import FindingCause
+from gear_kinematics.validation.findings import explain
+from gear_kinematics.wire.cdr import SECOND
 
 STATE, INTERVAL, STATES = '/corrected_state', '/corrected_interval', '/mechanism_joint_states'
 BRANCHES, WRENCHES = '/branch_loads', '/joint_loads'
@@ -233,17 +235,29 @@ def test_calibration_that_was_set_later_leaves_the_rest_judged():
         assert [found.missing for found in report.topics] == missing
 
 
-def swings(jump: float = 0.0) -> list[Message]:
+def swings(jump: float = 0.0, amplitude: float = 5.0) -> list[Message]:
     """Simulate a rotor that swings, and whose encoder jumps after 2.5 s, rad."""
     messages = []
     for k in range(4000):
         phase = math.tau * k / 1000
-        angle, velocity = 5.0 * math.sin(phase), 5.0 * math.tau * math.cos(phase)
+        angle, velocity = amplitude * math.sin(phase), amplitude * math.tau * math.cos(phase)
         angle += jump * (k >= 2500)
         stamp = 10**18 + k * 10**6
         data = rotor_bytes(stamp, position=[angle], velocity=[velocity], effort=[0.1])
         messages.append((ROTOR, stamp, data))
     return CORRECTED.recorded(messages, besides=(OUTPUT, '/body_poses'))
+
+
+def test_outputs_of_a_rotor_beyond_its_limits_are_explained_by_these_after_a_hole():
+    """The node believes them from what it had in the hole of the recording."""
+    bag = [m for m in swings(amplitude=200.0) if not 1.9 < (m[1] - 10**18) / SECOND < 2.1]
+    report = CORRECTED.validate(bag)
+    first, second, *_ = explain(report).splitlines()
+    assert first.endswith(' rad/s exceed max_rotor_speed')
+    assert '2 messages too many' in second
+    for place, said in ((-24, 'exceeds the tolerance'), (-16, 'malformed')):
+        wrong = explain(CORRECTED.validate(changed(bag, OUTPUT, place, off(1e-3), 1500)))
+        assert said in wrong.splitlines()[0]
 
 
 def test_lost_inputs_leave_the_history_unknown_and_not_wrong():
