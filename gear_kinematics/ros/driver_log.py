@@ -38,7 +38,8 @@ class DriverLog:
         self._missing = 0  # updates since there was a publisher
         self._said = self._faults()
         self._silent = False  # whether it was logged that the driver is missing or silent
-        self._before: dict[str, RotorSample] = {}  # the silence of actuators, which was logged
+        self._before: dict[str, RotorSample | None] = {}
+        """The last samples, if any, of actuators whose silence was logged."""
 
     @property
     def awaited(self) -> bool:
@@ -58,8 +59,7 @@ class DriverLog:
                 stopped = 'no more messages of', '; other joints are still heard'
                 how = stopped if joint in there else ('no joint', among(joint, there))
                 lacking[how][name] = repr(joint)
-                if each.last:
-                    self._before[name] = each.last
+                self._before[name] = each.last
         for (what, hint), joints in lacking.items():
             text = f'{what} {", ".join(joints.values())} on {self._topic}{hint}'
             self._log.warning(labelled(', '.join(joints), text))
@@ -86,7 +86,8 @@ class DriverLog:
         timeouts = (each.parameters.input_timeout for each in self._inputs.values())
         if last and silence > max(timeouts):
             self._log.warning(f'{self._topic} has stopped: no input for {silence:.1f} s')
-            self._silent, self._before = True, last
+            self._silent = True
+            self._before |= last
         elif not last and self._missing > _SEARCH and (others := Graph(self._node).drivers()):
             self._log.warning(
                 f'{self._topic} has no publisher; there are: {listed(others)}; choose one with '
@@ -102,7 +103,8 @@ class DriverLog:
         returned = [name for name in samples if name in self._before]
         elsewhere = []
         for name, sample in samples.items():
-            moved = sample.position.since(self._before.pop(name, sample).position)
+            before = self._before.pop(name, None) or sample
+            moved = sample.position.since(before.position)
             if abs(moved) > _ELSEWHERE:
                 turned = f'the rotor is {math.degrees(moved):.0f}° from where it was'
                 elsewhere.append(labelled(name, turned))

@@ -157,6 +157,25 @@ def test_joint_of_an_arm_that_stops_and_its_return_are_a_line_each(position, sai
     assert graph.logged == [('W', stopped), said]
 
 
+def test_joint_of_an_arm_that_begins_late_is_heard():
+    graph = Graph()
+    inputs = {name: RotorInput(NodeParameters.load()) for name in ('shoulder', 'elbow')}
+    graph.driver_log = DriverLog(graph, inputs, lambda: ['m1'])
+    for _ in range(3):
+        for each in inputs.values():
+            each.received, each.of_others = (
+                each.received + 1,
+                each.of_others + (each is inputs['elbow']),
+            )
+        graph.driver_log.update(2, 0.0)
+    sample = inputs['elbow'].accept(rotor_bytes(SECOND, position=[5.0]), lambda: SECOND)
+    for _ in range(2):
+        graph.driver_log.heard({'elbow': sample})
+    said = "elbow: no joint 'rotor' on /rotor_state; there are: m1"
+    assert graph.logged == [('W', said), ('I', 'elbow: /rotor_state is heard now')]
+    assert not graph.driver_log.awaited
+
+
 @pytest.mark.live
 def test_node_logs_silence_of_its_joint_on_a_shared_topic(make, capfd):
     node = make('/shared')
