@@ -1,7 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The contents of a recording: its topics, with their rates, gaps and roles."""
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import NamedTuple
@@ -81,7 +81,7 @@ def summarise(
         if rotor_topic:
             raise
         unclear = str(error).removeprefix(f'{bag.path}: ')
-    others = Counter[str]()
+    others, further = Counter[str](), defaultdict[str, dict[str, None]](dict)
     followed = {}
     if rotor and joints and joints[0]:
         recorded = joints_on(bag, [rotor])[rotor]
@@ -100,6 +100,7 @@ def summarise(
                         readers[topic] = JointReader(followed[topic])
                     if followed[topic] and not _has_joint(readers[topic], data):
                         others[topic] += 1
+                        further[topic].update(dict.fromkeys(joints_of(data)))
                         continue
                 stamp = header_stamp(data) if topic in stamped else 0
                 times[topic].append((received if stamp in _UNSET else stamp, received))
@@ -112,7 +113,7 @@ def summarise(
             name,
             kind,
             'rotor' if name == rotor else _PARTS.get(base_name(name), ''),
-            there.get(name, []),
+            [*(dict.fromkeys(there.get(name, [])) | further[name])],
             times[name],
             followed.get(name, ''),
             others[name],

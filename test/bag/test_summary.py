@@ -148,3 +148,13 @@ def test_drivers_with_a_message_each_leave_no_gaps_on_any_topic(tmp_path):
         assert (topic.joints, topic.messages, topic.of_others) == (joints, 300, 200)
         assert topic.followed == ('wrist' if topic.part == 'rotor' else 'elbow')
         assert (topic.rate, topic.gaps) == (pytest.approx(100.0), 0)
+
+
+def test_joints_of_a_driver_that_began_late_are_named(tmp_path):
+    messages = [
+        ('/motors', k, rotor_bytes(k + 1, ['m1' if k < 2000 else 'm2'], [0.0]))
+        for k in range(2010)
+    ]
+    with Bag(write_bag(tmp_path / 'bag', messages, {'/motors': JOINT_STATE})) as bag:
+        (topic,) = summarise(bag).topics
+    assert (topic.joints, topic.of_others) == (('m1', 'm2'), 10)
