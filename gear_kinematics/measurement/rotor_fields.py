@@ -73,7 +73,9 @@ def questions(
     velocities = VelocityField(float(1 / ratio) if ratio else np.nan)
     noise = max(2.0 * float(np.min(sizes[sizes > _EQUAL], initial=1.0)), FLOOR)
     velocities.believed(stamp, values, noise)
-    absent = len(given) and not given.any() and np.ptp(values[:, 0]) > _MOVED
+    # One step alone can be another zero, after which the rotor stands as before.
+    moved = np.ptp(values[:, 0]) - np.max(sizes) > _MOVED
+    absent = len(given) and not given.any() and moved
     if absent:
         yield Condition.VELOCITIES_ARE(meaning=VelocityMeaning.ZERO)
     elif meaning := velocities.in_recording:

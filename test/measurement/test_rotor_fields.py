@@ -162,3 +162,16 @@ def test_noise_of_positions_at_a_steady_speed_is_no_delay_of_the_velocities():
         each = zip(received, position.tolist(), speed.tolist(), strict=True)
         data = [rotor_bytes(t, position=[p], velocity=[v]) for t, p, v in each]
         assert not [*questions(data, received, 'rotor')]
+
+
+@pytest.mark.parametrize(('size', 'asked'), [(50.0, 0), (0.01, 1)])
+def test_velocities_of_0_fit_a_rotor_that_stands_before_and_after_a_step(size, asked):
+    """As of a driver that begins anew with another zero, unlike one that turns on."""
+    steps = np.where(np.arange(800) == 400, 50.0, 0.0) + (size < 1.0) * size * np.arange(800)
+    times, positions = np.arange(800) * 0.01 + 6.0 * (np.arange(800) >= 400), np.cumsum(steps)
+    data = [
+        rotor_bytes(t, position=[p], velocity=[0.0])
+        for t, p in zip(stamps(times), positions, strict=True)
+    ]
+    found = [str(each) for each in questions(data, stamps(times), 'rotor')]
+    assert found.count(CONTRADICTS + '0') == asked
