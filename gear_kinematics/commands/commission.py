@@ -57,7 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> ExitCode:
     path = Path(options.output)
     if not options.check:
-        check_new(path, options.actuator, options.joint or '')
+        check_new(path, options.actuator, options.joint or '', options.encoder_joint or '')
     if options.live == bool(options.recordings):
         raise ValueError('name recordings, or give --live to listen to the drivers instead')
     written = {} if options.check or path.exists() else {'-o': options.output}

@@ -29,12 +29,14 @@ def add_actuators(path: Path, blocks: Mapping[str, Sequence[str]], head: Sequenc
     write_config(path, _extended(path, blocks, head), new=new)
 
 
-def check_new(path: Path, actuator: str, joint: str = '') -> None:
+def check_new(path: Path, actuator: str, joint: str = '', encoder_joint: str = '') -> None:
     """Raise ConfigError if a file is there already, or cannot take an actuator of this name.
 
-    The joint is that of the actuator's rotor, which no other one may have; '': not known yet.
+    The joints are those of the actuator's rotor and of the encoder at its output, which no other
+    one may have; '': not known yet.
     """
-    block = [_ANY_GEAR, *([f'rotor_joint: {json.dumps(joint)}'] if joint else [])]
+    joints = {'rotor_joint': joint, 'output_encoder_joint': encoder_joint}
+    block = [_ANY_GEAR, *(f'{key}: {json.dumps(name)}' for key, name in joints.items() if name)]
     there = os.path.lexists(path)  # perhaps a link to nothing
     if actuator and there == path.exists():
         _extended(path, {actuator: block}, ())

@@ -91,6 +91,8 @@ def test_actuator_is_added_to_the_file_of_an_arm(bag, tmp_path, capsys, monkeypa
     assert 'elbow is in it already' in refusal(*one, '-o', 'arm.yaml')
     unread = 'commission', 'none', '--actuator', 'hand', '--joint', 'shoulder', '-o', 'arm.yaml'
     assert "rotor_joint 'shoulder' belongs to shoulder and hand" in refusal(*unread)
+    encoder = *unread[:4], '--encoder-joint', 'lift', '-o', 'arm.yaml'
+    assert "output_encoder_joint 'lift' belongs to shoulder and hand" in refusal(*encoder)
     assert main([*one, '-o', 'new.yaml']) == 0
     alone = NodeParameters.load(Path('new.yaml'))
     assert alone == replace(
