@@ -112,7 +112,7 @@ def find_columns(
         raise ColumnsError(
             f'neither an angle and a torque nor a rotor and an output (known units: {known})'
         )
-    if own := [clocks[name] for name in found.values() if name in clocks]:
+    if own := [clocks[found[role]] for role in found if role != 'time' and found[role] in clocks]:
         found['time'] = own[0]
     if repeated := [name for name in found.values() if list(header).count(name) > 1]:
         raise ValueError(f'more than one column {repeated[0]!r}')

@@ -276,6 +276,9 @@ def _names(
         for k in range(1, len(groups)):
             groups[k] = groups[k] or groups[k - 1]
         names = [f'{group} {name}'.strip() for group, name in zip(groups, names, strict=True)]
+    for k in range(len(names) - 1, 0, -1):  # a comma, of the same kind, before a unit
+        if len(names) > width and known_units([names[k]]):
+            names[k - 1 : k + 1] = [f'{names[k - 1]} [{names[k]}]']
     if len(names) < numbers or (separator == ' ' and len(names) > width):
         raise ValueError(f'rows of {width} cells are below {len(names)} names: {", ".join(names)}')
     names = [*names[:width], *[''] * (width - len(names))]

@@ -21,6 +21,7 @@ from gear_kinematics.bag import Bag, BagError
 from gear_kinematics.bag.finding import BAG_NAME, COMPRESSED, TABLES, table_format
 from gear_kinematics.measurement.cells import numbers
 from gear_kinematics.measurement.dialects import TableFile, loaded, open_text
+from gear_kinematics.measurement.names import meaning
 
 _OBJECT = 0xDD000000  # begins the reference to an object, such as a table, in a file of MATLAB
 
@@ -126,9 +127,10 @@ def _tdms(path: Path) -> TableFile:
 
     found, begin = [], None
     for group in TdmsFile.read(path).groups():
+        timed = any(meaning(channel.name).role == 'time' for channel in group.channels())
         for channel in group.channels():
             known, times = channel.properties, None
-            if step := known.get('wf_increment'):
+            if (step := known.get('wf_increment')) and not timed:
                 times = known.get('wf_start_offset', 0.0) + step * np.arange(len(channel))
                 if start := known.get('wf_start_time'):
                     begin = begin or start

@@ -19,9 +19,9 @@ _VOCABULARY = {
     'torque': 'torque torques effort efforts trq tq tau τ drehmoment moment couple coppia '
     '扭矩 力矩 转矩 トルク',
     'current': 'current',
-    'time': 'time t stamp timestamp timestamps today datetime elapsed zeit uhrzeit temps tempo '
-    'tiempo tout xtime ts zeitstempel horodatage 时间 时间戳 '
-    '時間 x',
+    'time': 'time t stamp timestamp timestamps today datetime elapsed zeit uhrzeit messzeit '
+    'prüfzeit temps tempo tiempo tout xtime ts zeitstempel horodatage 时间 时间戳 時間 '
+    'x',
     'filling': 'header receive log measured actual act filtered raw field data value values '
     'feedback state states axis angular rotary present sensor abs side in ist host pi ros system '
     'unix epoch fb fbk ave estimate scalars signals date datum utc wall application main plc prg '
@@ -41,7 +41,7 @@ _CERTAIN = {'time', 'stamp', 'timestamp', 'timestamps', 'zeit', 'zeitstempel'}
 _SPEEDS = {'rpm', 'rps', 'dps', 'cps'}
 _IN_BRACKETS = {'rotation': 'rev', 'min': 'minutes', 'h': 'hours'}
 """Units that mean something else as words of a name, as in position_min."""
-_NO_UNIT = {'-', 'none', 'n/a', '1', ':'}
+_NO_UNIT = re.compile(r'-|none|n/a|1|:|utc.*|.*h:m+.*')
 
 _DEG, _KGF, _LBF = UNITS['deg'], 9.80665, 4.4482216152605  # rad, N, N
 _SIZES: Mapping[str, Mapping[str, Any]] = {
@@ -201,7 +201,7 @@ def usual_unit(text: str) -> str:
     outer, _, inner = plain.partition('(')  # as in "° (Degree)" and "(deg)"
     plain = (outer or inner).strip('()[].')
     plain = _IN_BRACKETS.get(plain, plain)
-    return '' if plain in _NO_UNIT else _UNITS.get(plain, plain)
+    return '' if _NO_UNIT.fullmatch(plain) else _UNITS.get(plain, plain)
 
 
 def known_units(cells: Sequence[str], others: Collection[str] = ()) -> list[str]:

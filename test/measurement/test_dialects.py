@@ -184,6 +184,8 @@ ENCODERS = {
         [t, r, t, o, t, t], ',rotor,time,output,note,note', '{:.5f}'),
     'trailing separators in rows alone': lambda t, r, o: written(
         [t, r, o], NAMES, ('{:.2f}', '{:.5f}', '{:.5f},')),
+    'a comma before units': plain('Time, ms, Rotor, deg, Output, deg', angle=DEG, unit=1e3),
+    'a form of times as unit': plain('Time (HH:MM:SS.fff),rotor,output', time=clock('%X.%f')),
     'CamelCase': plain('TimeMs,MotorAngleDeg,OutputAngleDeg', angle=DEG, unit=1e3),
     'time in µs': plain(unit=1e6),
     'ms of the day': lambda t, r, o: written(
@@ -803,6 +805,16 @@ def tdms(path, time, rotor, output):
     return Sources()
 
 
+def tdms_with_wrong_increments(path, time, rotor, output):
+    nptdms = pytest.importorskip('nptdms')
+    columns = {'Time': time, 'Rotor [rad]': rotor, 'Output [rad]': output}
+    with nptdms.TdmsWriter(path) as writer:
+        for one in columns.items():
+            channel = nptdms.ChannelObject('Log', *one, properties={'wf_increment': 1.0})
+            writer.write_segment([channel])
+    return Sources()
+
+
 def tdms_with_dates(path, time, rotor, output):
     nptdms = pytest.importorskip('nptdms')
     dates = np.datetime64('2026-11-26') + np.round(1e6 * time).astype('timedelta64[us]')
@@ -823,13 +835,15 @@ def mf4(path, time, rotor, output):
             angles, time + late, name=name, unit='deg', invalidation_bits=invalid
         )
         file.append([signal])
+    file.append([asammdf.Signal(9.0 * time, time, name='Time', unit='s')])
     file.save(path)
     return Sources()
 
 
 FORMATS = {'parquet': parquet, 'mat': mat, '7.3.mat': hdf5, 'tdms': tdms, 'mf4': mf4}
 FORMATS |= {'index.parquet': parquet_of_times, 'scope.mat': scope, 'ascii.mat': ascii_mat}
-FORMATS |= {'dates.tdms': tdms_with_dates, 'timeseries.mat': timeseries}
+FORMATS |= {'dates.tdms': tdms_with_dates, 'times.tdms': tdms_with_wrong_increments}
+FORMATS |= {'timeseries.mat': timeseries}
 FORMATS |= {'unnamed.mat': scope_without_labels, 'dspace.mat': control_desk}
 FORMATS |= {'xlsx': workbook, **dict.fromkeys(('csv.gz', 'tsv.zst', 'TXT.zip', 'log'), text)}
 
