@@ -21,6 +21,8 @@ _STORAGE_NAME = re.compile(
 METADATA = 'metadata.yaml'
 _TEXTS = '.csv', '.tsv', '.txt', '.dat', '.asc', '.lvm', '.log'
 _COMMON = {'.txt', '.dat', '.log'}  # which often are no recordings
+POINTER = b'version https://'  # begins a pointer of Git LFS in place of a file
+NO_CONTENT = 'only a pointer of Git LFS: fetch the file with git lfs pull'
 COMPRESSED = '.gz', '.zst', '.zip', '.bz2', '.xz'  # of compressed texts, behind those of `TABLES`
 TABLES = {
     **dict.fromkeys(_TEXTS, 'text'),
@@ -170,7 +172,7 @@ def _listed_contents(path: Path, metadata: Any) -> Contents:
     if not isinstance(metadata, dict):
         raise ValueError('no metadata in it')  # noqa: TRY004, about data on disk
     information = metadata['rosbag2_bagfile_information']
-    if information.get('compression_mode', '').lower() == 'message' and (
+    if (information.get('compression_mode') or '').lower() == 'message' and (
         information['compression_format'] not in CODECS
     ):
         raise ValueError(f'unsupported compression {information["compression_format"]!r}')

@@ -13,7 +13,7 @@ from typing import IO, Any, Self
 
 from gear_kinematics.bag.codecs import ReadLimits, codec_of, decompress_file, decompressed
 from gear_kinematics.bag.errors import BagError, DamagedBagError, bag_errors, cause
-from gear_kinematics.bag.finding import METADATA, find_contents, table_format
+from gear_kinematics.bag.finding import METADATA, NO_CONTENT, POINTER, find_contents, table_format
 from gear_kinematics.bag.mcap import MCAP_MAGIC, Mcap
 from gear_kinematics.bag.sqlite import Sqlite
 from gear_kinematics.bag.storage import (
@@ -239,6 +239,7 @@ def _opened(file: Path, limits: ReadLimits, read: int = 0) -> Iterator[Storage]:
             kind = next((kind for magic, kind in _KINDS.items() if start.startswith(magic)), None)
             if not kind:
                 known = f'not a bag of a known kind{_TABLES if table_format(file) else ""}'
+                known = NO_CONTENT if start == POINTER else known
                 raise ValueError(known if start else 'the file is empty')
             storage = stack.enter_context(closing(kind(content, limits)))
             yield storage

@@ -18,7 +18,14 @@ from typing import Any
 import numpy as np
 
 from gear_kinematics.bag import Bag, BagError
-from gear_kinematics.bag.finding import BAG_NAME, COMPRESSED, TABLES, table_format
+from gear_kinematics.bag.finding import (
+    BAG_NAME,
+    COMPRESSED,
+    NO_CONTENT,
+    POINTER,
+    TABLES,
+    table_format,
+)
 from gear_kinematics.measurement.cells import numbers
 from gear_kinematics.measurement.dialects import TableFile, loaded, open_text
 from gear_kinematics.measurement.names import meaning
@@ -157,7 +164,7 @@ def _workbook(path: Path) -> TableFile:
     """Read the first sheet, in which names and units are found as in a text."""
     import pandas as pd  # noqa: PLC0415, of an extra
 
-    sheet = pd.read_excel(path, header=None)
+    sheet = pd.read_excel(path, header=None, engine='openpyxl')  # not that of an old .xls
     try:
         return open_text(path, sheet.to_csv(header=False, index=False).encode())
     except ValueError as error:
@@ -204,6 +211,9 @@ def open_table(path: Path) -> TableFile:
     """Open a table; OSError or ValueError if it cannot be read."""
     if path.exists() and not path.is_file():
         raise ValueError('not a regular file')
+    with path.open('rb') as file:
+        if file.read(len(POINTER)) == POINTER:
+            raise ValueError(NO_CONTENT)
     try:
         return _READERS[table_format(path)](path)
     except (ImportError, OSError, ValueError):

@@ -286,6 +286,10 @@ UNREADABLE = {
     'empty folder': ('neither metadata.yaml nor', lambda path, _: path.mkdir() or path),
     'two recordings': ('several recordings', two_recordings),
     'text': (NOT_A_BAG, partial(content, data=b'hello ' * 100)),
+    'a pointer of Git LFS': (
+        'only a pointer of Git LFS',
+        partial(content, data=b'version https://git-lfs.github.com/spec/v1\n'),
+    ),
     'an old ROS 1 bag': (NOT_A_BAG, partial(content, data=b'#ROSBAG V1.2\n' + bytes(100))),
     'a ROS 1 bag without its index': ('not indexed', without_index),
     'another database': (

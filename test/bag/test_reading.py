@@ -44,6 +44,7 @@ NO_INDEX |= {'use_statistics': False, 'use_summary_offsets': False}
 KINDS = {
     'mcap of chunks': partial(folder, storage='mcap', mode='storage'),
     'names as before version 4': renamed_folder,
+    'metadata with nulls': partial(folder, compression_mode=None, files=None),
     'odd name': partial(single_file, storage='sqlite3', name='a?b#c %20.db3'),
     'mcap of lz4 chunks': partial(mcap_file, compression=CompressionType.LZ4),
     'mcap of zstd chunks': mcap_file,

@@ -344,6 +344,7 @@ ENCODERS = {
     'Siemens': lambda t, r, o: written([t, t * 1e3, r * DEG, o * DEG],
         'Time stamp\tRelative time\tMotor position\tLoad position\n\tms\t°\t°',
         clock('%d.%m.%Y %H:%M:%S.%f'), '\t'),
+    'channels': plain('Time [s],CH1: Motor angle [deg],CH2: Output angle [deg]', angle=DEG),
     'shafts': plain('time,motor_shaft_pos,output_shaft_pos'),
     'rotations': lambda t, r, o: written(
         [t, r * REV, o * REV], 'Timestamp,/Motor/PositionRotations,/Output/PositionRotations',
@@ -859,6 +860,16 @@ def test_other_formats(tmp_path, gear, reference, name):
     path.write_bytes(b'nothing at all')
     with pytest.raises(RecordingError, match=f'{re.escape(name)}: '):
         read(path, gear, given)
+    path.write_bytes(b'version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n')
+    with pytest.raises(RecordingError, match='only a pointer of Git LFS'):
+        read(path, gear, given)
+
+
+def test_an_old_workbook_under_a_new_name_needs_no_other_library(tmp_path, gear):
+    pytest.importorskip('openpyxl')
+    (tmp_path / 'r.xlsx').write_bytes(bytes.fromhex('d0cf11e0a1b11ae1') + bytes(600))
+    with pytest.raises(RecordingError, match=r'cannot be read as \.xlsx: File is not a zip'):
+        read(tmp_path / 'r.xlsx', gear)
 
 
 def test_units_of_daqmx_are_read(tmp_path, gear, reference):
