@@ -31,8 +31,8 @@ _LISTED = 600  # characters of the list of columns
 _WANTED = 'target|action|goal|desire|cmd|command|setpoint'
 """Words in names of columns of what was commanded, not measured."""
 _NO_ANGLE = re.compile(
-    r'(?i)torq|effort|force|curr|vel(?!_mapper)|speed|rpm|/ ?s|temp|time|stamp|control|elec|tau|'
-    rf'index|valid|cell|acc(?!um)|dot|err|volt|power|^t$|^[ftm][xyz]|^i_?[qd](?![a-z])|{_WANTED}'
+    r'(?i)torq|effort|force|curr|vel(?!_mapper)|speed|rpm|/ ?s(ec)?\b|temp|time|stamp|control|'
+    rf'elec|tau|index|valid|cell|acc(?!um)|dot|err|volt|power|^t$|^[ftm][xyz]|^i_?[qd](?![a-z])|{_WANTED}'
 )
 """Words in names of columns that are not proposed as angles."""
 _LIKELY = re.compile(
@@ -124,7 +124,8 @@ def _examples(table: TableFile) -> Iterator[Mapping[str, str]]:
     angles = [
         name
         for name in filterfalse(_NO_ANGLE.search, names)
-        if units[name] in known or (units[name] not in others and _LIKELY.search(name))
+        if meaning(name).role != 'time'
+        and (units[name] in known or (units[name] not in others and _LIKELY.search(name)))
     ]
     torques = [name for name in names if _TORQUE.search(name) or units[name] in TORQUE_UNITS]
     likely = [*filter(_LIKELY.search, angles)]

@@ -39,6 +39,7 @@ _SEPARATORS = ';', '\t', ',', '|', ' '
 _COMMENT = ('#', '//', '%', 'sep=', 'SEP=')
 _WRAPPED = re.compile(r'(?<![^,;\t\n])"[^"\n]*(\n[^"\n]*){1,3}"(?=[,;\t\n])')
 """Cells with line breaks, as of names in workbooks."""
+_PADDED = re.compile(r'(?<=[,;|\t]) +(?=")')  # which would hide quotation marks
 _TYPES = re.compile(r'(?i)[iuf]\d+|(float|double|u?int)\d*|(type|interp|blockpath|portindex): *.+')
 """Cells of rows that give types, as INCA and Simulink write them."""
 # Beginnings of CAN bus logs of candump, PCAN-View and CANoe.
@@ -125,7 +126,7 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
         key = frame['time'].where(frame['key'].str.endswith('.Variable', na=False)).ffill()
         rows = frame.assign(key=key)[frame['key'].isna()]
         return loaded(*series_of(rows, '.', 'key', 'value', {}))
-    layout = _layout([line.replace('\v', ' ') for line in lines])
+    layout = _layout([_PADDED.sub('', line.replace('\v', ' ')) for line in lines])
     start = layout.start + ''.join(lines[: layout.start]).count('\v')
 
     def read(places: Sequence[int], every: int, kind: Any = None) -> Any:

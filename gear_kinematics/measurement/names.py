@@ -101,7 +101,8 @@ _PLAINER = {
     r'\{name==': '{',  # of a joint, in paths of Foxglove
     r'\\\w+:\d+$': '',  # device and raster, of INCA
     r'(?i)^(time|zeit) +\d+ - [^[]*': r'\1',  # of catman
-    r'(?i)(?<![a-z])(time|zeit|elapsed|t)[ _](min|h)$': r'\1 [\2]',
+    r'(?i)joint[ _]?(states?)': r'\1',  # in names of topics
+    r'(?i)(?<![a-z])(time|zeit|elapsed|t)[ _,]+(min|h)$': r'\1 [\2]',
     r'(?i)(winkel.*[^a-z])grad(?![a-z])': r'\1deg',  # gradians elsewhere
     r'(?i)[ _]?(deg|rad|rev)[ _]?x10$': r'_d\1',
     r'(?i)[ _]?(deg|rad|rev)[ _]?x100$': r'_c\1',
@@ -237,7 +238,5 @@ def _words(name: str) -> tuple[tuple[str, ...], str]:
             unit = _UNITS[words.pop()]
         elif _UNITS.get(words[0]) in TIME_UNITS:
             unit = _UNITS[words.pop(0)]
-    if 'joint' in words and {'state', 'states'} & {*words}:
-        words.remove('joint')  # part of the name of a topic
     # Drivers name motors m1, m2.
     return tuple('motor' if word == 'm' else word for word in words), unit

@@ -184,8 +184,12 @@ ENCODERS = {
         [t, r, t, o, t, t], ',rotor,time,output,note,note', '{:.5f}'),
     'trailing separators in rows alone': lambda t, r, o: written(
         [t, r, o], NAMES, ('{:.2f}', '{:.5f}', '{:.5f},')),
+    'commas in names behind spaces': lambda t, r, o: written(
+        [t / 60.0, r * DEG, o * DEG], '"Time, min", "Rotor, deg", "Output, deg"',
+        3 * ['{:.7f}'], ', '),
     'a comma before units': plain('Time, ms, Rotor, deg, Output, deg', angle=DEG, unit=1e3),
     'a form of times as unit': plain('Time (HH:MM:SS.fff),rotor,output', time=clock('%X.%f')),
+    'a joint with a state': plain('/joint_states/t,/motor/state/position,/joint/state/position'),
     'CamelCase': plain('TimeMs,MotorAngleDeg,OutputAngleDeg', angle=DEG, unit=1e3),
     'time in µs': plain(unit=1e6),
     'ms of the day': lambda t, r, o: written(
@@ -599,6 +603,8 @@ UNTOLD = {
     'angles of unknown sides': plain('t,pos_a,pos_b', angle=DEG),
     'no names': plain(''),
     'a title, but no names': plain('Bench 3, of 2026', mark=';'),
+    'paths with an s behind a slash': lambda t, r, o: written([t, r * DEG, o * DEG],
+        'Zeit,/spine/enc_degrees,/shoulder/pos_degrees', '{:.5f}'),
     'an acceleration beside': lambda t, r, o: written(
         [t, r, o, 30.0 * r, r], 't,theta_m,theta_l,theta_m_ddot,theta_command', '{:.5f}'),
     'revolutions': lambda t, r, o: written([t, r * REV % 1.0, o * REV % 1.0], NAMES),
