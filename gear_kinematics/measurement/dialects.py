@@ -228,9 +228,9 @@ def _layout(lines: Sequence[str]) -> _Layout:
 
 
 def _score(lines: Sequence[str], separator: str, point: str) -> float:
-    """Count the numbers in lines that are divided so, less the other cells."""
+    """Count the numbers in lines that are divided so, less the other cells and what is in them."""
     cells = (cell for line in lines for cell in cells_of(line, separator) if cell)
-    return sum(weight(cell, point) or -1.0 for cell in cells)
+    return sum(weight(cell, point) or -len(re.split('[;\t]', cell)) for cell in cells)
 
 
 def _names(

@@ -102,7 +102,7 @@ _PLAINER = {
     r'\\\w+:\d+$': '',  # device and raster, of INCA
     r'(?i)^(time|zeit) +\d+ - [^[]*': r'\1',  # of catman
     r'(?i)joint[ _]?(states?)': r'\1',  # in names of topics
-    r'(?i)(?<![a-z])(time|zeit|elapsed|t)[ _,]+(min|h)$': r'\1 [\2]',
+    r'(?i)(?<![a-z])(time(?:stamp)?|zeit|elapsed|t)[ _,]+(min|h)$': r'\1 [\2]',
     r'(?i)(winkel.*[^a-z])grad(?![a-z])': r'\1deg',  # gradians elsewhere
     r'(?i)[ _]?(deg|rad|rev)[ _]?x10$': r'_d\1',
     r'(?i)[ _]?(deg|rad|rev)[ _]?x100$': r'_c\1',

@@ -184,8 +184,10 @@ ENCODERS = {
         [t, r, t, o, t, t], ',rotor,time,output,note,note', '{:.5f}'),
     'trailing separators in rows alone': lambda t, r, o: written(
         [t, r, o], NAMES, ('{:.2f}', '{:.5f}', '{:.5f},')),
+    'a word between German numbers, without times': lambda t, r, o: in_german(written(
+        [r, t, o], 'Motor [rad];Modus;Abtrieb [rad]', ('{:.7f}', lambda _: 'an', '{:.7f}'), ';')),
     'commas in names behind spaces': lambda t, r, o: written(
-        [t / 60.0, r * DEG, o * DEG], '"Time, min", "Rotor, deg", "Output, deg"',
+        [t / 60.0, r * DEG, o * DEG], '"Timestamp, min", "Rotor, deg", "Output, deg"',
         3 * ['{:.7f}'], ', '),
     'a comma before units': plain('Time, ms, Rotor, deg, Output, deg', angle=DEG, unit=1e3),
     'a form of times as unit': plain('Time (HH:MM:SS.fff),rotor,output', time=clock('%X.%f')),
