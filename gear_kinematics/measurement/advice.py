@@ -118,14 +118,17 @@ def _completed(
 
 def _examples(table: TableFile) -> Iterator[Mapping[str, str]]:
     """Yield columns that may be both encoders or angle and torque, the likeliest first."""
-    names = [name for name in table.names if name and list(table.names).count(name) == 1]
+    names = [
+        name
+        for name in filter(None, table.names)
+        if list(table.names).count(name) == 1 and meaning(name).role != 'time'
+    ]
     units = {name: usual_unit(table.units.get(name, '')) or meaning(name).unit for name in names}
     known, others = {'', *ANGLE_UNITS}, {*FOREIGN, *TORQUE_UNITS, *TIME_UNITS}
     angles = [
         name
         for name in filterfalse(_NO_ANGLE.search, names)
-        if meaning(name).role != 'time'
-        and (units[name] in known or (units[name] not in others and _LIKELY.search(name)))
+        if units[name] in known or (units[name] not in others and _LIKELY.search(name))
     ]
     torques = [name for name in names if _TORQUE.search(name) or units[name] in TORQUE_UNITS]
     likely = [*filter(_LIKELY.search, angles)]

@@ -30,6 +30,7 @@ ROLES = {
 _COUNTS = '4096'  # counts a turn, as an example
 _REVOLUTIONS = re.compile(r'(?i)servo_stats.*position|pos_estimate|pos_rel|pos_abs')
 """Names with which moteus and ODrive motor controllers give positions in revolutions."""
+_NUMBERED = re.compile(r'\W*\d+$')  # of time.1, as pandas repeats a name
 _MOTEUS = {'position', 'torque', 'q_current'}
 
 
@@ -139,7 +140,7 @@ def own_clocks(names: Sequence[str], columns: Iterable[Column]) -> dict[str, str
         side = meaning(column.name)[4:6]
         same = [one for one, says in times.items() if says[4:6] == side and any(side)]
         before = [*filter(times.get, names[: names.index(column.name)])]
-        sure = [one for one in before if not times[one].unsure]
+        sure = [one for one in before if not meaning(_NUMBERED.sub('', one)).unsure]
         if same or sure:
             found[column.name] = (same or sure)[-1]
     return found

@@ -51,7 +51,8 @@ _ANGLES = re.compile(
 """Units of angles in titles and comments, but not in `deg C`, or of a value as in `3 turns`."""
 _CODESYS = '[key]; [value]'  # begins a trace of CODESYS, whose variables are below each other
 _NO_NAMES = re.compile(r'(?i)[-+|:=\s]*|sep=.*\s*')  # lines without names, as of psql
-_CLOCKS = {'name': 'ms', 'x_value': 's'}  # words, and units, before channels with their own times
+_CLOCKS = {'name': 'ms', 'x_value': 's', 'x': ''}
+"""Words before channels with their own times, and the units of these."""
 _FILETIME = re.compile(r'\d{18}')  # times of Windows, since 1601
 
 
@@ -257,10 +258,10 @@ def _names(
             continue
         unit = _CLOCKS.get(key, meaning(key).unit)
         unit = 'filetime' if key == 'name' and _FILETIME.fullmatch(first) else unit
-        clocks = {name: f'time of {name}' + f' [{unit}]' * bool(unit) for name in names}
+        clocks = {name: f'time of {name}' for name in names}
         units = known_units(pairs.get('unit') or pairs.get('') or label[::2])
         columns = [one for name in names for one in (clocks[name], name)]
-        return columns, _named(names, units), clocks
+        return columns, _named(names, units) | dict.fromkeys(clocks.values(), unit), clocks
     fitting = [k for k, row in enumerate(rows) if len(row) >= numbers and not known_units(row)]
     last = max(fitting, default=len(rows) - 1)
     # Descriptions may be below the names, which have most of the words that say quantities.

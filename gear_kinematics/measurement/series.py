@@ -1,13 +1,19 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Tables with a row for each value: their series."""
+"""Tables with a row for each value: their series, also where the last of others are beside it."""
 
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from gear_kinematics.measurement.cells import numbers
 from gear_kinematics.measurement.columns import likeliest, nanoseconds_of
 from gear_kinematics.measurement.names import meaning
+from gear_kinematics.measurement.recording import Array
 from gear_kinematics.wire.cdr import SECOND
+
+_BY_CHANCE = 0.01
+"""Greatest share of the rows with a new value that have two, if gaps were filled."""
 
 
 def series_of(
@@ -46,3 +52,18 @@ def series_of(
             columns[own := f'{clock} of {joint}'] = numbers(series[clock], point)
             known[own] = unit
     return columns, known, clocks
+
+
+def own_rows(series: Mapping[str, Array]) -> dict[str, Array]:
+    """Find the rows of each series, (n,), if the others have the last value repeated there.
+
+    So gaps are filled after tables with other times were joined: no row has two new values.
+    Without such gaps, the result is empty.
+    """
+    changed = {role: np.diff(values, prepend=np.nan) != 0.0 for role, values in series.items()}
+    rotor, output = (changed.get(role, np.ones(1, bool)) for role in ('rotor', 'output'))
+    together = np.count_nonzero(rotor & output)
+    if together > _BY_CHANCE * min(np.count_nonzero(rotor), np.count_nonzero(output)):
+        return {}
+    rest = ~np.any([*changed.values()], axis=0)
+    return {role: rows | rest for role, rows in changed.items()}

@@ -39,6 +39,7 @@ from gear_kinematics.measurement.recording import (
     match,
 )
 from gear_kinematics.measurement.sentences import Observation, Observed
+from gear_kinematics.measurement.series import own_rows
 from gear_kinematics.wire.cdr import SECOND
 
 T = TypeVar('T')
@@ -149,7 +150,9 @@ class _Samples:
         usable = {role: np.abs(values) <= LARGEST_ANGLE for role, values in data.items()}  # no NaN
         if 'rotor' in self.found and 'torque' in self.found and not usable['torque'].any():
             del self.found['torque'], data['torque'], usable['torque']
-        together = self._together(usable, clock, clocks)
+        own_of = own_rows(data) if clock and len({*clocks.values()}) == 1 else {}
+        usable |= {role: usable[role] & rows for role, rows in own_of.items()}
+        together = None if own_of else self._together(usable, clock, clocks)
         if clock and not clock.unit:
             role = 'rotor' if 'rotor' in self.found else 'angle'
             clock = with_unit(clock, raw[clocks[role]], data[role], role)
@@ -307,6 +310,8 @@ class _Samples:
         if other is not main:
             gap = _GAP * float(np.median(np.diff(main.stamp)))
             before, share, inside = match(main.stamp, other.stamp, gap)
+            if not inside.any():
+                raise ValueError('the times of the rotor and of the output are never the same')
         torque = self.torque_at(main) / float(self._ratio) if 'torque' in self.found else None
         effort = None if torque is None or not torque.any() else torque
         motion = RotorMotion.of(main.stamp, rotor, effort, main.segment)

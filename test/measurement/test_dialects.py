@@ -17,6 +17,7 @@ from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import RecordingError
+from gear_kinematics.measurement.tables import read_rotor
 
 ARCMIN = math.radians(1.0 / 60.0)
 
@@ -231,6 +232,9 @@ ENCODERS = {
     'never in one row': lambda t, r, o: '__time,/output/position,/x,/rotor/position\n' + ''.join(
         f'{at:.4f},,,{rotor:.5f}\n{at + 5e-4:.4f},{out:.5f},,\n{at + 6e-4:.4f},,1,\n'
         for at, rotor, out in zip(t, r, o, strict=True)),
+    'gaps filled with the values before': lambda t, r, o: '__time,/rotor/pos,/output/pos\n'
+        + ''.join(f'{at:.4f},{rotor:.5f},{before:.5f}\n{at + 5e-4:.4f},{rotor:.5f},{out:.5f}\n'
+        for at, rotor, before, out in zip(t, r, np.append(np.nan, o[:-1]), o, strict=True)),
     'TwinCAT with commas': lambda t, r, o: written([t * 1e3, r * DEG, t * 1e3, o * DEG],
         'Name,Scope\nFile,a.csv\n\nName,Motor.Pos,Name,Output.Pos\nSymbolComment,,SymbolComment,'
         '\nSampleTime[ms],40,SampleTime[ms],40\nUnit,° (Degree),Unit,° (Degree)\n',
@@ -390,6 +394,12 @@ ENCODERS = {
     'days of pandas': plain(',rotor,output', time=lambda v: f'0 days 00:00:{v:09.6f}'),
     'times of each side': lambda t, r, o: written(
         [t[:-1], r[:-1], t[1:], o[1:]], 'motor_time,motor_pos,output_time,output_pos', '{:.5f}'),
+    'a repeated time': lambda t, r, o: written(
+        [*np.pad([t, r], [(0, 0), (0, 1)], constant_values=np.nan),
+         *np.pad([t, o], [(0, 0), (1, 0)], constant_values=np.nan)],
+        'time,rotor,time.1,output', '{:.5f}').replace('nan', ''),
+    'X of each side': lambda t, r, o: written(
+        [t[1:], r[1:], t[:-1], o[:-1]], 'X,Motor [rad],X,Load [rad]', '{:.5f}'),
     'times of each side in groups': lambda t, r, o: written(
         [t[1:], r[1:], t[:-1], o[:-1]], 'Motor,,Load,\nTime (s),Angle (rad),Time (s),Angle (rad)',
         '{:.5f}'),
@@ -871,6 +881,16 @@ def test_other_formats(tmp_path, gear, reference, name):
     path.write_bytes(b'version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n')
     with pytest.raises(RecordingError, match='only a pointer of Git LFS'):
         read(path, gear, given)
+
+
+def test_times_of_both_sides_that_never_meet_are_refused(tmp_path, gear, reference):
+    t, r, o = reference('encoders')
+    names = 'motor_time,motor_pos,output_time,output_pos'
+    path = saved(tmp_path, written([t, r, t + 1.79e9, o], names, '{:.5f}'))
+    with pytest.raises(RecordingError, match='times of the rotor and of the output are never'):
+        read(path, gear)
+    with pytest.raises(RecordingError, match=r'--time-column and --torque-column$'):
+        read_rotor(path, Sources(), gear.gear.gear_ratio)
 
 
 def test_an_old_workbook_under_a_new_name_needs_no_other_library(tmp_path, gear):
