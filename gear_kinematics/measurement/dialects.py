@@ -163,6 +163,13 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
         every = 2 ** max(0, math.ceil(math.log2(size / len(head) * len(lines) / _MOST_ROWS)))
         sources = [elements.get(name) or layout.names.index(name) for name in wanted]
         places = {k for one in sources for k in (one[:2] if isinstance(one, Element) else [one])}
+        cells = [[row[k] if k < len(row) else '' for k in places] for row in sample]
+
+        def filled(step: int) -> list[bool]:
+            return [*map(any, zip(*cells[::step], strict=True))]
+
+        # Of series that take turns, other steps leave out all but one.
+        every = next((n for n in range(every, 2 * every) if filled(n) == filled(1)), every)
         frame = read(sorted(places), every)
         for place in filter(lambda place: may_be_divided(frame[place]), sorted(places)):
             if are_divided(read([place], every, str)[place], layout.point):

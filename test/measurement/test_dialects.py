@@ -13,11 +13,13 @@ import pytest
 
 from gear_kinematics.bag import BagError
 from gear_kinematics.commands.encoders import add_recordings, sources
+from gear_kinematics.measurement import dialects
 from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import RecordingError
-from gear_kinematics.measurement.tables import read_rotor
+from gear_kinematics.measurement.sentences import Observation
+from gear_kinematics.measurement.tables import read_rotor, read_table
 
 ARCMIN = math.radians(1.0 / 60.0)
 
@@ -881,6 +883,19 @@ def test_other_formats(tmp_path, gear, reference, name):
     path.write_bytes(b'version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n')
     with pytest.raises(RecordingError, match='only a pointer of Git LFS'):
         read(path, gear, given)
+
+
+def test_series_that_take_turns_are_all_read_in_part(tmp_path, gear, reference, monkeypatch):
+    monkeypatch.setattr(dialects, '_MOST_ROWS', 1500)
+    t, r, o = reference('encoders')
+    content = 'time,rotor,output\n' + ''.join(
+        f'{at:.4f},{rotor:.5f},\n{at + 5e-4:.4f},,{out:.5f}\n'
+        for at, rotor, out in zip(t, r, o, strict=True)
+    )
+    recording = read_table(saved(tmp_path, content), Sources(), gear.gear.gear_ratio)
+    assert recording.remarks == (Observation.ROWS_THINNED(every=3),)
+    np.testing.assert_allclose(recording.both.rotor.turned, r[::3], rtol=1e-14)
+    np.testing.assert_allclose(recording.both.measured, o[1::3][:-1], rtol=1e-14)
 
 
 def test_times_of_both_sides_that_never_meet_are_refused(tmp_path, gear, reference):
