@@ -15,6 +15,7 @@ from gear_kinematics.measurement.recording import MOST_MESSAGES
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.effort_field import EffortField, questioned
+from gear_kinematics.state.monitors import FASTEST
 from gear_kinematics.state.reach import FLOOR
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition, Fact
@@ -109,6 +110,16 @@ def _impossible_steps(
         yield Condition.REJECTED(counts=counts)
     if step := rotor.disorder.clock_step:
         yield step
+    if (pace := _pace(decode_joint_states(data, joint).stamp, np.asarray(received))) > FASTEST:
+        yield Condition.STAMPS_TOO_FAST(factor=pace)
+
+
+def _pace(stamp: Array, received: Array) -> float:
+    """Return how much faster stamps rise than times of reception, (n,); bursts do not count."""
+    if len(stamp) < _FEWEST or not np.ptp(received):
+        return 0.0
+    usual = float(np.median(np.diff(stamp))) / max(float(np.median(np.diff(received))), 1.0)
+    return min(usual, float(np.ptp(stamp) / np.ptp(received)))
 
 
 def kind_of_encoder(data: Sequence[bytes], received: Sequence[int], joint: str) -> list[Value]:

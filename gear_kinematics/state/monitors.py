@@ -22,6 +22,7 @@ _BEYOND_ANY_GEAR = 0.1  # rad
 _MOST_REPEATED, _ALL_REPEATED = 0.5, 0.95
 """Shares of stamps from which repeated ones are a fault: if turns depend on them, or else."""
 
+FASTEST = 100.0  # times the clock: faster than any playback
 _SOON = 0.1  # time, s, after a report until which the next one repeats its rates and comparisons
 
 
@@ -82,6 +83,8 @@ class InputMonitor(DriverMonitor):
         self.withheld = 0  # those of them without outputs
         self.zero_kept: Fact | None = None  # where `rotor_zero` is kept, or why it is not
         self._reported, self._rate, self._received = 0.0, 0.0, 0
+        self._stamp = 0  # ns, the last one at the last report
+        self._paces = 0.0, 0.0  # by how many times the clock's time stamps rose in two reports
 
     def report(self, now: float, connections: Connections) -> GearReport:
         """Report on the time since the last report, until now."""
@@ -92,6 +95,9 @@ class InputMonitor(DriverMonitor):
         if elapsed > _SOON:
             self._rate = received / elapsed
             self._reported, self._received = now, count
+            stamp = rotor_input.last.stamp if rotor_input.last else 0
+            self._paces = self._paces[1], (stamp - self._stamp) / SECOND / elapsed
+            self._stamp = stamp
         age = now - (driver.since if self.last_input is None else self.last_input)
         referenced = rotor_input.referenced
         values = {
@@ -151,6 +157,8 @@ class InputMonitor(DriverMonitor):
         most = _MOST_REPEATED if rotor_input.parameters.rotor_period else _ALL_REPEATED
         if grown['repeated stamps'] > most * grown['received']:
             yield Condition.REPEATED_STAMPS(count=grown['repeated stamps'])
+        if min(self._paces) > FASTEST:  # one alone is a clock that was set
+            yield Condition.STAMPS_TOO_FAST(factor=self._paces[1])
         if grown['close resets'] >= ALTERNATING:
             yield Condition.CLOCKS_ALTERNATE(count=grown['close resets'])
         if grown['unsent']:

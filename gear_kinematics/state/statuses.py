@@ -131,6 +131,11 @@ class Condition(Enum):
         'repeated stamps {count}',
         'Let the driver stamp each message: gaps do not show, and turns may be miscounted.',
     )
+    STAMPS_TOO_FAST = (
+        WARN,
+        'the stamps run {factor:.0f} times as fast as the clock',
+        'Let the driver stamp in s and ns: speeds, gaps and jumps are not judged rightly.',
+    )
     SEVERAL_DRIVERS = WARN, '{count} drivers', 'Stop all drivers but one.'
     # The rotor's turns, and the encoder at the output that can tell them
     NOT_REFERENCED = ERROR, 'not referenced', _HOME

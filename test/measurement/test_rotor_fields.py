@@ -14,6 +14,7 @@ from gear_kinematics.bag import Bag
 from gear_kinematics.commands.cli import main
 from gear_kinematics.measurement.rotor_fields import questions, recorded_questions
 from gear_kinematics.measurement.sentences import Observation
+from gear_kinematics.state.statuses import Condition
 
 TIMES = np.arange(0.0, 8.0, 0.01)
 OUTPUT = np.clip(np.abs(TIMES - 4.0) * -2.0 + 8.0, 0.0, 7.5)  # rad: there, a rest, and back
@@ -105,6 +106,17 @@ def test_rejected_positions_and_a_clock_that_is_set_back_are_named():
         'rejected: position not finite 2, position too large 1, out of order 29',
         f'the clock was set back by at least 0.285 s just after {stamped[499] / 1e9:.3f} s',
     ]
+
+
+def test_stamps_of_milliseconds_as_seconds_are_named():
+    received = stamps(TIMES)
+    data = [
+        rotor_bytes(int(1000 * (stamp - received[0]) + 1), position=[position])
+        for stamp, position in zip(received, ROTOR, strict=True)
+    ]
+    (told,) = questions(data, received.tolist(), 'rotor', steps=True)
+    assert told.condition is Condition.STAMPS_TOO_FAST
+    assert told.values == {'factor': pytest.approx(1000.0)}
 
 
 @pytest.mark.parametrize('counts', [16384.0, 100.0])

@@ -160,3 +160,15 @@ def test_rate_is_that_since_the_last_report(bench):
     assert bench.report(START + 3.0).values['rate (Hz)'] == 5.0
     for _ in range(2):  # the second time without any time in between
         assert bench.report(START + 4.0).values['rate (Hz)'] == 0.0
+
+
+@pytest.mark.parametrize('pace', [1, 10, 1000])
+def test_stamps_of_milliseconds_as_seconds_are_named_but_no_clock_that_is_set(bench, pace):
+    set_forward = 0
+    for k in range(6):
+        if k == 4 and pace == 1:
+            set_forward = 9000 * SECOND
+        stamps = [(10 * k + n) * pace * SECOND // 10 + set_forward for n in range(1, 11)]
+        bench.feed(START + k, *map(good, stamps))
+        named = [Condition.STAMPS_TOO_FAST(factor=pytest.approx(pace))]
+        assert bench.facts(START + k + 0.95) == (named if pace == 1000 and k else [])
