@@ -19,6 +19,8 @@ _GEAR = {'gear_ratio', 'ring_teeth', 'satellite_teeth', 'rotor_joint', 'rotor_di
          'rotor_zero', 'rotor_encoder', 'output_joint', 'calibration', 'home_file'}  # fmt: skip
 """Parameters that describe a gear, and hardly any other node has."""
 
+_RATIO = {'gear_ratio', 'ring_teeth', 'satellite_teeth'}
+
 _FILES = 'calibration', 'home_file'  # parameters that name files, relative to the parameter file
 
 
@@ -88,19 +90,24 @@ def write_config(path: Path, text: str, *, new: bool = True) -> None:
 def _check_strays(path: Path, name: str, blocks: Sequence[tuple[str, dict[str, Any]]]) -> None:
     """Refuse parameters that seem to be meant for a node to which only wildcards apply.
 
-    They are below a name that is nearly its own, or they describe a gear and no wildcard does.
+    They are below a name that is nearly its own, or they describe a gear or have its ratio, and no
+    wildcard does.
     """
-    strays, common = [], False
+    others, common = dict[str, set[str]](), set[str]()
     for pattern, parameters in blocks:
-        of_gear = bool(_GEAR & parameters.keys())
-        if not _applies(pattern, name):
-            if '*' not in pattern and (of_gear or _mistyped(pattern, name)):
-                strays.append(pattern)
-        elif '*' not in pattern:
-            return
-        else:
-            common |= of_gear
-    if strays := [each for each in strays if not common or _mistyped(each, name)]:
+        given = _GEAR & parameters.keys()
+        if '*' not in pattern:
+            if _applies(pattern, name):
+                return
+            others[pattern] = given
+        elif _applies(pattern, name):
+            common |= given
+    if strays := [
+        each
+        for each, given in others.items()
+        if _mistyped(each, name)
+        or any(of_gear & given and not of_gear & common for of_gear in (_GEAR, _RATIO))
+    ]:
         raise ConfigError(
             f'{path}: only the parameters of a wildcard apply to {name}, not those of '
             f'{", ".join(strays)}: correct one of the two names'

@@ -326,9 +326,10 @@ def test_block_of_a_mistyped_node_beside_a_wildcard_is_refused(tmp_path, names, 
         load(path, '/gear_state_publisher')
 
 
+@pytest.mark.parametrize('common', ['use_sim_time: false', 'rotor_joint: m1'])
 @pytest.mark.parametrize('node', ['motor', '/left/gear_state_publisher'])
-def test_gear_of_another_node_beside_a_wildcard_without_one_is_refused(tmp_path, node):
-    text = f"'/**': {{ros__parameters: {{use_sim_time: false}}}}\n{node}: "
+def test_gear_of_another_node_beside_a_wildcard_without_one_is_refused(tmp_path, node, common):
+    text = f"'/**': {{ros__parameters: {{{common}}}}}\n{node}: "
     gear = write(tmp_path, text + "{ros__parameters: {gear_ratio: '-30'}}")
     with pytest.raises(ConfigError, match=f'to /gear_state_publisher, not those of /?{node}:'):
         load(gear, '/gear_state_publisher')
