@@ -12,7 +12,7 @@ import yaml
 
 from gear_kinematics.parameters.arm import faults_in, full_name
 from gear_kinematics.parameters.files import ConfigError, parameter_blocks, write_config
-from gear_kinematics.parameters.yaml_file import Loader, load_yaml, read_yaml
+from gear_kinematics.parameters.yaml_file import Dumper, Loader, load_yaml, read_yaml
 
 _NEW = '/**:\n  ros__parameters:\n    actuators: []'
 _ANY_GEAR = "gear_ratio: '1'"
@@ -98,7 +98,7 @@ def _lists(node: Any) -> Iterator[tuple[Any, Any]]:
 
 def _yaml(names: Sequence[str]) -> str:
     """Write names for YAML, which takes `on` for a truth value."""
-    return ', '.join(yaml.safe_dump(name).splitlines()[0] for name in names)
+    return ', '.join(yaml.dump(name, Dumper=Dumper).splitlines()[0] for name in names)
 
 
 def _behind(text: str, node: Any) -> int:

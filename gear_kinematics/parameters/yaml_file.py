@@ -33,8 +33,10 @@ class Loader(getattr(yaml, 'CSafeLoader', yaml.SafeLoader)):  # type: ignore[mis
 
 
 class Dumper(yaml.SafeDumper):
-    """Writes what `Loader` reads: texts that look like numbers are quoted."""
+    """Writes what `Loader` and rcl read: texts like numbers or truth values are quoted."""
 
+
+Dumper.add_implicit_resolver('tag:yaml.org,2002:bool', re.compile('[yYnN]$'), list('yYnN'))
 
 for _either in (Loader, Dumper):
     _either.add_implicit_resolver(

@@ -6,7 +6,7 @@ import yaml
 from refusals import refused
 
 from gear_kinematics.parameters import ConfigError
-from gear_kinematics.parameters.arm import load_actuators
+from gear_kinematics.parameters.arm import as_file, load_actuators
 from gear_kinematics.parameters.arm_file import add_actuators
 
 ELBOW = {'elbow': ['# é: of the nameplate', "gear_ratio: '-51'", '# after it']}
@@ -95,3 +95,17 @@ def test_what_cannot_be_extended_stays_as_it_is(tmp_path, before, block, cause):
     with refused(ConfigError, path, cause):
         add_actuators(path, {'elbow': block}, [])
     assert path.read_text('utf-8') == before
+
+
+def test_names_that_ros_takes_for_truth_values_are_quoted(tmp_path):
+    """For rcl, unlike PyYAML, y and n are among them."""
+    path, block = tmp_path / 'arm.yaml', ["gear_ratio: '3'"]
+    add_actuators(path, dict.fromkeys('xyn', block), [])
+    assert "    actuators: [x, 'y', 'n']\n" in path.read_text('utf-8')
+    assert "\n    'y':\n" in path.read_text('utf-8')
+    arm = load_actuators(path)
+    assert [*arm] == ['x', 'y', 'n']
+    written = as_file(arm.values())
+    assert written.count("y.rotor_joint: 'y'\n") == written.count("\n    - 'n'\n") == 1
+    path.write_text(written, 'utf-8')
+    assert load_actuators(path) == arm
