@@ -104,6 +104,12 @@ class OutputState(JointStateTopic):
         self._absent_velocities = Occurrences()
         self._only_zeros = True  # whether all given velocities were 0, and no output had one
 
+    def why_none(self, *, recorded: bool) -> str:
+        """Say why no message is of this joint, where messages of the topic are recorded or not."""
+        if recorded:
+            return f'{self.name} has only other joints: give the parameters of its node'
+        return 'no outputs in it: gearkin compute writes a bag with them'
+
     def _expected(self, samples: Window) -> Sequence[Bounds]:
         ratio = self._gear.gear_ratio
         angle = self._ideal_angle(samples)

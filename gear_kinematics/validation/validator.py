@@ -156,7 +156,7 @@ class Validator:
         if error is None and not rotor.valid:
             error = f'no usable rotor states: {self._state.input.why_rejected or "no messages"}'
         elif error is None and not any(topic.messages for topic in topics):
-            error = 'no outputs in it: gearkin compute writes a bag with them'
+            error = self.output.why_none(recorded=self.given.output in self._begun)
         checked = [finding for check in input_health.CHECKS for finding in check(rotor)]
         findings = *self._found(), *checked
         passed = not any(finding.fails for finding in findings) and all(t.passed for t in topics)

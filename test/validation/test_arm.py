@@ -199,9 +199,10 @@ def test_actuators_with_the_same_error_are_named_in_one_clause(tmp_path):
     def wrist(_, joints: Joints) -> list[Joints]:  # the last one
         return [Joints(*(of[-1:] for of in joints))] if 'wrist' in joints.names else []
 
-    why = 'no outputs in it: gearkin compute writes a bag with them'
-    assert judged(tmp_path, recording(edit=wrist)).error == f'shoulder, elbow: {why}'
-    assert judged(tmp_path, recording(edit=lambda *_: [])).error == why
+    others = f'{OUTPUT} has only other joints: give the parameters of its node'
+    assert judged(tmp_path, recording(edit=wrist)).error == f'shoulder, elbow: {others}'
+    none = 'no outputs in it: gearkin compute writes a bag with them'
+    assert judged(tmp_path, recording(edit=lambda *_: [])).error == none
 
 
 @pytest.mark.parametrize(('last', 'expected'), [(100, 1.196), (200, None)])
