@@ -28,7 +28,7 @@ _TRIED, _FEWEST, _ROWS = 12, 10, 10_000
 _FIRST = 4  # number of columns among which the times are
 _ALIKE = 0.3  # least correlation of the steps of both encoders
 _LISTED = 600  # characters of the list of columns
-_WANTED = 'target|action|goal|desire|cmd|command|setpoint'
+_WANTED = r'target|action|goal|desire|cmd|command|setpoint|demand|(?<![a-z])(ref|des)(?![a-z])'
 """Words in names of columns of what was commanded, not measured."""
 _NO_ANGLE = re.compile(
     r'(?i)torq|effort|force|curr|vel(?!_mapper)|speed|rpm|/ ?s(ec)?\b|temp|time|stamp|control|'
@@ -39,6 +39,7 @@ _LIKELY = re.compile(
     r'(?i)pos|\bq|_q|ang|enc|theta|winkel|rotation|(rad|deg|rev|inc|cnt|counts)\b'
 )
 """Words in names of columns that are proposed first."""
+_WORD = re.compile(r'(?i)(?!nan|null|none|inf)[^\W\d]')  # in columns of states or names
 _TORQUE = re.compile(
     rf'(?i)^(?!.*({_WANTED})).*'
     r'(torq|effort|moment|tau|load|n[·.* -]?m\b|^[tm][xyz]$)'
@@ -121,7 +122,9 @@ def _examples(table: TableFile) -> Iterator[Mapping[str, str]]:
     names = [
         name
         for name in filter(None, table.names)
-        if list(table.names).count(name) == 1 and meaning(name).role != 'time'
+        if list(table.names).count(name) == 1
+        and meaning(name).role != 'time'
+        and not _WORD.match(table.first.get(name, ''))
     ]
     units = {name: usual_unit(table.units.get(name, '')) or meaning(name).unit for name in names}
     known, others = {'', *ANGLE_UNITS}, {*FOREIGN, *TORQUE_UNITS, *TIME_UNITS}

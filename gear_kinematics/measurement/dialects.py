@@ -314,7 +314,7 @@ def _joint_state(row: Sequence[str]) -> tuple[list[str], dict[str, str], dict[st
     fields = (len(row) - 3) / max(len(joints), 1) - 1.0
     if fields not in {1.0, 2.0, 3.0} or not all(map(str.isdecimal, row[:2])):
         return None
-    names = ['stamp_s', 'stamp_ns', 'frame', *(f'name of {joint}' for joint in joints), *joints]
+    names = ['stamp_s', 'stamp_ns', 'frame', *len(joints) * [''], *joints]
     kinds = {2.0: ('{} velocity or effort',), 3.0: ('{} velocity', '{} effort')}.get(fields, ())
     names += [kind.format(joint) for kind in kinds for joint in joints]
     return names, dict.fromkeys(joints, 'rad'), {}

@@ -11,8 +11,8 @@ from gear_kinematics.measurement.encoder_step import UNITS
 
 _VOCABULARY = {
     'rotor': 'rotor motor mot odrive antrieb moteur motore 电机 モータ モーター',
-    'output': 'output out load gearbox shaft link joint abtrieb ausgang sortie uscita salida 输出 '
-    '输出轴 负载 负载端 关节 出力 出力軸 負荷 負荷側',
+    'output': 'output out load gearbox gear shaft link joint abtrieb ausgang sortie uscita salida '
+    '输出 输出轴 负载 负载端 关节 出力 出力軸 負荷 負荷側',
     'input': 'input eingang entrée ingresso entrada 输入 输入轴 入力 入力軸',
     'angle': 'position positions pos angle ang encoder enc theta θ φ ϕ deflection twist rotation '
     'winkel drehwinkel verdrehwinkel angolo ángulo angulo posición posizione 位置 角度 编码器',
@@ -20,18 +20,17 @@ _VOCABULARY = {
     '扭矩 力矩 转矩 トルク',
     'current': 'current',
     'time': 'time t stamp timestamp timestamps today datetime elapsed zeit uhrzeit messzeit '
-    'prüfzeit temps tempo tiempo tout xtime ts zeitstempel horodatage 时间 时间戳 時間 '
-    'x',
-    'filling': 'header receive log measured actual act filtered raw field data value values '
-    'feedback state states axis angular rotary present sensor abs side in ist host pi ros system '
-    'unix epoch channel ch fb fbk ave estimate scalars signals date datum utc wall application '
-    'main plc prg gvl',
+    'prüfzeit temps tempo tiempo tout xtime ts zeitstempel horodatage 时间 时间戳 時間 x',
+    'filling': 'header receive log dynamic measured meas actual act filtered raw field data value '
+    'values feedback state states axis angular rotary present sensor abs side in ist host pi ros '
+    'system unix epoch channel ch fb fbk ave estimate scalars signals date datum utc wall '
+    'application main plc prg gvl',
 }
 """Words in names by kind, the likeliest first. The input is the rotor if a quantity is said, too.
 The filling may accompany all others; any other word shows a command, a speed or the like."""
 _KINDS = {word: kind for kind, words in _VOCABULARY.items() for word in words.split()}
 _RANKS = {word: rank for rank, word in enumerate(_KINDS)}
-_EITHER = {'shaft', 'joint', 'gearbox'}
+_EITHER = {'shaft', 'joint', 'gearbox', 'gear'}
 """Words for the output that do not mean it beside one for the rotor, as in motor_shaft."""
 _OTHERS = '% ‰ percent pct a ma v mv volts adc w n kg g m mm °c min h'
 FOREIGN = {*_OTHERS.split()}

@@ -357,6 +357,8 @@ ENCODERS = {
         'Time stamp\tRelative time\tMotor position\tLoad position\n\tms\t°\t°',
         clock('%d.%m.%Y %H:%M:%S.%f'), '\t'),
     'channels': plain('Time [s],CH1: Motor angle [deg],CH2: Output angle [deg]', angle=DEG),
+    'motor and gear, as measured': plain(
+        'time,/dynamic_joint_states/gear_motor/pos,gear_pos_meas'),
     'shafts': plain('time,motor_shaft_pos,output_shaft_pos'),
     'rotations': lambda t, r, o: written(
         [t, r * REV, o * REV], 'Timestamp,/Motor/PositionRotations,/Output/PositionRotations',
@@ -619,6 +621,11 @@ UNTOLD = {
     'a title, but no names': plain('Bench 3, of 2026', mark=';'),
     'paths with an s behind a slash': lambda t, r, o: written([t, r * DEG, o * DEG],
         'Zeit,/spine/enc_degrees,/shoulder/pos_degrees', '{:.5f}'),
+    'names of joints in ros2 topic echo': lambda t, r, o: written([*split_time(t), r, o], '',
+        ('{:.0f}', '{:.0f},,hip_motor,hip_joint', '{:.5f}', '{:.5f},0.1,0.2')),
+    'degrees beside what is wanted and words': lambda t, r, o: written([t, t, 57.4 * r, r * DEG,
+        57.4 * o, o * DEG], 't,mode,hip_pos_ref,hip_pos_sens,knee_pos_ref,knee_pos_sens',
+        ('{:.2f}', lambda _: 't', *4 * ['{:.5f}'])),
     'an acceleration beside': lambda t, r, o: written(
         [t, r, o, 30.0 * r, r], 't,theta_m,theta_l,theta_m_ddot,theta_command', '{:.5f}'),
     'revolutions': lambda t, r, o: written([t, r * REV % 1.0, o * REV % 1.0], NAMES),
