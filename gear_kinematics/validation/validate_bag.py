@@ -148,6 +148,10 @@ def _validator(task: Task, bag: Bag, topics: Topics) -> Validator:
     names = {topic_of(parameters.actuator, name): name for name in judged}
     found = find_in_namespace(bag, names, topics.output)
     further = {names[own]: topic for own, topic in found.items()}
+    if parameters.actuator and not task.calibration:  # in the messages of others
+        corrected = joints_on(bag, [further[name] for name in CORRECTED_TOPICS if name in further])
+        others = {t for t, joints in corrected.items() if parameters.output_name not in joints}
+        further = {name: topic for name, topic in further.items() if topic not in others}
     poses = further.pop(BODY_POSES, '')
     topics = topics._replace(poses=topics.poses or task.poses_topic or poses)
     encoder, joint = '', parameters.distinct_encoder_joint

@@ -205,6 +205,22 @@ def test_actuators_with_the_same_error_are_named_in_one_clause(tmp_path):
     assert judged(tmp_path, recording(edit=lambda *_: [])).error == none
 
 
+def test_corrected_outputs_that_are_not_judged_are_those_of_their_joints(tmp_path):
+    corrected = [
+        (topic, stamp + 3000, Joints(['shoulder'], [0.1], [], []).encode(stamp))
+        for topic in ('/corrected_state', '/corrected_interval')
+        for stamp, _ in inputs(3)
+    ]
+    messages = sorted(recording() + corrected, key=lambda message: message[1])
+    topics = dict.fromkeys((topic for topic, *_ in messages), JOINT_STATE)
+    report = validate(write_bag(tmp_path / 'bag', messages, topics), config(tmp_path / 'arm.yaml'))
+    found = [
+        FindingCause.CORRECTION_UNJUDGED in [f.cause for f in each.findings]
+        for each in report.actuators
+    ]
+    assert found == [True, False, False]
+
+
 @pytest.mark.parametrize(('last', 'expected'), [(100, 1.196), (200, None)])
 def test_a_motor_that_stops_before_the_others_is_told_and_fails_nothing(tmp_path, last, expected):
     messages = []
