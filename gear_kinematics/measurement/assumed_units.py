@@ -8,9 +8,9 @@ from gear_kinematics.measurement.clocks import FASTEST, MOST
 from gear_kinematics.measurement.columns import Column
 from gear_kinematics.measurement.encoder_range import count_wraps, other_unit
 from gear_kinematics.measurement.encoder_step import Step
-from gear_kinematics.measurement.gate import output_by_rotor
 from gear_kinematics.measurement.names import meaning
 from gear_kinematics.measurement.recording import Array
+from gear_kinematics.measurement.two_encoders import output_by_rotor
 from gear_kinematics.wire.cdr import SECOND
 
 _HALF_TURN = 180.0  # degrees: least jump of a single-turn encoder

@@ -18,7 +18,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.ramp_gate import jumped, left_out, longest, shifted, usual
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RotorMotion
 from gear_kinematics.measurement.sentences import NAMED, Observation, Observed
-from gear_kinematics.measurement.two_encoders import directions
+from gear_kinematics.measurement.two_encoders import directions, output_by_rotor
 from gear_kinematics.report.document import number
 
 _FEWEST = 50  # samples
@@ -30,7 +30,7 @@ _SPIKE, _LEAST_SPIKE, _WINDOW = 20.0, math.radians(0.02), 5
 that shows a stray reading; number of these neighbours on either side."""
 _STAYS = 4  # samples in a row that are no stray reading
 _REVERSAL = 4  # samples around a reversal in which the output may lag
-_DELAY = 0.01  # s between the encoders, by which either may be late
+_DELAY = 0.01  # s, by which either encoder may be late, so that its speed changes later
 _ALIKE, _SHORTEST = 16, 1e-6
 """Number of samples in a row that may have the same time; shortest period of samples, s."""
 _MOST_LOST = math.radians(5.0)  # lost motion of a usable gear, at most
@@ -67,7 +67,7 @@ class _Steps(NamedTuple):
     impossible: NDArray[np.bool_]
     slipped: NDArray[np.bool_]  # those of them that are permanent, however small
     limit: float  # greatest step of a gear, rad
-    reverses: NDArray[np.bool_]  # those around a reversal
+    spikes: NDArray[np.bool_]  # (m,): stray readings that are no such steps
 
 
 def gated(recording: Recording) -> Recording:
@@ -83,13 +83,13 @@ def gated(recording: Recording) -> Recording:
     if (rest := float(np.ptp(error - line(rotor)))) < NO_ENCODER:
         fault = Observation.COMPUTED(deviation=rest)
         return replace(recording, faults=(*recording.faults, fault))
-    if not (steps := _steps(error, compared.ideal, _period(both.seconds))):
+    if not (steps := _steps(error, compared.ideal, _DELAY / _period(both.seconds))):
         return recording
     # A stray reading of the rotor shows in all rows that are interpolated from it.
-    per_reading = 2 * samples / len(both.rotor.stamp) if both.interpolated else 1.0
-    stays = math.ceil(_STAYS * max(1.0, per_reading))
+    shown = 2 * samples / len(both.rotor.stamp) if both.interpolated else 1.0
+    stays = math.ceil(_STAYS * max(1.0, shown))
     kept, jumps = _followed(error, rows, steps, compared.period, stays)
-    kept = kept[~_spikes(error, steps)[kept]]
+    kept = kept[~steps.spikes[kept]]
     at = np.array(jumps, int)
     if np.abs(rotor[at] - rotor[at - 1]).max(initial=0.0) > _RANGE * compared.travel:
         return recording  # the range of the encoder is not a turn
@@ -147,14 +147,14 @@ def _compared(both: Encoders) -> _Compared | None:
     )
 
 
-def _steps(error: Array, ideal: Array, period: float) -> _Steps | None:
+def _steps(error: Array, ideal: Array, delay: float) -> _Steps | None:
     """Find the steps of the error that no gear can make; None if there are too many.
 
-    The error and the ideal output angle, (n,) each, are in rad, a period of samples in s.
+    The error and the ideal output angle, (n,) each, are in rad, a delay in samples.
     """
     level, moved = usual(error), np.diff(ideal)
-    calm, speeds = np.diff(level), np.abs(np.diff(usual(ideal)))
-    fastest = float(np.quantile(speeds, 0.98))
+    calm = np.diff(level)
+    fastest = float(np.quantile(np.abs(np.diff(usual(ideal))), 0.98))
     usually = float(np.quantile(np.abs(calm), 0.98))
     limit = max(_STEPS * usually, _LEAST_STEP)
     lost = _lost_motion(calm, moved, fastest)
@@ -164,15 +164,12 @@ def _steps(error: Array, ideal: Array, period: float) -> _Steps | None:
     # Lost motion lasts until the next reversal; what comes back at once is a stray reading.
     most = min(1.1 * float(np.max(np.abs(calm), where=lost, initial=0.0)), _MOST_LOST)
     lost = _lost_motion(steps, moved, fastest) & (np.abs(steps) <= most)
-    # With a delay, the output reverses earlier or later, by twice the motion meanwhile.
-    delay = _DELAY / period
-    around = _REVERSAL + math.ceil(delay)
-    reverses, _ = _reversals(moved, around)
+    reverses, _ = _reversals(moved, _REVERSAL + math.ceil(delay))
     rows = np.flatnonzero(reverses & (np.abs(steps) > limit) & ~lost)
-    near = np.lib.stride_tricks.sliding_window_view(np.pad(speeds, around), 2 * around + 1)
-    lost[rows] = np.abs(steps[rows]) <= 2.2 * delay * near[rows].max(axis=1)
+    lost[rows] = np.abs(steps[rows]) <= _delayed(ideal, rows, delay)
     slipped = _slipped(level, ideal, usually, reverses)
-    return _Steps(((np.abs(steps) > limit) & ~lost) | slipped, slipped, limit, reverses)
+    spikes = _spikes(error, ideal, reverses, delay)
+    return _Steps(((np.abs(steps) > limit) & ~lost) | slipped, slipped, limit, spikes)
 
 
 def _stood_still(time: Array, still: Array, *, timed: bool) -> Observed:
@@ -181,14 +178,6 @@ def _stood_still(time: Array, still: Array, *, timed: bool) -> Observed:
     spans = [f'{number(each[0], 6)} to {number(each[-1], 6)}{unit}' for each in times]
     more = len(spans[NAMED:])
     return Observation.STOOD_STILL(spans=spans[:NAMED], more=more, count=len(still))
-
-
-def output_by_rotor(rotor: Array, measured: Array) -> float | None:
-    """Robust ratio of output angle to rotor angle; None if the rotor does not move."""
-    lag = max(len(rotor) // 40, 1)
-    moved, followed = rotor[lag:] - rotor[:-lag], measured[lag:] - measured[:-lag]
-    enough = np.abs(moved) >= max(0.5 * float(np.quantile(np.abs(moved), 0.8)), 1e-9)
-    return float(np.median(followed[enough] / moved[enough])) if enough.any() else None
 
 
 def _frozen(still: Array, other: Array) -> NDArray[np.bool_]:
@@ -226,6 +215,14 @@ def _reversals(ideal: Array, around: int) -> tuple[NDArray[np.bool_], Array]:
     reverses: NDArray[np.bool_] = before * after <= 0.0
     reverses[:around] = reverses[-around:] = True
     return reverses, after
+
+
+def _delayed(ideal: Array, rows: Array, delay: float) -> Array:
+    """Greatest change of the error, rad, around rows by a delay, in samples, of an encoder."""
+    around = _REVERSAL + math.ceil(delay)
+    speeds = np.pad(np.diff(usual(ideal)), around)
+    near = np.lib.stride_tricks.sliding_window_view(speeds, 2 * around + 1)
+    return np.asarray(1.1 * delay * np.ptp(near[rows], axis=1))
 
 
 def _slipped(
@@ -301,18 +298,22 @@ def _followed(
     return np.sort(np.concatenate(kept)), sorted(jumps)
 
 
-def _spikes(error: Array, steps: _Steps) -> NDArray[np.bool_]:
+def _spikes(
+    error: Array, ideal: Array, reverses: NDArray[np.bool_], delay: float
+) -> NDArray[np.bool_]:
     """Find readings that leave the five before and the five after, however slow the motion, (n,).
 
-    They leave both to the same side, unlike those in which play is crossed. At a reversal, a delay
-    does the same.
+    They leave both to the same side, unlike those in which play is crossed, and by more than a
+    delay explains. At a reversal, play and a delay together do the same.
     """
     level, far = usual(error), _WINDOW // 2 + 1
     level = np.pad(level, far, 'edge')
     before, after = error - level[: -2 * far], error - level[2 * far :]
-    off = np.minimum(np.abs(before), np.abs(after)) * ~np.append(steps.reverses, True)
+    off = np.minimum(np.abs(before), np.abs(after)) * ~np.append(reverses, True)
     most = max(_SPIKE * float(np.quantile(off, 0.9)), _LEAST_SPIKE)
     found: NDArray[np.bool_] = (off > most) & (before * after > 0.0)
+    rows = np.flatnonzero(found)
+    found[rows] = off[rows] > most + _delayed(ideal, rows, delay)
     return found
 
 

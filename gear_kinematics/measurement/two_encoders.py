@@ -157,6 +157,14 @@ class EncoderFit:
         return jackknife(fits, rest, *others)
 
 
+def output_by_rotor(rotor: Array, measured: Array) -> float | None:
+    """Robust ratio of output angle to rotor angle; None if the rotor does not move."""
+    lag = max(len(rotor) // 40, 1)
+    moved, followed = rotor[lag:] - rotor[:-lag], measured[lag:] - measured[:-lag]
+    enough = np.abs(moved) >= max(0.5 * float(np.quantile(np.abs(moved), 0.8)), 1e-9)
+    return float(np.median(followed[enough] / moved[enough])) if enough.any() else None
+
+
 def directions(output: Array, travel: float, starts: Collection[int] = ()) -> Array:
     """Direction of an output angle, (n,), rad, in the order of time: 1, -1, or 0 if unknown.
 

@@ -313,6 +313,20 @@ def test_play_that_is_crossed_slowly_is_no_stray_reading(gate, rate, play):
     assert after is before
 
 
+@pytest.mark.parametrize('delay', [0.004, -0.008])
+def test_short_stops_are_no_stray_readings_where_an_encoder_is_late(gate, delay):
+    """Ten stops of 0.05 s; the output or the rotor is late."""
+    fine = np.arange(40_000) / 1000.0
+    stopped = np.isin(np.arange(40_000) // 50, 33 + 72 * np.arange(10))
+    speed = np.where(stopped, 0.0, np.where(fine < 20.0, 1.0, -1.0))
+    angle = 1e-3 * np.cumsum(np.convolve(speed, np.full(30, 1.0 / 30.0), 'same'))
+    times = fine[20:-20:10]
+    output = np.interp(times - delay, fine, with_play(angle, 5.0 * ARC_MINUTE))
+    output += np.random.default_rng(1).normal(0.0, 1e-5, len(times))
+    before, after = gate(np.column_stack([times, -19.0 * np.interp(times, fine, angle), output]))
+    assert after is before
+
+
 def test_wraps_of_encoders_of_one_turn_are_no_faults(clean, gate):
     clean[:, 1:] = np.remainder(clean[:, 1:], 2.0 * np.pi)
     before, after = gate(clean)
