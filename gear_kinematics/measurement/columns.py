@@ -149,8 +149,11 @@ def own_clocks(names: Sequence[str], columns: Iterable[Column]) -> dict[str, str
 def likeliest(header: Sequence[str]) -> dict[str, str]:
     """Return the likeliest column for each role, unless others are as likely."""
     found = {}
+    outs = any('out' in meaning(name).words for name in header)
     for role in ROLES:
         names = [name for name in header if meaning(name).role == role]
+        if outs and role != 'time':  # then torque_in is not torque in some unit
+            names = [name for name in names if 'in' not in meaning(name).words]
         least = min((meaning(name).rank for name in names), default=())
         alike = [name for name in dict.fromkeys(names) if meaning(name).rank == least]
         if len(alike) == 1 or (role == 'time' and alike):  # not if position[0] and position[1]

@@ -14,8 +14,9 @@ _VOCABULARY = {
     'output': 'output out load gearbox gear shaft link joint abtrieb ausgang sortie uscita salida '
     '输出 输出轴 负载 负载端 关节 出力 出力軸 負荷 負荷側',
     'input': 'input eingang entrée ingresso entrada 输入 输入轴 入力 入力軸',
-    'angle': 'position positions pos angle ang encoder enc theta θ φ ϕ deflection twist rotation '
-    'winkel drehwinkel verdrehwinkel angolo ángulo angulo posición posizione 位置 角度 编码器',
+    'angle': 'position positions pos angle ang encoder enc theta phi θ φ ϕ deflection twist '
+    'rotation winkel drehwinkel verdrehwinkel angolo ángulo angulo posición posizione 位置 '
+    '角度 编码器',
     'torque': 'torque torques effort efforts trq tq tau τ drehmoment moment couple coppia '
     '扭矩 力矩 转矩 トルク',
     'current': 'current',
@@ -54,13 +55,13 @@ _SIZES: Mapping[str, Mapping[str, Any]] = {
         'ddeg': 0.1 * _DEG,
         'mrev': 1e-3 * TURN,
         'urad µrad': 1e-6,
-        "arcmin ′ '": _DEG / 60.0,
-        'arcsec ″': _DEG / 3600.0,
+        "arcmin arc-min arcminutes ′ '": _DEG / 60.0,
+        'arcsec arc-sec arcseconds ″': _DEG / 3600.0,
         'gon': TURN / 400.0,
         'counts count cnt inc increment increments ticks pulse pulses lsb steps qc': None,
     },
     'torque': {
-        'N·m nm': 1.0,
+        'N·m nm knmm': 1.0,
         'mN·m mnm nmm': 1e-3,
         'µN·m unm µnm': 1e-6,
         'N·cm ncm cnm': 1e-2,
@@ -102,6 +103,9 @@ _PLAINER = {
     r'(?i)^(time|zeit) +\d+ - [^[]*': r'\1',  # of catman
     r'(?i)joint[ _]?(states?)': r'\1',  # in names of topics
     r'(?i)(?<![a-z])(time(?:stamp)?|zeit|elapsed|t)[ _,]+(min|h)$': r'\1 [\2]',
+    r'((?i:moment|torque)) M(?![^\W_])': r'\1',  # the symbol, and no motor
+    r'^M(?=[ _]*[\[(]?[mckµ]?N)': 'moment',
+    r'(?i)[ _]?milli(?=(nm|rad|deg)(?![a-z]))': '_m',
     r'(?i)(winkel.*[^a-z])grad(?![a-z])': r'\1deg',  # gradians elsewhere
     r'(?i)[ _]?(deg|rad|rev)[ _]?x10$': r'_d\1',
     r'(?i)[ _]?(deg|rad|rev)[ _]?x100$': r'_c\1',

@@ -431,6 +431,11 @@ RAMPS = {
         [a * DEG, q, t], 'Rotation (deg),Rotary Torque (N·m),Time (s)', 3 * ['{:.6f}']),
     'Drehwinkel and Moment': lambda t, a, q: in_german(written(
         [t, a * DEG, q], 'Zeit;Drehwinkel [°];Moment [Nm]', mark=';')),
+    'torques in and out': lambda t, a, q: written(
+        [t, a * DEG, q / -30, q * 1e3], 't,angle_deg,torque_in_Nm,torque_out_MilliNm', '{:.6f}'),
+    'a symbol of torque, and kN·mm': lambda t, a, q: written(
+        [t, a * 60 * DEG, q], 'time,phi [arc-min],Drehmoment M [kNmm]', 3 * ['{:.6f}']),
+    'symbols alone': lambda t, a, q: written([t, a * DEG, q], 't,φ [°],M [Nm]', 3 * ['{:.6f}']),
     'N.m': lambda t, a, q: written([t, a * DEG, q], 't,angle [deg.],torque [N.m]'),
     'the motor in other units': lambda t, a, q: written(
         [t, a * -30 * DEG, q / -30 * 1e3], 'time,MotorPosition (deg),MotorTorque (mNm)'),
