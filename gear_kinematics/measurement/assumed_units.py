@@ -1,6 +1,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Evidence against the unit that is assumed for a column without one."""
 
+import re
+
 import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import TURN
@@ -8,7 +10,7 @@ from gear_kinematics.measurement.clocks import FASTEST, MOST
 from gear_kinematics.measurement.columns import Column
 from gear_kinematics.measurement.encoder_range import count_wraps, other_unit
 from gear_kinematics.measurement.encoder_step import Step
-from gear_kinematics.measurement.names import meaning
+from gear_kinematics.measurement.names import meaning, usual_unit
 from gear_kinematics.measurement.recording import Array
 from gear_kinematics.measurement.two_encoders import output_by_rotor
 from gear_kinematics.wire.cdr import SECOND
@@ -17,6 +19,16 @@ _HALF_TURN = 180.0  # degrees: least jump of a single-turn encoder
 _BLOCKS, _LIKE = 10, (0.08, 1.0)
 """Number of parts of a recording; error of the output within a part that shows degrees, rad."""
 _WHOLE = 50  # number of different whole numbers that are no coincidence
+_ANGLES = re.compile(
+    r'(?i)(?:(?<!\d )|(?<=0\.1 )|(?<=0\.01 ))'
+    r'\b(deg(ree)?s?|revolutions?|turns)\b(?!/|\.? *([CFK]|celsius)\b|[ -]of\b| per\b)'
+)
+"""Units of angles in titles and comments, but not in `deg C`, or of a value as in `3 turns`."""
+_TORQUES = re.compile(
+    r'(?i)(?<!\d )\b'
+    r'(mN\W?m|N\W?[cm]m|kgf?\W?c?m|(oz|lb)f?s?\W?(in|ft)|(in|ft)\W?(oz|lb)f?s?)\b(?!/)'
+)
+"""Units of torque there other than N·m."""
 _FEWEST, _ROWS = 10, 10_000  # least number of samples of a part; greatest number in all
 
 
@@ -30,13 +42,17 @@ def against(
         values: (n,), rad or N·m.
         stamp: (n,), ns; None if times were not recorded.
         step: of the encoder; None for a torque.
-        remark: the unit in the lines above the names, if any.
+        remark: titles and comments above the names.
     """
     if column.unit and not column.borrowed:
         return None
     numbers = np.round(values / column.scale, 6)  # as they are in the table
     moved, whole = np.abs(np.diff(values)), bool(np.all(numbers == np.round(numbers)))
     says = meaning(column.name)
+    said = (_ANGLES if step else _TORQUES).search(remark)
+    if said and not column.borrowed and says.role:
+        unit = usual_unit(said[0])
+        return f'has no unit, and a line above the names says {unit}', unit
     if not step:
         if whole and len(np.unique(values)) > _WHOLE:
             return 'has whole numbers', 'Nmm'
@@ -50,8 +66,6 @@ def against(
         return 'is raw', 'rev'
     if column.borrowed:
         return None
-    if remark:
-        return f'has no unit, and a line above the names says {remark}', remark
     if _HALF_TURN < np.max(moved, initial=0.0) <= np.ptp(values) <= 2.0 * _HALF_TURN:
         return 'has turns of 360, such as degrees', 'deg'
     if unit := other_unit(values, step).partition(':')[0]:

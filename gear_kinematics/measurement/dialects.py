@@ -28,7 +28,7 @@ from gear_kinematics.measurement.cells import (
     topics_of,
     weight,
 )
-from gear_kinematics.measurement.names import FOREIGN, known_units, meaning, usual_unit
+from gear_kinematics.measurement.names import FOREIGN, known_units, meaning
 from gear_kinematics.measurement.series import series_of
 from gear_kinematics.measurement.texts import BLOCK, Rows, encoding_of
 
@@ -44,11 +44,6 @@ _TYPES = re.compile(r'(?i)[iuf]\d+|(float|double|u?int)\d*|(type|interp|blockpat
 """Cells of rows that give types, as INCA and Simulink write them."""
 # Beginnings of CAN bus logs of candump, PCAN-View and CANoe.
 _FRAMES = re.compile(r'\s*\(\d+\.\d+\)\s+\w+\s+[0-9A-F]+#|;\$FILEVERSION|date \w{3} \w{3} \d')
-_ANGLES = re.compile(
-    r'(?i)(?:(?<!\d )|(?<=0\.1 )|(?<=0\.01 ))'
-    r'\b(deg(ree)?s?|revolutions?|turns)\b(?!/|\.? *([CFK]|celsius)\b|[ -]of\b| per\b)'
-)
-"""Units of angles in titles and comments, but not in `deg C`, or of a value as in `3 turns`."""
 _CODESYS = '[key]; [value]'  # begins a trace of CODESYS, whose variables are below each other
 _NO_NAMES = re.compile(r'(?i)[-+|:=\s]*|sep=.*\s*')  # lines without names, as of psql
 _CLOCKS = {'name': 'ms', 'x_value': 's', 'x': ''}
@@ -69,7 +64,7 @@ class TableFile(NamedTuple):
     load: Callable[[Sequence[str]], tuple[dict[str, Any], int]]
     """Returns columns by name as numbers or datetime64, with one row in n; and that n."""
     remark: str = ''
-    """A unit of angles in the lines above the names, if any."""
+    """Titles and comments above the names."""
 
 
 def loaded(
@@ -231,8 +226,7 @@ def _layout(lines: Sequence[str]) -> _Layout:
     else:
         found = _joint_state(row) or ([str(k + 1) for k in range(len(row))], {}, {})
     titles = (line for line in above if len(cells_of(line.lstrip('#%/ '), separator)) < len(row))
-    said = _ANGLES.search(' '.join(titles))
-    return _Layout(separator, point, start, row, *found, usual_unit(said[0]) if said else '')
+    return _Layout(separator, point, start, row, *found, ' '.join(titles))
 
 
 def _score(lines: Sequence[str], separator: str, point: str) -> float:

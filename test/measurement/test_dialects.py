@@ -554,6 +554,8 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         (lambda t, r, o: written([t, r, o], f'# angles are in 0.1 deg\n{NAMES}'),
          'rotor has no unit, and a line above the names says deg: give its unit'),
         (lambda t, _, o: written([t, 1e-3 * o, o], 'time,angle,torque [MN·m]'), 'is not known'),
+        (lambda t, _, o: written([t, 1e-3 * o, o], '# torque in lbf-in\ntime,angle,torque'),
+         'torque has no unit, and a line above the names says lb·in: .*--torque-column'),
         (lambda t, r, o: written(
             [t, r, o], NAMES,
             ('{:.2f}', lambda v: f'{v:.3f} or so' if abs(v) > 5 else '7', '{:.5f}')),
