@@ -195,7 +195,9 @@ def elements_of(names: Sequence[str], rows: Sequence[Sequence[str]]) -> dict[str
 
 def topics_of(names: Sequence[str], rows: Sequence[Sequence[str]]) -> list[int]:
     """Return the columns that say which series a row is of; names are in lower case."""
-    found = []
+    found = list[int]()
+    if {'rotor', 'output'} <= {meaning(name).role for name in names}:  # a row has both
+        return found
     for place in (names.index(name) for name in _TOPICS if name in names):
         cells = [row[place] for row in rows if place < len(row)]
         if len({*cells}) < len(cells) or not all(map(str.isdecimal, cells)):  # no number of a row

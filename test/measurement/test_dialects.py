@@ -264,6 +264,9 @@ ENCODERS = {
     'an index called key, and a value of something else': lambda t, r, o: written(
         [range(len(t)), t, r, o, t], 'key,time,rotor,output,value',
         ('{:.0f}', '{:.2f}', '{:.5f}', '{:.5f}', '{:.1f}')),
+    'a label, and a value of something else': lambda t, r, o: 'time,label,rotor,output,value\n'
+    + ''.join(f'{at:.2f},{"up" if rotor > 0.0 else "down"},{rotor:.5f},{out:.5f},3\n'
+              for at, rotor, out in zip(t, r, o, strict=True)),
     'texts among the values': lambda t, r, o: 'time,topic,value\n' + ''.join(
         f'{at:.2f},rotor,{rotor:.5f}\n{at:.2f},output,{out:.5f}\n{at:.2f},state,idle\n'
         for at, rotor, out in zip(t, r, o, strict=True)),
