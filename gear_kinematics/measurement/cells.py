@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gear_kinematics.measurement.names import meaning
+from gear_kinematics.measurement.names import known_units, meaning, usual_unit
 
 MOMENT = re.compile(
     r'(\d+ days? |\d{1,4}[-./](\d\d?|[a-z]{3})[-./]\d{2,4}[T ] ?)?'
@@ -77,14 +77,19 @@ def numbers(column: Any, point: str = '.') -> Any:
     return moments.to_numpy('datetime64[ns]') if moments.notna().any() else values
 
 
-def checked(column: Any, name: str, names: Sequence[str]) -> Any:
+def checked(column: Any, name: str, names: Sequence[str], unit: str) -> Any:
     """Return a column; ValueError if a further row of names says another one, or another unit."""
     if column.dtype.kind in 'iufbmM':
         return column
-    text, (words, unit, *_) = column.astype(str).str.strip(), meaning(name)
+    text, (words, own, *_) = column.astype(str).str.strip(), meaning(name)
+    units = {usual_unit(unit), own}
     for cell in text[text.str.match(r'[^\W\d]{2}')].unique()[:_NAMES]:
         says = meaning(cell)
-        if cell != name and (cell in names or (says.words == words and says.unit != unit)):
+        if cell != name and (
+            cell in names
+            or (says.words == words and says.unit not in units)
+            or not units.issuperset(known_units([cell]))
+        ):
             raise ValueError(f'{name} goes on below as {cell}: divide the file there')
     return column
 

@@ -175,7 +175,8 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
         values = {}
         for name, one in zip(wanted, sources, strict=True):
             column = one.of(frame) if isinstance(one, Element) else frame[one]
-            values[name] = numbers(checked(column, name, layout.names), layout.point)
+            column = checked(column, name, layout.names, layout.units.get(name, ''))
+            values[name] = numbers(column, layout.point)
         return values, every
 
     first = dict(zip(layout.names, layout.row, strict=False))

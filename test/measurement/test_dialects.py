@@ -581,6 +581,9 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         (lambda t, r, o: (written([t, r, o], 'time,rotor_rad,output_rad')
                           + written([t, r * DEG, o], 'time,rotor_deg,output_rad')),
          'rotor_rad goes on below as rotor_deg'),
+        (lambda t, r, o: (written([t, r, o], 'time,rotor,output\ns,rad,rad')
+                          + written([t, r * DEG, o * DEG], 'time,rotor,output\ns,deg,deg')),
+         'output goes on below as deg'),
         (' (1764230000.000000) can0 141#A100000000000000\n', 'a log of CAN frames: decode'),
         ('date Thu Nov 26 09:12:33 2026\nbase hex\n', 'a log of CAN frames: decode'),
         ('t,angle [deg],force [N]\n0,1,2\n1,2,3\n', 'with their units, by --angle-column'),
