@@ -56,7 +56,6 @@ class _Compared(NamedTuple):
     rotor: Array
     ideal: Array  # output angle that the rotor implies
     error: Array  # measured minus ideal output angle, without wraps
-    travel: float  # rad, of the rotor in all rows
     path: Array  # output angle that each sample of the rotor implies
     period: float  # change of the error where an encoder wraps
 
@@ -90,8 +89,9 @@ def gated(recording: Recording) -> Recording:
     stays = math.ceil(_STAYS * max(1.0, shown))
     kept, jumps = _followed(error, rows, steps, compared.period, stays)
     kept = kept[~steps.spikes[kept]]
-    at = np.array(jumps, int)
-    if np.abs(rotor[at] - rotor[at - 1]).max(initial=0.0) > _RANGE * compared.travel:
+    at, path = np.array(jumps, int), compared.path
+    around = (path[a : b + 2] for a, b in both.before[rows[np.array([at - 1, at])]].T.tolist())
+    if any(np.ptp(each) > _RANGE * np.ptp(path) for each in around):
         return recording  # the range of the encoder is not a turn
     sizes = error[at] - error[at - 1]
     clear = len(at) and np.abs(sizes).min() > _CLEAR * steps.limit
@@ -141,10 +141,7 @@ def _compared(both: Encoders) -> _Compared | None:
     periods = (TURN, abs(slope) * TURN) if wraps else (TURN,)
     for period in periods:
         error -= period * np.cumsum(np.round(np.diff(error, prepend=error[0]) / period))
-    travel = float(np.ptp(rotor))
-    return _Compared(
-        rows, frozen, rotor[rows], ideal[rows], error, travel, slope * turned, periods[-1]
-    )
+    return _Compared(rows, frozen, rotor[rows], ideal[rows], error, slope * turned, periods[-1])
 
 
 def _steps(error: Array, ideal: Array, delay: float) -> _Steps | None:
