@@ -143,6 +143,8 @@ class States:
         for topic, read in ((rotor, self._inputs), (encoder, self._outputs)):
             if read.every > 1:
                 remarks.append(Observation.STATES_THINNED(topic=topic, every=read.every))
+        if (wraps := self._gear.input.plausibility.wraps.fact) and not sources.as_recorded:
+            raise RecordingError(f'{path}: {wraps}')
         columns = self._inputs.joined()
         rows = len(columns[0]) if columns else 0
         if not rows:

@@ -84,7 +84,7 @@ class LiveCommissioning:
             self._states.add(*(found[topic] for topic in self._topics))
             self._count += len(messages)
         name = f'live on {datetime.now().astimezone():%Y-%m-%d at %H:%M}'
-        recording = gated(self._states.recording(Path(name), Sources()))
+        recording = gated(self._states.recording(Path(name), Sources(as_recorded=True)))
         return commission([recording], self.request)
 
     def write(self, actuator: str = '') -> str:

@@ -239,10 +239,13 @@ def test_range_of_the_rotor_is_found_where_the_encoders_are_read_in_turn(part, t
     later = times + part / rate
     rotor, output = np.remainder(rotor + 12.5, 25.0) - 12.5, np.interp(later, times, output)
     both = Samples(stamps(times), rotor), Samples(stamps(later), output)
-    path = tmp_path / 'gear.yaml'
-    assert (
-        main(['commission', str(write_recording(tmp_path / 'bag', *both)), '-o', str(path)]) == 0
-    )
+    path, bag = tmp_path / 'gear.yaml', str(write_recording(tmp_path / 'bag', *both))
+    assert main(['commission', bag, '-o', str(path)]) == 0
     assert "The rotor's position repeats after 25 rad." in capsys.readouterr().out
     file = NodeParameters.load(path)
     assert (file.gear_ratio, file.rotor_encoder_range) == ('-36/5', 25.0)
+    measured = ['calibrate', bag, '-o', str(tmp_path / 'calibration.yaml')]
+    assert main([*measured, '--ratio=-36/5']) == 2
+    said = f'gearkin: {bag}: the positions wrap every 25 rad: set rotor_encoder_range, which '
+    assert said in capsys.readouterr().err
+    assert main([*measured, '--config', str(path)]) == 0
