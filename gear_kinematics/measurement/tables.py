@@ -119,6 +119,16 @@ def _advised(path: Path, sources: Sources, read: Callable[[TableFile, Sources], 
         raise RecordingError(f'{path}: {text}') from error
 
 
+def _are_apart(usual: Array, other: Array) -> bool:
+    """Return whether times, (n,), are of the same zero, but more than a row apart."""
+    known = (usual == usual) & (other == other)  # noqa: PLR0124, as NaN is not equal to itself
+    apart, usual = np.abs(other - usual)[known], usual[known]
+    if len(usual) <= 1:
+        return False
+    step = np.median(np.abs(np.diff(usual)))
+    return bool(np.any((apart > step) & (apart < np.ptp(usual))))
+
+
 class _Series(NamedTuple):
     """Quantities that were sampled together, (n,) each."""
 
@@ -216,6 +226,12 @@ class _Samples:
                 if len(units) > 1:
                     raise ValueError(f'{times} and {usual} are not in the same unit')
                 found[role] = times
+            elif len({*own.values()}) > 1 and _are_apart(raw[usual], raw[times]):
+                raise ColumnsError(
+                    f'{usual} and {times} may be the times of one encoder each: give the times of '
+                    'both with --time-column, or name the columns motor_time and output_time',
+                    time=usual,
+                )
         return found
 
     def _together(

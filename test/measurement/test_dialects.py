@@ -928,6 +928,21 @@ def test_times_of_both_sides_that_never_meet_are_refused(tmp_path, gear, referen
         read_rotor(path, Sources(), gear.gear.gear_ratio)
 
 
+@pytest.mark.parametrize(('late', 'asked'), [(0.5, True), (0.004, False), (1.79e9, False)])
+def test_two_times_that_are_apart_and_may_be_of_one_encoder_each_are_asked_for(
+    tmp_path, gear, reference, late, asked
+):
+    """Taken for the times of both, either would be an error by the way within half a second."""
+    t, r, o = reference('encoders')
+    names = 'time,motor_pos [rad],output_time,output_pos [rad]'
+    path = saved(tmp_path, written([t, r, t + late, o], names, '{:.5f}'))
+    if asked:
+        with pytest.raises(RecordingError, match=r'time and output_time may be .* of one'):
+            read(path, gear)
+    recording = read_table(path, Sources(time='time' if asked else ''), gear.gear.gear_ratio)
+    assert recording.columns[0] == 'time [s] from time'
+
+
 def test_an_old_workbook_under_a_new_name_needs_no_other_library(tmp_path, gear):
     pytest.importorskip('openpyxl')
     (tmp_path / 'r.xlsx').write_bytes(bytes.fromhex('d0cf11e0a1b11ae1') + bytes(600))
