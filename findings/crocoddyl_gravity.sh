@@ -2,11 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # crocoddyl 3.2.1: with the Pinocchio 4.1.0 that pip installs beside it, gravity does not pull at an arm.
 #
-# pip installs crocoddyl 3.2.1 with the newest Pinocchio, 4.1.0, as its metadata set no bound. A level arm with 1 kg at
+# pip installs crocoddyl 3.2.1 with the newest Pinocchio, 4.1.0, as its metadata sets no bound. A level arm with 1 kg at
 # 1 m falls by 9.81 rad/s² without a torque, and is held by 9.81 N·m. By DifferentialActionModelFreeFwdDynamics it does
 # not fall, and the torque of its own quasiStatic() turns it up by 9.81 rad/s²; after 0.1 s of simulation by
-# IntegratedActionModelEuler it stands where it was. Nothing warns. Pinocchio itself, the action with contacts, and the same action once its
-# armature is set to 0 are right in the same process. With Pinocchio 4.0.0 all of them are right.
+# IntegratedActionModelEuler it stands where it was. Nothing warns. Pinocchio itself, the action with contacts, and the
+# same action once its armature is set to 0 are right in the same process. With Pinocchio 4.0.0 all of them are right.
 # For us: install pin==4.0.0 beside it, and compare an acceleration with pinocchio.aba() before a motion is optimized.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
