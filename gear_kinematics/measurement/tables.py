@@ -175,11 +175,12 @@ class _Samples:
             self.series |= dict.fromkeys(roles, one)
         angles = (role for role in self.found if role != 'torque')
         self._shown = {role: find_step(self.series[role].values[role]) for role in angles}
-        self.used = len(self.series['output' if 'output' in self.found else 'angle'].stamp)
+        role = 'output' if 'output' in self.found else 'angle'
+        self.used = len(self.series[role].stamp)
         named = ' and '.join(dict.fromkeys([*clocks.values()] if own else [usual]))
         self.said = [f'time [{clock.unit}] from {named}' if clock else 'no times']
         self.said += map(described, self.found, self.found.values())
-        rows = min(map(np.count_nonzero, usable.values())) if together is None else len(together)
+        rows = np.count_nonzero(usable[role]) if together is None else len(together)
         thinned = f', one in {self._every} of the file' if self._every > 1 else ''
         self.said.append(f'{self.used} of {rows} rows{thinned}')
 

@@ -746,6 +746,17 @@ def test_names_can_be_given_with_units(tmp_path, gear, reference):
     assert not measure(recording, gear).wrong_ratio
 
 
+def test_rows_are_those_of_the_output_where_encoders_share_none(tmp_path, gear, reference):
+    t, r, o = reference('encoders')
+    content = 'time [s],motor [rad],output [rad]\n' + ''.join(
+        (f'{at:.4f},{rotor:.5f},\n' if k % 5 == 0 else '') + f'{at + 5e-4:.4f},,{out:.5f}\n'
+        for k, (at, rotor, out) in enumerate(zip(t, r, o, strict=True))
+    )
+    path = saved(tmp_path, content)
+    recording = read_table(path, Sources(), gear.gear.gear_ratio)
+    assert recording.columns[-1] == '1320 of 1320 rows'
+
+
 # Other formats
 
 
