@@ -780,8 +780,8 @@ def test_init_without_an_answer_writes_nothing(listening, monkeypatch):
 @pytest.mark.usefixtures('listening')
 def test_init_questions_velocities_that_contradict_the_positions(monkeypatch, capsys):
     moving = [
-        ('/motor', k, rotor_bytes(k * 10_000_000, ['m1'], [0.5 * k], [-50.0 / 19.0]))
-        for k in range(1, 200)
+        ('/motor', t, rotor_bytes(t, ['m1'], [5e-8 * t], [-50.0 / 19.0]))
+        for t in range(10_000_000, 2_000_000_000, 10_000_000)
     ]
     monkeypatch.setattr(drivers, 'listen', lambda: [DriverTopic('/motor', ('m1',), 99.0, moving)])
     assert main(['init', '--joint', 'm1', '--ratio', '-19']) == 0
