@@ -7,7 +7,7 @@
 # servo takes at most, and the goal to 240°, each by itself and without a word. From 0° to 240° at 1°/s are 30 s instead
 # of 240 s; from 200° to 300° at 10°/s are 10 s for the 40° that are left, 4°/s. Other moves are right to the rounding.
 # The serial port is a stub.
-# For us: a slow move, as for calibration, is up to 8 times too fast. Move in parts of at most 30 s.
+# For us: a slow move, as for calibration, is too fast. Move in parts of at most 30 s each.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
 set -euo pipefail
