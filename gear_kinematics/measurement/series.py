@@ -62,8 +62,10 @@ def own_rows(series: Mapping[str, Array]) -> dict[str, Array]:
     """
     changed = {role: np.diff(values, prepend=np.nan) != 0.0 for role, values in series.items()}
     rotor, output = (changed.get(role, np.ones(1, bool)) for role in ('rotor', 'output'))
-    together = np.count_nonzero(rotor & output)
-    if together > _BY_CHANCE * min(np.count_nonzero(rotor), np.count_nonzero(output)):
+    torque = changed.get('torque', np.zeros(1, bool))  # perhaps beside one of the two
+    fewest = _BY_CHANCE * min(np.count_nonzero(rotor), np.count_nonzero(output))
+    beside = min(np.count_nonzero(torque & rotor), np.count_nonzero(torque & output))
+    if max(np.count_nonzero(rotor & output), beside) > fewest:
         return {}
     rest = ~np.any([*changed.values()], axis=0)
     return {role: rows | rest for role, rows in changed.items()}

@@ -954,6 +954,18 @@ def test_two_times_that_are_apart_and_may_be_of_one_encoder_each_are_asked_for(
     assert recording.columns[0] == 'time [s] from time'
 
 
+def test_rows_with_a_torque_of_their_own_are_no_filled_gaps(tmp_path, gear):
+    """Ideal encoders whose counts of rotor and output never change in the same row."""
+    count, time = math.tau / 4096, np.arange(20_000) * 1e-3
+    rotor = count * (100.0 * np.minimum(time, 20.0 - time) + 0.37)
+    output = count * np.round(0.1 * rotor / count + 0.26)
+    torque = np.random.default_rng(1).normal(2.0, 0.05, len(time))
+    columns = [time, count * np.round(rotor / count), output, torque]
+    path = saved(tmp_path, written(columns, 'time,rotor,output,torque', '{:.6f}'))
+    given = replace(gear, gear_ratio='10')
+    assert len(read(path, given).encoders.rotor.stamp) == len(time)
+
+
 def test_an_old_workbook_under_a_new_name_needs_no_other_library(tmp_path, gear):
     pytest.importorskip('openpyxl')
     (tmp_path / 'r.xlsx').write_bytes(bytes.fromhex('d0cf11e0a1b11ae1') + bytes(600))
