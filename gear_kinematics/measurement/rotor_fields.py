@@ -69,6 +69,8 @@ def questions(
     values[:, 0], (period, _) = _unwrapped(stamp, values[:, 0])
     if steps and not counts:
         yield from _impossible_steps(data, received, joint, period)
+        if (pace := _pace(states.stamp, np.asarray(received))) > FASTEST:
+            yield Condition.STAMPS_TOO_FAST(factor=pace)
     sizes = np.abs(np.diff(values[:, 0]))
     given = values[np.isfinite(values[:, 1]), 1]
     velocities = VelocityField(float(1 / ratio) if ratio else np.nan)
@@ -110,8 +112,6 @@ def _impossible_steps(
         yield Condition.REJECTED(counts=counts)
     if step := rotor.disorder.clock_step:
         yield step
-    if (pace := _pace(decode_joint_states(data, joint).stamp, np.asarray(received))) > FASTEST:
-        yield Condition.STAMPS_TOO_FAST(factor=pace)
 
 
 def _pace(stamp: Array, received: Array) -> float:
