@@ -233,7 +233,6 @@ class _Joint:
         """Those of its position, velocity and effort; None for one that is absent."""
         self.present = [offset for offset in self.offsets if offset is not None]
         self.missing = index is None
-        self._fault = Rejection.POSITION_MISSING if self._fits else Rejection.ARRAY_SIZES
 
     def pick_from(self, offsets: Sequence[int]) -> Callable[[Sequence[Any]], tuple[Any, ...]]:
         """Make a function that takes the joint's numbers out of all, and None behind them."""
@@ -250,8 +249,10 @@ class _Joint:
         if position is None:
             if self.missing:
                 raise _missing(self._joint, data)
+            if self._fits:
+                raise RejectedInputError(Rejection.POSITION_MISSING)
             sizes = partial(describe_sizes, self._joint, data)
-            raise RejectedInputError(self._fault, str if self._fits else sizes)
+            raise RejectedInputError(Rejection.ARRAY_SIZES, sizes)
         if not -LARGEST_ANGLE <= position <= LARGEST_ANGLE:  # NaN compares false
             if math.isfinite(position):
                 raise RejectedInputError(Rejection.POSITION_TOO_LARGE)
