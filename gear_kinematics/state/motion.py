@@ -37,7 +37,7 @@ def all_in_reach(
     """
     if found := _even(known, limits, stamps, positions):
         return found
-    position, since, *last = known.last
+    position, since, last_step, last_span = known.last
     *_, former_step, former_span = known.former
     former, moving = known.former, known.moving
     steps = np.diff(positions, prepend=position)
@@ -47,11 +47,11 @@ def all_in_reach(
     until = np.append(np.concatenate([[known.stamp], stamps[:-1]])[rows], stamps[-1])
     stood = np.append(False, until - changed > STALEST_NS)
     # The step and the span up to each position; none after a standstill.
-    moved = np.concatenate([[former_step, last[0]], steps])
+    moved = np.concatenate([[former_step, last_step], steps])
     spans = np.diff(changed)
     started = stood[1:-1] & (when > until[:-1])
     spans[started] = (when - until[:-1])[started]
-    took = np.concatenate([[former_span, last[1]], spans])
+    took = np.concatenate([[former_span, last_span], spans])
     ended = stood & (moved != 0.0)
     step, span = np.where(ended, 0.0, moved), np.where(ended, 0, took)
     # Left to `judge`: steps of the same stamp, which are added up, abrupt stops, and what may be
@@ -61,28 +61,27 @@ def all_in_reach(
     sizes = np.abs([steps, steps - step[1:-1]])
     sizes = np.where(sizes > EQUAL, sizes, COARSEST).min(axis=0)
     noise = np.minimum.accumulate(np.append(known.noise, np.maximum(2.0 * sizes, FLOOR)))
-    for k in np.flatnonzero(ended).tolist():
-        ends = (0.0, 0, moved[k], took[k]), (0.0, 0, step[k - 1], span[k - 1])
-        if limits.least_speed(*ends, noise[k - 1], 0.0):
-            return None
-        where = float(positions[rows[k - 2]]) if k > 1 else position
-        moving = where, int(changed[k - 1]), float(moved[k]), int(took[k])
     usual = 0.5 * (span[1:-1] + span[:-2])
     regular = usual <= LONGEST_NS
     for each in (span[1:-1], np.diff(changed)):
         regular &= np.abs(each - usual) <= REGULAR * usual
     regular &= np.abs(steps - step[1:-1]) <= limits.even_step(usual)
     regular &= np.abs(steps) <= limits.speed * 1e-9 * np.diff(changed)
+    places = [known.former[0], position, *positions[rows].tolist()]
     held_up = known.held_up
-    for k in np.flatnonzero(~regular).tolist():
-        ends = (
-            (0.0, int(changed[k]), float(step[k + 1]), int(span[k + 1])),
-            (0.0, 0, float(step[k]), int(span[k])),
-        )
-        held_up = held_up.before(int(when[k] - changed[k]), *ends)
-        low, high = limits.reach(int(when[k]), int(until[k]), *ends, float(noise[k]), held_up)
-        if not low <= steps[k] <= high:
-            return None
+    for k in np.flatnonzero(ended[1:] | np.append(~regular, False)).tolist():
+        place, began = places[k + 1], int(changed[k])
+        prior = places[k], 0, float(step[k]), int(span[k])
+        if ended[k + 1]:
+            moving = place, began, float(moved[k + 1]), int(took[k + 1])
+            if limits.least_speed(moving, prior, noise[k], held_up):
+                return None
+        if k < len(rows) and not regular[k]:
+            last = place, began, float(step[k + 1]), int(span[k + 1])
+            held_up = held_up.before(int(when[k]) - began, last, prior)
+            reach = limits.reach(int(when[k]), int(until[k]), last, prior, noise[k], held_up)
+            if not reach[0] <= steps[k] <= reach[1]:
+                return None
     if len(rows):
         before = float(positions[rows[-2]]) if len(rows) > 1 else position
         former = before, int(changed[-2]), float(step[-2]), int(span[-2])

@@ -61,7 +61,7 @@ class Plausibility:
 
     def restrict(self, max_speed: float, max_acceleration: float, period: float = 0.0) -> None:
         """Change the limits from now on."""
-        self.limits = RotorLimits(max_speed, max_acceleration)
+        self.limits = RotorLimits(max_speed, max_acceleration, period or math.inf)
         self.period, self.wraps = period, Wraps(period)
         self.seen_speed = self.seen_acceleration = 0.0
         """rad/s and rad/s², of motions beyond the limits, which are raised above them."""
@@ -241,9 +241,8 @@ class Plausibility:
         held = stamp - self._last[1]
         if held > STALEST_NS:
             time = held * 1e-9 - STALEST
-            changed = self._last[1]
-            late = self._held_up.late(changed, changed)
-            if speed := self.limits.least_speed(self._last, self._former, self.noise, late):
+            known = self._last, self._former, self.noise, self._held_up
+            if speed := self.limits.least_speed(*known):
                 way = speed * time - 0.5 * self.limits.acceleration * time * time
                 if way > self.noise:
                     return self._doubt(position, stamp)

@@ -29,6 +29,7 @@ class HeldUp(NamedTuple):
     length: int = 0
     usual: int = 0  # time between two readings before it
     speed: float = math.inf  # rad/s, before it
+    position: float = math.nan  # rad, before it; NaN if its time is uncertain
 
     def late(self, last: int, stamp: int) -> float:
         """Return by how much the time between two readings may exceed that of their stamps, ns.
@@ -47,7 +48,7 @@ class HeldUp(NamedTuple):
         if left + length > -self.length:  # readings of the burst before tell no speed
             return HeldUp(end, length, max(former[3], self.usual))
         speed = abs(former[2]) / former[3] * 1e9 if former[3] else math.inf
-        return HeldUp(end, length, former[3], speed)
+        return HeldUp(end, length, former[3], speed, former[0])
 
 
 def _stale(last: Reading, former: Reading, late: float) -> float:
@@ -60,6 +61,7 @@ class RotorLimits(NamedTuple):
 
     speed: float  # rad/s
     acceleration: float  # rad/s²
+    period: float = math.inf  # rad, after which readings repeat
 
     def even_step(self, span: Any) -> Any:
         """Return by how much successive steps may differ, rad, if each takes about a time, ns.
@@ -69,12 +71,18 @@ class RotorLimits(NamedTuple):
         stale = (1.25 * (1.0 - REGULAR) * 1e-9) * span
         return FLOOR + 1.5 * self.acceleration * stale * stale
 
-    def least_speed(self, last: Reading, former: Reading, noise: float, late: float) -> float:
+    def least_speed(self, last: Reading, former: Reading, noise: float, held_up: HeldUp) -> float:
         """The speed, rad/s, that the rotor had at least; 0 if it can stand at once."""
         if not (last[3] and former[3]):
             return 0.0
-        time = (last[3] + former[3]) * 1e-9 + _stale(last, former, late)
-        speed = (abs(last[2] + former[2]) - noise) / time - self.acceleration * time
+        position, changed, step, span = last
+        way, span = step + former[2], span + former[3]
+        late = held_up.late(changed, changed)
+        if late > 0.0:  # stamps of a burst tell no speed, the one before the pause does
+            way = math.remainder(position - held_up.position, self.period)
+            span = changed - held_up.end + held_up.length
+        time = span * 1e-9 + _stale(last, former, late)
+        speed = (abs(way) - noise) / time - self.acceleration * time
         return speed if speed * abs(speed) > 2.0 * self.acceleration * noise else 0.0
 
     def reach(
