@@ -167,6 +167,34 @@ def test_fields_that_are_late_in_unsteady_motion_are_named(delay, named, step):
         assert meaning.values == {'delay': pytest.approx(abs(delay), rel=0.05)}
 
 
+def meanings(time, position, velocity):
+    """What is said in each second of (n,) readings."""
+    field, said = VelocityField(-1 / 19), []
+    values = np.column_stack([position, velocity, np.full_like(time, np.nan)])
+    stamps = SECOND + np.round(time * SECOND).astype(np.int64)
+    for second in np.split(np.arange(len(time)), np.flatnonzero(np.diff(np.floor(time))) + 1):
+        field.believed(stamps[second], values[second], 0.05)
+        said.append(field.meaning and field.meaning.condition)
+    return said
+
+
+def test_delay_stays_named_until_velocities_are_right():
+    """Not each part of this motion shows a delay of 0.15 s, which ends after 30 s."""
+    time = np.arange(6000) / 100
+    position = 10.0 * np.sin(6.0 * time) + 3.0 * np.sin(15.0 * time)
+    past = time - 0.15 * (time < 30.0)
+    said = meanings(time, position, 60.0 * np.cos(6.0 * past) + 45.0 * np.cos(15.0 * past))
+    assert {*said[5:30]} == {Condition.VELOCITIES_LATE}
+    assert {*said[35:]} == {None}
+
+
+def test_right_velocities_are_not_late_where_messages_are_lost():
+    time = np.arange(6000) / 100
+    time = time[time % 0.7 >= 0.4]
+    said = meanings(time, 40.0 * np.sin(4.0 * time), 160.0 * np.cos(4.0 * time))
+    assert {*said} == {None}
+
+
 @pytest.mark.parametrize(('eccentric', 'noise'), [(0.02, 0.0), (0.0, 0.01)])
 def test_errors_of_positions_at_a_steady_speed_are_no_delay(eccentric, noise):
     """Even where readings, 0.1 s apart, take them half a turn apart."""
