@@ -96,7 +96,8 @@ class InputMonitor(DriverMonitor):
             self._rate = received / elapsed
             self._reported, self._received = now, count
             stamp = rotor_input.last.stamp if rotor_input.last else 0
-            self._paces = self._paces[1], (stamp - self._stamp) / SECOND / elapsed
+            pace = (stamp - self._stamp) / SECOND / elapsed if self._stamp else 0.0
+            self._paces = self._paces[1], pace
             self._stamp = stamp
         age = now - (driver.since if self.last_input is None else self.last_input)
         referenced = rotor_input.referenced
