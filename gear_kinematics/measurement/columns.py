@@ -61,7 +61,7 @@ class Column(NamedTuple):
     scale: float  # factor from its numbers to rad, N·m or s
     unit: str  # empty where nothing is known
     on_rotor: bool
-    on_output: bool  # whether its name says so
+    on_output: bool  # whether its name, or the user, says so
     borrowed: bool = False  # whether its unit is that of the other angle
 
 
@@ -103,11 +103,13 @@ def find_columns(
             if name not in header:
                 raise ValueError(f'no column {name!r}{among(name, header, most=len(header))}')
             named[role] = name
-    found = likeliest(header) | named
+    found, side = likeliest(header) | named, 'angle'
     if {'rotor', 'output'} <= found.keys() and 'angle' not in named:
         found.pop('angle', None)
-    elif 'torque' in found and (angles := [found[role] for role in ANGULAR if role in found]):
-        found = {'angle': angles[0]} | {r: found[r] for r in found if r in {'torque', 'time'}}
+    elif 'torque' in found and (sides := [role for role in ANGULAR if role in found]):
+        side = next((role for role in sides if role in named), sides[0])
+        found = {'angle': found[side]} | {r: found[r] for r in found if r in {'torque', 'time'}}
+        side = side if side in named else 'angle'
     else:
         known = ', '.join((*GIVEN_UNITS, *TORQUE_UNITS))
         raise ColumnsError(
@@ -123,7 +125,9 @@ def find_columns(
     moteus = {name.lower() for name in header} >= _MOTEUS
     common = next(filter(None, map(units.get, angles)), 'rev' if moteus else '')
     return {
-        role: _column(role, found[role], units[found[role]], given, common)
+        role: _column(
+            side if role == 'angle' else role, found[role], units[found[role]], given, common
+        )
         for role in ROLES
         if role in found
     }
@@ -190,10 +194,12 @@ def _column(role: str, name: str, unit: str, given: Sources, common: str) -> Col
             )
         scale = TURN / counts if counts else 1.0
         unit = f'{counts} counts a turn' if counts else 'counts'
+    on_output = role == 'output' or (says.on_output and role != 'rotor')
     # The current of a motor says a torque of either side.
     on_rotor = given.on_rotor or (says.on_rotor and 'current' not in says.words)
+    on_rotor = role == 'rotor' or (on_rotor and not on_output)
     borrowed = role in ANGULAR and bool(unit and not own)
-    return Column(name, scale, unit, on_rotor and not says.on_output, says.on_output, borrowed)
+    return Column(name, scale, unit, on_rotor, on_output, borrowed)
 
 
 def described(role: str, column: Column) -> str:

@@ -3,6 +3,7 @@
 
 import shlex
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
@@ -80,7 +81,7 @@ def read_table(
 
 
 def read_rotor(path: Path, sources: Sources, ratio: Fraction) -> tuple[Array, Array, Array, str]:
-    """Read the motion of a gear's rotor under torque.
+    """Read the motion of a gear's rotor under torque; columns that name no side are the rotor's.
 
     Returns:
         Stamps, ns, angles of the rotor, rad, and its torque, N·m, (n,) each; the columns read.
@@ -90,13 +91,12 @@ def read_rotor(path: Path, sources: Sources, ratio: Fraction) -> tuple[Array, Ar
     """
 
     def motion(table: TableFile, sources: Sources) -> tuple[Array, Array, Array, str]:
-        read = _Samples(table, sources, ratio)
+        read = _Samples(table, replace(sources, on_rotor=True), ratio)
         if 'torque' not in read.found or not read.timed:
             raise ColumnsError('no times or no torque: give --time-column and --torque-column')
         read.steps()
         role = 'rotor' if 'rotor' in read.found else 'angle'
-        on_rotor = role == 'rotor' or read.found[role].on_rotor
-        angle = read.unwrapped(role) * (1.0 if on_rotor else float(ratio))
+        angle = read.unwrapped(role) * (1.0 if read.found[role].on_rotor else float(ratio))
         torque = read.torque_at(read.series[role]) / float(ratio)
         return read.series[role].stamp, angle, torque, ', '.join(read.said)
 

@@ -746,6 +746,25 @@ def test_names_can_be_given_with_units(tmp_path, gear, reference):
     assert not measure(recording, gear).wrong_ratio
 
 
+def test_an_angle_that_is_given_as_one_of_a_side_is_that_of_this_side(tmp_path, gear, reference):
+    time, angle, torque = reference('ramps')
+    columns = [time, angle, torque, -30.0 * angle]
+    path = saved(tmp_path, written(columns, 'time,angle,torque,enc', '{:.6f}'))
+    for given in (Sources(rotor='enc'), Sources(output='angle')):
+        recording = read(path, gear, given)
+        assert_measured(recording, gear)
+        assert measure(recording, gear).measured == (given.output is not None)
+
+
+def test_loads_take_columns_that_say_no_side_for_those_of_the_rotor(tmp_path, gear, reference):
+    time, rotor, _ = reference('encoders')
+    for names in ('time,position,effort', 'time,motor_pos,torque', 'time,angle,motor_torque'):
+        path = saved(tmp_path, written([time, rotor, np.sin(time)], names, '{:.5f}'))
+        _, angle, torque, _ = read_rotor(path, Sources(), gear.gear.gear_ratio)
+        np.testing.assert_allclose(angle, rotor, atol=1e-5)
+        np.testing.assert_allclose(torque, np.sin(time), atol=1e-5)
+
+
 def test_rows_are_those_of_the_output_where_encoders_share_none(tmp_path, gear, reference):
     t, r, o = reference('encoders')
     content = 'time [s],motor [rad],output [rad]\n' + ''.join(
