@@ -8,6 +8,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import yaml
+
 from gear_kinematics.parameters.atomic_file import replace_file
 from gear_kinematics.parameters.yaml_file import Loader, load_yaml, read_yaml
 from gear_kinematics.wire.nearest import nearest
@@ -165,9 +167,15 @@ class _RosLoader(Loader):
     tags = False
 
 
-_RosLoader.add_constructor(
-    'tag:yaml.org,2002:map', lambda loader, node: _Pairs(loader.construct_pairs(node, deep=True))
-)
+def _pairs(loader: _RosLoader, node: yaml.MappingNode) -> _Pairs:
+    """Read a mapping, whose keys are texts even if they look like numbers or truth values."""
+    return _Pairs(
+        (loader.construct_scalar(key), loader.construct_object(value, deep=True))
+        for key, value in node.value
+    )
+
+
+_RosLoader.add_constructor('tag:yaml.org,2002:map', _pairs)
 
 
 def parameter_blocks(text: str) -> list[tuple[str, dict[str, Any]]]:

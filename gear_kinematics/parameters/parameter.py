@@ -7,6 +7,8 @@ from dataclasses import dataclass, field, fields, replace
 from fractions import Fraction
 from typing import Any, get_origin
 
+_TRUTH = '; quote it, as YAML takes y, n, yes, no, on and off for truth values'
+
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
@@ -28,6 +30,8 @@ class Parameter:
         kind = type(value)
         if kind is not self.kind:
             quoted = f'; write {value}.0' if (kind, self.kind) == (int, float) else ''
+            if (kind, self.kind) == (bool, str):
+                quoted = _TRUTH
             if self.kind is str and kind in {int, float} and math.isfinite(value):
                 texts = dict.fromkeys((str(Fraction(str(value))), str(value)))
                 quoted = f'; quote it: {" or ".join(map(repr, texts))}'
@@ -37,7 +41,8 @@ class Parameter:
             return f'{name} must be of type {self.kind.__name__}, not {value!r}{quoted}'
         if isinstance(value, list) and not all(isinstance(item, self.items) for item in value):
             what = 'strings' if self.items is str else 'numbers with a decimal point'
-            return f'{name} must be a list of {what}, not {value!r}'
+            quoted = _TRUTH * any(isinstance(item, bool) for item in value)
+            return f'{name} must be a list of {what}, not {value!r}{quoted}'
         if self.minimum is not None and self.maximum is not None:
             inside = self.minimum <= value <= self.maximum  # NaN is not
             if not inside or (self.step and (value - self.minimum) % self.step):

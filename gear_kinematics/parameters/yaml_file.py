@@ -12,11 +12,19 @@ import yaml
 _MAX_DEPTH = 20  # libyaml has no limit of recursion
 _MAX_NUMBERS = 100  # as keys of a mapping: hashes of numbers can be made to collide
 _TEXT = 'tag:yaml.org,2002:str'
-_NO_NUMBER = re.compile('[:_]|^[-+]?0b')  # for rcl, in what PyYAML takes for numbers
+_SCALARS = {
+    'bool': ('y|Y|yes|Yes|YES|true|True|TRUE|on|On|ON|n|N|no|No|NO|false|False|FALSE|off|Off|OFF',
+             'yYnNtTfFoO'),
+    'int': ('[-+]?(0[0-7]*|[1-9][0-9]*|0x[0-9a-fA-F]+)', '-+0123456789'),
+    'float': (r'[-+]?((?i:\.?inf|\.?nan|infinity)|([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?)',
+              '-+.0123456789iInN'),
+    'null': ('|~|null|Null|NULL', ['', *'~nN']),
+}  # fmt: skip
+"""What is no text without quotes, by kind: as in rcl, besides `null`, and the first characters."""
 
 
 class Loader(getattr(yaml, 'CSafeLoader', yaml.SafeLoader)):  # type: ignore[misc]
-    """Reads 15e-4 as a number, and 1:30, 1_000 and 0b11 as texts, as ROS does."""
+    """Reads y as a truth value, 15e-4 as a number, and 1:30 as a text, as rcl does."""
 
     max_bytes: ClassVar[int] = 2**18
     max_events: ClassVar[int] = 2**13
@@ -25,6 +33,8 @@ class Loader(getattr(yaml, 'CSafeLoader', yaml.SafeLoader)):  # type: ignore[mis
     aliases: ClassVar[bool] = False
     """Whether aliases are allowed: text written from their values can expand without end."""
     tags: ClassVar[bool] = True  # whether others than !!str are allowed: old ROS ignores them
+    bool_values: ClassVar = yaml.SafeLoader.bool_values | {'y': True, 'n': False}
+    yaml_implicit_resolvers: ClassVar[dict[str, Any]] = {}  # replaced by `_SCALARS`
 
     def flatten_mapping(self, node: yaml.MappingNode) -> None:
         """Leave merge keys (`<<`), which can expand without end, to be refused as unknown."""
@@ -36,22 +46,11 @@ class Dumper(yaml.SafeDumper):
     """Writes what `Loader` and rcl read: texts like numbers or truth values are quoted."""
 
 
-Dumper.add_implicit_resolver('tag:yaml.org,2002:bool', re.compile('[yYnN]$'), list('yYnN'))
-
-for _either in (Loader, Dumper):
-    _either.add_implicit_resolver(
-        'tag:yaml.org,2002:float',
-        re.compile(r'[-+]?([0-9]+(\.[0-9]*)?|\.[0-9]+)[eE][-+]?[0-9]+$'),
-        list('-+.0123456789'),
-    )
-
-for _kind, _number in (('int', Loader.construct_yaml_int), ('float', Loader.construct_yaml_float)):
-    Loader.add_constructor(
-        f'tag:yaml.org,2002:{_kind}',
-        lambda loader, node, number=_number: (
-            node.value if _NO_NUMBER.search(node.value) else number(loader, node)
-        ),
-    )
+for _kind, (_pattern, _first) in _SCALARS.items():
+    for _either in (Loader, Dumper):
+        _either.add_implicit_resolver(
+            f'tag:yaml.org,2002:{_kind}', re.compile(f'({_pattern})$'), list(_first)
+        )
 
 
 def read_yaml(path: Path, error_type: type[ValueError], loader: type[Loader] = Loader) -> Any:

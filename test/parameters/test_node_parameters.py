@@ -123,6 +123,8 @@ REFUSED = [
     ('eccentricity', 1, ('float',)),
     ('branches', 'a', ("list, not 'a'; write ['a']",)),
     ('branches', [1, 2], ('strings',)),
+    ('actuators', [True, 'x'], ('; quote it, as YAML takes y, n,',)),
+    ('rotor_joint', True, ('; quote it, as YAML takes y, n,',)),
     ('gear_ratio', '19:1', ('an integer, a fraction or a decimal, such as -19',)),
     ('gear_ratio', 50.5, ("'101/2' or '50.5', and twice after -p: \"gear_ratio:='50.5'\"",)),
     ('rotor_joint', 1, ("; quote it: '1'",)),
@@ -259,19 +261,29 @@ def test_one_of_several_files_has_something_for_the_node(tmp_path):
         require_any([*files, tmp_path / 'empty.yaml'], LEFT)
 
 
-@pytest.mark.parametrize('number', ['1.5e-3', '15e-4', '.0015'])
-def test_every_way_to_write_a_number_in_a_node_file_is_read(tmp_path, number):
-    # YAML 1.1 as PyYAML reads it sees a text in 15e-4; rcl sees a number.
-    text = f'/**:\n  ros__parameters:\n    eccentricity: {number}\n'
-    assert load(write(tmp_path, text)).eccentricity == 0.0015
+# As rcl 9.2 and 10.1 hand them to a node; PyYAML alone reads most of them in another way.
+READ_BY_RCL = {
+    'y N yes off TRUE': [True, False, True, False, True],
+    '15 017 0x1F +5 -0': [15, 15, 31, 5, 0],
+    '1.5e-3 15e-4 .0015 +.5 08 1.e+3 inf -.INF': [0.0015, 0.0015, 0.0015, 0.5, 8.0, 1e3, math.inf,
+                                                  -math.inf],
+    "1:20 8_0 0b11 0x_50 0o17 TrUe 1e 2001-01-01 = '5' 'y'": [
+        '1:20', '8_0', '0b11', '0x_50', '0o17', 'TrUe', '1e', '2001-01-01', '=', '5', 'y'],
+}  # fmt: skip
 
 
-@pytest.mark.parametrize('number', ['1:20', '8_0', '0b1010000', '0x_50'])
-def test_what_rcl_reads_as_a_text_is_no_number_of_a_node_file(tmp_path, number):
-    # PyYAML sees 80 in each; rcl 9.2 and 10.1 hand texts to the node, which refuses them.
-    text = f'/**:\n  ros__parameters:\n    ring_teeth: {number}\n'
-    with pytest.raises(ConfigError, match=f'ring_teeth must be .*{number}'):
-        load(write(tmp_path, text))
+@pytest.mark.parametrize(('scalars', 'values'), READ_BY_RCL.items())
+def test_values_of_a_node_file_are_what_rcl_reads(tmp_path, scalars, values):
+    text = f'/**: {{ros__parameters: {{k: [{", ".join(scalars.split())}]}}}}'
+    found = given_parameters(write(tmp_path, text), NODE)['k']
+    assert [*map(repr, found)] == [*map(repr, values)]
+
+
+def test_names_in_a_node_file_are_texts_as_for_rcl(tmp_path):
+    names = 'on', 'y', '017', '1.50', 'null', '='
+    blocks = ''.join(f'    {name}:\n      k: 1\n' for name in names)
+    path = write(tmp_path, f'/**:\n  ros__parameters:\n{blocks}')
+    assert [*given_parameters(path, NODE)] == [f'{name}.k' for name in names]
 
 
 @pytest.mark.parametrize(
@@ -284,6 +296,7 @@ def test_what_rcl_reads_as_a_text_is_no_number_of_a_node_file(tmp_path, number):
         (b'a: &x 1\nb: *x', 'aliases are not supported in line 2'),
         (b'a: !!float 10', "'tag:yaml.org,2002:float' has no effect before ROS Lyrical"),
         (b'a: !!set {}', "'tag:yaml.org,2002:set' has no effect before ROS Lyrical"),
+        (b'? [a]\n: 1', 'expected a scalar node, but found sequence in line 1'),
         (b'%TAG ! tag:x,2000:\n---\na: 1', '%TAG is not supported'),
         (b'[1, 2]', 'no ros__parameters in it'),
         (b'/**: {ros__parameters: 5}', 'no ros__parameters in it'),
