@@ -109,11 +109,14 @@ class _Parser(argparse.ArgumentParser):
         (file or sys.stderr).write(message)
 
     def refuse(self, unknown: Sequence[str]) -> NoReturn:
-        """Report unknown options together with the known ones, or surplus arguments."""
+        """Report unknown options together with what is known, or surplus arguments."""
         message = f'unrecognized arguments: {" ".join(unknown)}'
         if options := [word for word in unknown if word.startswith('-') and word != '-']:
             known = [text for text in self._option_string_actions if text.startswith('--')]
+            known.remove('--debug')  # hidden in --help, too
             message += among(options[0].partition('=')[0], known, most=len(known))
+            if plain := [each.metavar or each.dest for each in self._get_positional_actions()]:
+                message += f'; without an option: {", ".join(map(str, plain))}'
         self.error(message)
 
     def error(self, message: str) -> NoReturn:

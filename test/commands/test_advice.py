@@ -129,6 +129,7 @@ def test_the_joint_chooses_among_topics(tmp_path, capsys):
         ('compute a b --storage mcp', "'mcp'; did you mean `mcap`? there are: mcap"),
         ('replay a --lopp', '--lopp; did you mean `--loop`? there are: --actuator, --as, '),
         ('plot scheme a --degres', '--degres; did you mean `--degrees`? there are: --actuator'),
+        ('plot scheme -o a.png', ' --torque; without an option: figure, FILE; see gearkin plot'),
         ('replay a b', 'unrecognized arguments: b; see gearkin replay --help'),
         ('urdf --config my.yaml', 'did you mean `module`?; there are: ring_teeth, '),
         ('urdf --config two.yaml --node /lift/x', 'only of /left/x, /right/x; did '),
