@@ -40,8 +40,8 @@ def new_config(
         f'# For the joint {_one_line(joint)} on {_one_line(topic)}, with the gear ratio {ratio}.\n'
         '# Start the node with\n'
         f'#     {start_command(topic, name)}\n'
-        f'# Check {"the mechanism, " if teeth else ""}rotor_direction and rotor_encoder. '
-        'SI units: m, rad, s.\n' + body
+        f'# Check {"the mechanism, " if teeth else ""}rotor_direction, rotor_encoder and '
+        'max_rotor_speed. SI units: m, rad, s.\n' + body
     )
 
 
@@ -64,8 +64,9 @@ def arm_head(command: str) -> list[str]:
         '# An arm: all its actuators in one node. Start it with',
         f'#     {command}',
         '# Each parameter can stand below an actuator, or beside `actuators` for all of them.',
-        '# Check rotor_direction and rotor_encoder. An output has the name of its actuator,',
-        '# unless an output_joint is given. SI units: m, rad, s.',
+        '# Check rotor_direction and rotor_encoder; set max_rotor_speed to what the motors reach.',
+        '# An output has the name of its actuator, unless an output_joint is given.',
+        '# SI units: m, rad, s.',
     ]
 
 
