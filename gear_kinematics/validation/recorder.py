@@ -31,7 +31,7 @@ LOST = 'that the recorder says that it lost'
 _SETTLING_TIME = 1_000_000_000  # ns after which a recorder has settled, or a node hears a driver
 _PAUSE, _PERIODS = 500_000_000, 10.0
 """ns, and usual periods, without inputs that a driver needs for a restart."""
-_MOST_BACK = 0.1  # of the inputs, that a node can miss so: no driver restarts all the time
+_MOST_BACK = 0.1  # of the inputs, that a node can miss so more than once
 _QUIET_TIME = 150_000_000  # ns without a loss after which it has settled earlier
 _MAX_END = 500_000_000  # ns by which outputs may end before their inputs
 HOLE = 1.5  # median periods between inputs; beyond, an input between them was not recorded
@@ -53,6 +53,7 @@ class Missing:
         self._after = Occurrences()  # inputs after the last one with an output
         self._after_since = 0  # when the first of them was received, ns
         self._missed = Occurrences()  # inputs before the node heard the driver again
+        self._restarts = 0  # after which it missed some
         self._judged = 0  # inputs
         self._last_answered: int | None = None  # when it was received, ns
 
@@ -77,6 +78,7 @@ class Missing:
     def judge_after(self, *, back: bool = False) -> None:
         """Judge the inputs after the last output; the driver may just have come `back`."""
         (self._missed if back else self.inputs).add_all(self._after)
+        self._restarts += back and self._after.count > 0
         self._after = Occurrences()
 
     def close(self, last: int, *, strict: bool, lost: int) -> None:
@@ -91,7 +93,7 @@ class Missing:
             self.left_out[AFTER] += self._after.count
         if late and self._last_answered is not None:
             self.ended_early = (last - self._last_answered) * 1e-9
-        if self._missed.count > _MOST_BACK * self._judged:
+        if self._restarts > 1 and self._missed.count > _MOST_BACK * self._judged:
             self.inputs.add_all(self._missed)
         elif self._missed.count:
             self.left_out[BACK] += self._missed.count

@@ -210,6 +210,7 @@ def test_a_loss_after_a_quiet_period_is_found_at_once(traffic, config, seed):
     ('pause', 'begin', 'end', 'excused'),
     [
         (2.0, 0.0, 0.05, True),
+        (2.0, 0.0, 0.9, True),  # of 4 s
         (0.3, 0.0, 0.05, False),  # too short for a restart
         (2.0, 0.01, 0.05, False),  # the node had heard the driver
         (2.0, 0.0, 1.2, False),
