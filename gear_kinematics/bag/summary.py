@@ -51,7 +51,7 @@ class TopicSummary(NamedTuple):
     mean_rate: float | None  # mean rate, Hz; it differs from `rate` where messages come in bursts
     gaps: int  # periods longer than five median ones
     longest_gap: float  # longest of these periods, s
-    followed: str = ''  # joint of the rotor or, on another topic, that of the first message
+    followed: str = ''  # joint of the rotor or, on another topic, the first that can be read
     of_others: int = 0  # messages without that joint, which rate and gaps leave out
 
 
@@ -95,7 +95,7 @@ def summarise(
         for batch in bag.batches(bag.topics, progress, any_encoding=True):
             for topic, received, data in batch:
                 if topic in states:
-                    if topic not in followed:
+                    if not followed.get(topic):
                         followed[topic] = _first_joint(data)
                         readers[topic] = JointReader(followed[topic])
                     if followed[topic] and not _has_joint(readers[topic], data):

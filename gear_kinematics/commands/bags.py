@@ -3,7 +3,7 @@
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -68,10 +68,17 @@ def load_calibration(
 
 
 def joints_beside(bag: Path, options: argparse.Namespace) -> list[str]:
-    """Return the rotors' joints by the parameter file in a bag's folder, if it can be used."""
-    if arguments.in_bag_folder(bag, default_config().name):
-        with suppress(OSError, ValueError):  # such as a file for several nodes
+    """Return the rotors' joints by the parameter file in a bag's folder, if it can be used.
+
+    Raises ValueError or OSError if it cannot be used to choose a given actuator.
+    """
+    if options.actuator or arguments.in_bag_folder(bag, default_config().name):
+        try:
             configs = arguments.load_configs(options, bag)
+        except (OSError, ValueError):  # such as a file for several nodes
+            if options.actuator:
+                raise
+        else:
             return [config.rotor_joint for config in configs.values()]
     return []
 

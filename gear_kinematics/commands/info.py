@@ -40,7 +40,11 @@ def run(options: argparse.Namespace) -> ExitCode:
         joints = [config.rotor_joint for config in arguments.load_configs(options).values()]
     for path in found.bags:
         try:
-            with Bag(path) as bag, message_progress(path.name, quiet=options.quiet) as progress:
+            with (
+                bags.naming(path),
+                Bag(path) as bag,
+                message_progress(path.name, quiet=options.quiet) as progress,
+            ):
                 examined = joints or bags.joints_beside(path, options)
                 summary = summarise(bag, options.rotor_topic, examined, progress)
                 asked = [*_questions(bag, summary, examined)]

@@ -128,6 +128,18 @@ def test_the_rate_is_that_of_the_first_joint_that_is_recorded(tmp_path):
     assert topic.rate == pytest.approx(100.0)
 
 
+def test_a_first_message_without_joints_hides_no_joint(tmp_path):
+    """Two drivers share the topic, and each sends 100 messages a second."""
+    messages = [('/motor', 10**18, rotor_bytes(10**18, [], []))] + [
+        ('/motor', stamp + late, rotor_bytes(stamp + late, [joint], [0.0]))
+        for stamp in range(10**18 + 10**7, 2 * 10**18, 10**7)[:100]
+        for joint, late in (('m1', 0), ('m2', 10**6))
+    ]
+    (topic,) = summary(write_bag(tmp_path / 'bag', messages, {'/motor': JOINT_STATE})).topics
+    assert (topic.followed, topic.of_others, topic.gaps) == ('m1', 100, 0)
+    assert topic.rate == pytest.approx(100.0)
+
+
 def test_joints_of_the_rotor_topic_are_known_where_none_is_the_wanted_one():
     found = summary(BAGS / 'constant_speed_3000rpm', None, ['m1'])
     rotor = found.topics[0]

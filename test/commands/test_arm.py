@@ -86,6 +86,16 @@ def test_where_only_one_gear_can_be_meant_the_actuators_are_named(arm, tmp_path)
     assert drawn.is_file()
 
 
+@pytest.mark.parametrize('command', ['info', 'replay'])
+def test_an_actuator_is_refused_where_no_file_has_it(command, arm):
+    """The file beside a recording is optional to these commands."""
+    source, file = arm
+    told = refusal(command, source, '--actuator', 'sholder')
+    assert told.startswith(f"{source}: no actuator 'sholder' in `actuators`; there are none")
+    (source / 'actuator.yaml').write_bytes(file.read_bytes())
+    assert 'did you mean `shoulder`?' in refusal(command, source, '--actuator', 'sholder')
+
+
 def test_loads_and_info_report_on_each_actuator(arm, tmp_path):
     source, file = arm
     done = gearkin_here('loads', source, '--config', file, '-v')
