@@ -207,15 +207,16 @@ class RecordedInputs:
     """Keeps the latest stamps of recorded inputs, to find inputs that were not recorded.
 
     Each reset of a driver's stamps, as by a bag that is played in a loop, begins another clock.
-    The age of an output shows which clock its stamp is from.
+    The age of an output, compared with those of inputs, shows which clock its stamp is from. Ages
+    change with time where the clock is that of a simulation.
     """
 
     def __init__(self, *, strict: bool) -> None:
         """Start with none; `strict` assumes that every input was recorded."""
         self._strict = strict
-        self._ages: tuple[int, ...] = ()
-        """Time of reception - stamp of the first input since each reset, ns."""
-        self._known = deque[Array]()  # latest stamps, ns, those of two clocks far apart
+        self._shifts: tuple[int, ...] = ()
+        """Moves the stamps of each clock behind those of the earlier ones, ns."""
+        self._known = deque[Array]()  # latest moved stamps and ages, (2, n), ns
         self._count = 0  # of these
         self._last: int | None = None
 
@@ -223,41 +224,46 @@ class RecordedInputs:
         """Add inputs (n,), ns, and the stamps of rejected ones, (m,)."""
         if len(stamp):
             last, self._last = self._last, int(stamp[-1])
-            stamp, self._ages = _moved(received, stamp, last, self._ages)
-        if self._ages:
-            rejected = rejected + self._ages[-1] + _APART * (len(self._ages) - 1)
-            for known in filter(len, (stamp, rejected)):
-                self._known.append(known)
-                self._count += len(known)
-            while self._known and self._count - len(self._known[0]) >= _MAX_STAMPS:
-                self._count -= len(self._known.popleft())
+            known, self._shifts = _moved(received, stamp, last, self._shifts)
+            self._keep(known)
+        if self._known and len(rejected):
+            _, age = self._known[-1][:, -1]
+            self._keep(np.stack([rejected + self._shifts[-1], np.full_like(rejected, age)]))
 
     def lack(self, received: Array, stamp: Array) -> Flags:
         """Return whether the inputs of outputs with stamps (n,), ns, were not recorded."""
         if self._strict or not len(stamp):
             return np.zeros(len(stamp), bool)
-        if not self._ages:
+        if not self._known:
             return np.ones(len(stamp), bool)
-        ages = np.array(self._ages[-_MAX_RESETS:])
-        distance = np.abs(received - stamp - ages[:, np.newaxis])
-        clock = np.argmin(distance, axis=0)
-        stamp = stamp + ages[clock] + _APART * (len(self._ages) - len(ages) + clock)
-        known = np.unique(np.concatenate(self._known)[-_MAX_STAMPS:])
+        known, ages = np.concatenate(self._known, axis=1)[:, -_MAX_STAMPS:]
+        known, rows = np.unique(known, return_index=True)
         period = float(np.median(np.diff(known))) if len(known) > 1 else 0.0
         bounds = np.concatenate([[-_NEVER], known, [_NEVER]])
-        after = np.searchsorted(known, stamp)
-        in_hole = bounds[after + 1] - bounds[after] > HOLE * period
-        there = bounds[after + 1] == stamp
-        return np.asarray(in_hole & ~there & (distance.min(axis=0) < _MAX_DELAY))
+        on_clocks = stamp + np.array(self._shifts[-_MAX_RESETS:])[:, np.newaxis]
+        after = np.searchsorted(known, on_clocks)
+        hole = bounds[after + 1] - bounds[after]
+        later_is_near = 2 * (bounds[after + 1] - on_clocks) < hole
+        age = ages[rows[np.clip(after - ~later_is_near, 0, len(known) - 1)]]
+        distance = np.abs(received - stamp - age)
+        missing = (hole > HOLE * period) & (bounds[after + 1] != on_clocks)
+        clock = np.argmin(distance, axis=0), np.arange(len(stamp))
+        return np.asarray(missing[clock] & (distance[clock] < _MAX_DELAY))
+
+    def _keep(self, known: Array) -> None:
+        self._known.append(known)
+        self._count += known.shape[1]
+        while self._count - self._known[0].shape[1] >= _MAX_STAMPS:
+            self._count -= self._known.popleft().shape[1]
 
 
 @once_for_joints
 def _moved(
-    received: Array, stamp: Array, last: int | None, ages: tuple[int, ...]
+    received: Array, stamp: Array, last: int | None, shifts: tuple[int, ...]
 ) -> tuple[Array, tuple[int, ...]]:
-    """Return the stamps of inputs as `RecordedInputs` keeps them, and the ages of all clocks."""
+    """Return the moved stamps of inputs and their ages, (2, n), and the shifts of all clocks."""
     before = int(stamp[0]) + 2 * CLOCK_RESET if last is None else last
     begins = np.diff(stamp, prepend=before) < -CLOCK_RESET
-    clock = len(ages) + np.cumsum(begins) - 1
-    ages += tuple((received - stamp)[begins].tolist())
-    return stamp + np.array(ages)[clock] + _APART * clock, ages
+    clock, age = len(shifts) + np.cumsum(begins) - 1, received - stamp
+    shifts += tuple((age + _APART * clock)[begins].tolist())
+    return np.stack([stamp + np.array(shifts)[clock], age]), shifts
