@@ -37,7 +37,7 @@ class Loader(getattr(yaml, 'CSafeLoader', yaml.SafeLoader)):  # type: ignore[mis
     yaml_implicit_resolvers: ClassVar[dict[str, Any]] = {}  # replaced by `_SCALARS`
 
     def flatten_mapping(self, node: yaml.MappingNode) -> None:
-        """Leave merge keys (`<<`), which can expand without end, to be refused as unknown."""
+        """Leave keys with the tag !!merge, which can expand without end, to be refused."""
         if sum(key.tag != _TEXT for key, _ in node.value) > _MAX_NUMBERS:
             raise ValueError(f'a mapping of more than {_MAX_NUMBERS} numbers')
 
