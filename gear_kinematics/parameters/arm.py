@@ -9,6 +9,7 @@ import re
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import yaml
@@ -22,9 +23,11 @@ from gear_kinematics.parameters.node_parameters import (
     default_config,
     default_value,
 )
+from gear_kinematics.parameters.parameter import Parameter
 from gear_kinematics.parameters.yaml_file import Dumper
 from gear_kinematics.wire.nearest import among, nearest
 
+_NONE: Mapping[str, Parameter] = MappingProxyType({})
 _SPACING = 1.5  # distance between neighbours in a URDF, in diameters of the largest ring gear
 COMMON = 'actuators', 'executor', 'home_file'  # of the node, which cannot differ between actuators
 
@@ -38,7 +41,7 @@ _JOINTS = 'rotor_joint', 'output_joint', 'output_encoder_joint'
 
 
 def load_actuators(
-    path: Path | None = None, node: str = NODE, others: Iterable[str] = ()
+    path: Path | None = None, node: str = NODE, others: Mapping[str, Parameter] = _NONE
 ) -> dict[str, NodeParameters]:
     """Read the parameters of all actuators of a node, by name; see `NodeParameters.load`.
 
@@ -108,7 +111,7 @@ def labelled(actuator: str, text: str) -> str:
     return f'{actuator}: {text}' if actuator else text
 
 
-def faults_in(given: Mapping[str, Any], others: Iterable[str] = ()) -> list[str]:
+def faults_in(given: Mapping[str, Any], others: Mapping[str, Parameter] = _NONE) -> list[str]:
     """List the faults of values and names of parameters in ROS; the node may have `others`."""
     names = given.get('actuators', [])
     if fault := PARAMETERS['actuators'].fault('actuators', names):
@@ -116,7 +119,7 @@ def faults_in(given: Mapping[str, Any], others: Iterable[str] = ()) -> list[str]
     actuators = by_actuator(given)
     branches = {name: _branches(values) for name, values in actuators.items()}
     every = [branch for each in branches.values() for branch in each]
-    known = {**PARAMETERS} | branch_parameters(every)
+    known = {**PARAMETERS, **branch_parameters(every), **others}
     refused = {}
     for name, value in given.items():
         first, _, rest = name.partition('.')

@@ -5,11 +5,12 @@ The default values are in config/actuator.yaml alone.
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from operator import attrgetter
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Self
 
 from gear_kinematics.kinematics import Branch, Gear, GearRatio, Mechanism, MechanismError
@@ -166,12 +167,15 @@ class NodeParameters:
 
     @staticmethod
     def load(
-        path: Path | None = None, node: str = NODE, others: Iterable[str] = (), actuator: str = ''
+        path: Path | None = None,
+        node: str = NODE,
+        others: Mapping[str, Parameter] = MappingProxyType({}),
+        actuator: str = '',
     ) -> 'NodeParameters':
         """Read a node's parameters from a file of ROS as the node would; others have defaults.
 
         Without a namespace, the node is the only one of its name in the file. It may have `others`
-        besides, whose names are known. `actuator` selects one of an arm.
+        besides, which are checked. `actuator` selects one of an arm.
 
         Raises:
             ConfigError: as `load_actuators`, and if it is open which actuator is meant.

@@ -35,6 +35,8 @@ from gear_kinematics.correction.calibration_file import Calibration, Order
 from gear_kinematics.kinematics import Mechanism, MechanismError
 from gear_kinematics.kinematics.preload import Preload, Stiffness, braced
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.parameters.arm import by_actuator
+from gear_kinematics.parameters.files import given_parameters
 from gear_kinematics.twin.parameters import NODE, PARAMETERS, TwinParameters
 
 _BRACED = 2  # branches, which have a shaft between their arms
@@ -139,7 +141,8 @@ class TwinGear:
             ValueError: if a file cannot be used, or the gear cannot be simulated.
         """
         shared = NodeParameters.load(config, node, PARAMETERS, actuator)
-        return cls.of(shared, TwinParameters.load(config, node, shared.actuator), calibration)
+        given = by_actuator(given_parameters(config, node))[shared.actuator]
+        return cls.of(shared, TwinParameters.of(given), calibration)
 
     @classmethod
     def of(

@@ -7,9 +7,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from gear_kinematics import parameters
-from gear_kinematics.parameters import ConfigError
-from gear_kinematics.parameters.arm import by_actuator
-from gear_kinematics.parameters.files import default_values, given_parameters
+from gear_kinematics.parameters.files import default_values
 from gear_kinematics.parameters.parameter import Parameter, declared_in, parameter
 from gear_kinematics.share import share_directory
 
@@ -55,17 +53,6 @@ class TwinParameters:
     )
     dropout: float = parameter('Share of the messages that are not sent', 0.0, 1.0, read_only=True)
     wear: float = parameter('What ~/wear takes off the flanks, rad at the output', 0.0, 1.0)
-
-    @classmethod
-    def load(cls, path: Path, node: str, actuator: str = '') -> Self:
-        """Read those of an actuator of a node from a file; ConfigError if a value is invalid."""
-        given = by_actuator(given_parameters(path, node))[actuator]
-        checked = (
-            each.fault(name, given[name]) for name, each in PARAMETERS.items() if name in given
-        )
-        if faults := [*filter(None, checked)]:
-            raise ConfigError(f'{path}: {"; ".join(faults)}')
-        return cls.of(given)
 
     @classmethod
     def of(cls, values: Mapping[str, Any]) -> Self:

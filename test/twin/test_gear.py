@@ -169,8 +169,10 @@ def test_a_gear_of_which_only_the_ratio_is_known_has_one_branch(config):
         ({'loads.rotor_inertia': 0.0}, r'loads\.rotor_inertia must be greater than 0'),
         ({'branches': '[a]', 'branch_stiffness': '[1.0, 2.0]'}, '2 values for 1 branches'),
         ({'branches': '[a]', 'preload': 1.0}, 'exactly two branches'),
-        ({'friktion': 1.0}, '`friktion`.*did you mean `friction`'),
-        ({'play': -1.0}, 'play must be between 0.0 and 1.0'),
+        (
+            {'friktion': 1.0, 'play': -1.0},
+            'play must be between 0.0 and 1.0, .*; unknown parameter `friktion`; did you mean `f',
+        ),
         ({'play': 'much'}, 'play must be of type float'),
     ],
 )
