@@ -21,6 +21,7 @@ from gear_kinematics.measurement.commissioning.analysis import Channel
 from gear_kinematics.measurement.rotor_fields import kind_of_encoder, questions
 from gear_kinematics.measurement.wording import shown
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.parameters.arm import faults_in
 from gear_kinematics.parameters.arm_file import add_actuators, check_new
 from gear_kinematics.parameters.files import write_config
 from gear_kinematics.parameters.new_config import (
@@ -145,6 +146,6 @@ def _ratios(options: argparse.Namespace, joints: Sequence[str]) -> dict[str, Gea
 
 
 def _actuator(joint: str) -> str:
-    """Name an actuator after its joint, with characters allowed in parameters and topics."""
+    """Name an actuator after its joint: with allowed characters, and as no branch or parameter."""
     name = re.sub(r'\W', '_', joint, flags=re.ASCII)
-    return name if name[:1].isalpha() else f'joint_{name}'
+    return f'joint_{name}' if faults_in({'actuators': [name]}) else name

@@ -734,6 +734,16 @@ def test_init_sets_up_all_motors_of_an_arm(listening, monkeypatch, capsys):
     assert file.read_text('utf-8') == before
 
 
+def test_init_names_no_actuator_like_a_branch_or_a_parameter(listening, monkeypatch):
+    axes = DriverTopic('/axes', ('a', 'c', 'loads'), 100.0)
+    monkeypatch.setattr(drivers, 'listen', lambda: [axes])
+    assert main(['init', '--arm', '--ratio', '-101']) == 0
+    made = load_actuators(listening / 'actuator.yaml')
+    assert {name: each.rotor_joint for name, each in made.items()} == {
+        'joint_a': 'a', 'c': 'c', 'joint_loads': 'loads',
+    }  # fmt: skip
+
+
 def test_init_leaves_out_what_is_no_motor(listening, monkeypatch):
     others = DriverTopic('/hand', ('finger',), 100.0)
     monkeypatch.setattr(drivers, 'listen', lambda: [*ARM, others])
