@@ -108,10 +108,12 @@ class Independent:
         self._errors: dict[str, float] = {}
         self._wrong: list[int] = []
         self._inputs: dict[int, list[_State]] = defaultdict(list)
-        self._motions: dict[int, tuple[float, float]] = {}
-        """Angle and velocity of the rotor, rad and rad/s, by the stamps of outputs."""
         self._outputs = list[_State]()
         self._bodies: dict[str, list[tuple[int, Any]]] = {topics.poses: [], joint_states: []}
+        self._motions: dict[str, dict[int, list[tuple[float, float]]]] = {
+            topic: defaultdict(list) for topic in self._bodies
+        }
+        """Angles and velocities of the rotor, rad and rad/s, that bodies lack, by their stamps."""
         self._last: tuple[int, float] | None = None  # stamp and position of the last output
         self._offset: float | None = None  # rad, from positions to rotor angles
         self._given = self._compared = self._taken = 0
@@ -135,7 +137,8 @@ class Independent:
         self._compare()
         self._outputs = self._outputs[-_KEPT:]
         self._bodies = {topic: kept[-_KEPT:] for topic, kept in self._bodies.items()}
-        for kept in (self._inputs, self._motions):
+        known: list[dict[int, Any]] = [self._inputs, *self._motions.values()]
+        for kept in known:
             for stamp in list(kept)[:-_KEPT]:
                 del kept[stamp]
 
@@ -147,15 +150,15 @@ class Independent:
 
     def _compare(self) -> None:
         """Compare the outputs, poses and joints whose inputs have arrived."""
-        known = [each for each in self._outputs if each[0] in self._inputs]
-        self._outputs = [each for each in self._outputs if each[0] not in self._inputs]
-        inputs = (self._inputs[stamp] for stamp, *_ in known)
-        rows = [each.pop(0) if len(each) > 1 else each[0] for each in inputs]
-        angles = [self._angle(*pair) for pair in zip(rows, known, strict=True)]
-        stamps = [stamp for stamp, *_ in known]
-        recorded, given = (np.reshape([each[1:] for each in x], (-1, 3)) for x in (known, rows))
+        pairs = _paired(self._outputs, self._inputs)
+        angles = [self._angle(given, output) for output, given in pairs]
+        stamps = [output[0] for output, _ in pairs]
+        both = np.reshape([(output[1:], given[1:]) for output, given in pairs], (-1, 2, 3))
+        recorded, given = both[:, 0], both[:, 1]
         rate = self._direction * given[:, 1]
-        self._motions |= zip(stamps, zip(angles, rate.tolist(), strict=True), strict=True)
+        for motions in self._motions.values():
+            for stamp, angle, velocity in zip(stamps, angles, rate.tolist(), strict=True):
+                motions[stamp].append((angle, velocity))
         expected = [np.array(angles) / float(self._ratio), rate / float(self._ratio)]
         gear = self._parameters.gear
         if isinstance(gear, Mechanism):
@@ -167,13 +170,13 @@ class Independent:
             withheld = np.isnan(recorded[:, k]) & (k > 0)
             self._note(name, stamps, np.where(withheld, 0.0, np.abs(recorded[:, k] - expected[k])))
         for topic, waiting in self._bodies.items():
-            found = [each for each in waiting if each[0] in self._motions]
-            waiting[:] = [each for each in waiting if each[0] not in self._motions]
+            found = _paired(waiting, self._motions[topic])
             if isinstance(gear, Mechanism) and found:
-                motions = np.transpose([self._motions[stamp] for stamp, _ in found])
+                bodies, moved = zip(*found, strict=True)
+                of, given_bodies = zip(*bodies, strict=True)
                 errors_of = ERRORS_OF['poses' if topic == self._topics.poses else 'joints']
-                for name, errors in errors_of(gear, motions, [each for _, each in found]).items():
-                    self._note(name, [stamp for stamp, _ in found], errors)
+                for name, errors in errors_of(gear, np.transpose(moved), given_bodies).items():
+                    self._note(name, of, errors)
 
     def _angle(self, given: _State, output: _State) -> float:
         """Return the rotor angle of an input, whose turns or zero may come from the output."""
@@ -198,3 +201,15 @@ class Independent:
         self._errors[name] = float(errors.max(initial=self._errors.get(name, 0.0)))
         self._wrong += np.array(stamps)[errors > self._limits[name]].tolist()[:1]
         self._compared += len(stamps) * (name.startswith('position'))
+
+
+def _paired(waiting: list[Any], known: dict[int, list[Any]]) -> list[tuple[Any, Any]]:
+    """Pair what begins with a stamp with what is known of it, in order; others go on waiting."""
+    pairs, left = [], []
+    for each in waiting:
+        if rows := known.get(each[0]):
+            pairs.append((each, rows.pop(0)))
+        else:
+            left.append(each)
+    waiting[:] = left
+    return pairs

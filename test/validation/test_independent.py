@@ -20,10 +20,14 @@ DEFAULT = NodeParameters.load()
 SINGLE = NodeParameters.load(BAGS / 'single_turn_encoder' / 'actuator.yaml')
 
 
+def states_of(name) -> list:
+    """Return the rotor states of a shipped bag."""
+    return [message for message in read_bag(BAGS / name) if message[0] == ROTOR]
+
+
 def answers_to(name, parameters) -> list:
     """The rotor states of a shipped bag, with the outputs of the node as it is now."""
-    rotor = [message for message in read_bag(BAGS / name) if message[0] == ROTOR]
-    return answered(parameters, rotor)
+    return answered(parameters, states_of(name))
 
 
 def scaled(monkeypatch) -> None:
@@ -90,6 +94,18 @@ def test_damaged_and_foreign_outputs_are_not_compared(topic, compared, tmp_path)
     report = validate(bag, DEFAULT, independent=True).independent
     assert (report.compared, report.not_compared) == (compared, 200 - compared)
     assert report.passed
+
+
+def test_each_of_two_equal_stamps_has_its_own_bodies(tmp_path):
+    states = states_of('constant_speed_3000rpm')[:200]
+    stamp = slice(4, 12)
+    pairs = [
+        (topic, received, data[:4] + states[k - k % 2][2][stamp] + data[12:])
+        for k, (topic, received, data) in enumerate(states)
+    ]
+    bag = made_bags.folder(tmp_path / 'bag', answered(DEFAULT, pairs))
+    report = validate(bag, DEFAULT, independent=True).independent
+    assert (report.compared, report.not_compared, report.passed) == (400, 0, True)
 
 
 def test_the_option_adds_to_the_json(capsys):
