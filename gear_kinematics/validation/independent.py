@@ -24,6 +24,7 @@ from gear_kinematics.validation.independent_bodies import ERRORS_OF, own_joints
 from gear_kinematics.validation.task import Task
 
 _KEPT = 20_000  # inputs, outputs, poses and joints that wait for each other
+_LARGEST = math.tau * 2**51  # rad; no output answers a greater position
 _UNITS = {'position': 'rad', 'velocity': 'rad/s', 'effort': 'N·m'}
 _UNITS |= {'position of bodies': 'm', 'orientation of bodies': 'rad'}
 _UNITS |= {'position of joints': 'rad', 'slide of joints': 'm'}
@@ -126,7 +127,9 @@ class Independent:
             with suppress(ValueError, IndexError, struct.error):  # it cannot be decoded
                 cdr = _Cdr(data)
                 if topic == self._topics.rotor:
-                    self._inputs[cdr.stamp].append(cdr.joint(self._parameters.rotor_joint))
+                    state = cdr.joint(self._parameters.rotor_joint)
+                    if abs(state[1]) <= _LARGEST:  # NaN is not
+                        self._inputs[cdr.stamp].append(state)
                 elif topic == self._topics.output:
                     self._outputs.append(cdr.joint(self._joint))
                 elif topic == self._topics.poses:

@@ -2,10 +2,12 @@
 """The comparison by code that the node does not run finds what the usual one cannot."""
 
 import json
+import math
 from dataclasses import replace
 
 import made_bags
 import pytest
+from live import rotor_bytes
 from node_loop import answered
 from shipped_bags import BAGS, OUTPUT, POSES, ROTOR, read_bag
 
@@ -17,17 +19,14 @@ from gear_kinematics.validation import validate
 from gear_kinematics.validation.causes import FindingCause
 
 DEFAULT = NodeParameters.load()
+START, STEP = 10**18, 2_000_000  # ns
 SINGLE = NodeParameters.load(BAGS / 'single_turn_encoder' / 'actuator.yaml')
-
-
-def states_of(name) -> list:
-    """Return the rotor states of a shipped bag."""
-    return [message for message in read_bag(BAGS / name) if message[0] == ROTOR]
 
 
 def answers_to(name, parameters) -> list:
     """The rotor states of a shipped bag, with the outputs of the node as it is now."""
-    return answered(parameters, states_of(name))
+    rotor = [message for message in read_bag(BAGS / name) if message[0] == ROTOR]
+    return answered(parameters, rotor)
 
 
 def scaled(monkeypatch) -> None:
@@ -96,16 +95,19 @@ def test_damaged_and_foreign_outputs_are_not_compared(topic, compared, tmp_path)
     assert report.passed
 
 
-def test_each_of_two_equal_stamps_has_its_own_bodies(tmp_path):
-    states = states_of('constant_speed_3000rpm')[:200]
-    stamp = slice(4, 12)
-    pairs = [
-        (topic, received, data[:4] + states[k - k % 2][2][stamp] + data[12:])
-        for k, (topic, received, data) in enumerate(states)
+@pytest.mark.parametrize(('rejected', 'outputs'), [(None, 400), (math.nan, 200), (1e30, 200)])
+def test_each_of_two_equal_stamps_has_its_own_outputs(rejected, outputs, tmp_path):
+    """The first of them has none if it is rejected."""
+    positions = [0.001 * k for k in range(200)]
+    if rejected:
+        positions[::2] = 100 * [rejected]
+    states = [
+        (ROTOR, START + k, rotor_bytes(START + k - k % STEP, position=[position]))
+        for k, position in zip(range(0, 100 * STEP, STEP // 2), positions, strict=True)
     ]
-    bag = made_bags.folder(tmp_path / 'bag', answered(DEFAULT, pairs))
+    bag = made_bags.folder(tmp_path / 'bag', answered(DEFAULT, states))
     report = validate(bag, DEFAULT, independent=True).independent
-    assert (report.compared, report.not_compared, report.passed) == (400, 0, True)
+    assert (report.compared, report.not_compared, report.passed) == (outputs, 0, True)
 
 
 def test_the_option_adds_to_the_json(capsys):
