@@ -25,6 +25,11 @@ from gear_kinematics.wire.topics import (
 _PARTS = {'rotor': ROTOR_STATE, 'output': OUTPUT_STATE, 'poses': BODY_POSES}
 """Topics by their parts in a validation."""
 _OPTIONS = {topic: part for part, topic in _PARTS.items()} | {OUTPUT_ENCODER: 'encoder'}
+_OTHER_WAYS = {
+    OUTPUT_STATE: ', or its node with --node',
+    BODY_POSES: ', or give the parameter file of an arm with --config',
+}
+"""To choose the topic otherwise than by its option."""
 _NOT_CDR = ' (not CDR)'  # after a topic or its type, whose messages are in JSON or the like
 _PEEKED = 20  # topics whose joints are looked up
 _JUDGED = 1000  # messages that are searched for other joints
@@ -233,9 +238,7 @@ def _only(
 ) -> str:
     if len(candidates) > 1:
         topics = [topic + described(joints.get(topic, [])) for topic in candidates]
-        option = f'--{_OPTIONS[name]}-topic'
-        if name == OUTPUT_STATE:
-            option += ', or its node with --node'
+        option = f'--{_OPTIONS[name]}-topic{_OTHER_WAYS.get(name, "")}'
         raise BagError(f'{path}: which topic is {name}? {listed(topics)}; name it with {option}')
     return candidates[0]
 

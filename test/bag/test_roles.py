@@ -92,6 +92,8 @@ WHICH_OUTPUT = 'which topic is output_state? /left/output_state, /output_state; 
 WHICH_OUTPUT += '--output-topic, or its node with --node'
 WHICH_ROTOR = 'which topic is rotor_state? /left/rotor_state, /right/rotor_state; name it with '
 WHICH_ROOT = 'which topic is rotor_state? /a/m, /m; name it with '
+WHICH_POSES = 'which topic is body_poses? /elbow/body_poses, /hand/body_poses; name it with '
+WHICH_POSES += '--poses-topic, or give the parameter file of an arm with --config'
 BOTH = '/rotor_state /output_state'
 LEFT = '/output_state, /rotor_state, /body_poses, /rosout'
 
@@ -104,6 +106,7 @@ LEFT = '/output_state, /rotor_state, /body_poses, /rosout'
         ('/arm/m /left/output_state /output_state', '/p', {}, WHICH_OUTPUT),
         ('/left/rotor_state /right/rotor_state /o', '/p', {}, f'{WHICH_ROTOR}--rotor-topic'),
         ('/b /a', '/p', {}, 'which topic is rotor_state? /a, /b; name it with --rotor-topic'),
+        (BOTH, '/elbow/body_poses /hand/body_poses', {}, WHICH_POSES),
         ('/m /a/m /output_state', '/p', {}, f'{WHICH_ROOT}--rotor-topic'),
         (BOTH, '/body_poses', {'rotor': '/motor'}, NO_MOTOR + LEFT),
         (BOTH, '/body_poses', {'rotor': '/rotor_stat'}, NEARLY + LEFT),
