@@ -1,15 +1,16 @@
 #!/bin/bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# johnny-five 2.1.0: a servo of ±90° that is sent to its centre turns to 90°, and one of 270° stops at 180°.
+# johnny-five 2.1.0: a servo of 270° that is sent to 135°, its middle, turns to 202.5°, as `deviceRange` has no effect.
 #
-# Expected of a Servo with degreeRange [-90, 90], without another range: center() sends it to 0°, as home() does, and
-# to(-45) to -45°. What happens: its range is 0° to 180°, whatever degreeRange is, which is first taken over and then
-# overwritten. center() is 90°, min() is 0°, to(-45) is 0°, and max() is 180°, for which 3300 µs are sent where 2400 µs
-# are the greatest. With degreeRange [0, 270], center() is 90° instead of 135°, and to(270) is 180°.
+# The documentation of Servo has deviceRange, "the physical range of the servo in degrees", and range, "the range of
+# motion in degrees". Expected with both at [0, 270]: to(135) sends 1500 µs, the middle of 600 to 2400 µs, and to(270)
+# sends 2400 µs. What happens: the code has another name for this option, degreeRange, and does not read deviceRange. It
+# takes each servo as one of 180°: 1950 µs are sent for 135°, and 3300 µs, which is beyond the greatest pulse, for 270°.
+# The servo of 6.75 turns in the example servo-multi-turn turns by 3.375 turns where the example sends it to 90°.
 # Expected of step(-10), which "moves the servo step degrees relative to current position", at the stop of 180°: 170°.
 # What happens: after five steps of 10° beyond the stop, which do not move it, the servo turns back at the sixth step
 # only. An IO plugin here keeps what the pins are sent.
-# For us: give `range` as well as degreeRange, and goals by to().
+# For us: give the physical range as degreeRange, and goals by to().
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
 set -euo pipefail
@@ -29,6 +30,7 @@ class Arduino extends EventEmitter {
     this.pins = Array.from({ length: 12 }, () => ({ supportedModes: [4] }));
   }
   pinMode() {}
+  servoConfig() {}
   servoWrite(pin, microseconds) {
     this.pulse = microseconds;
   }
@@ -48,13 +50,11 @@ board.on('ready', () => {
     console.log(JSON.stringify(options), calls.join(' '), found.join(' | '));
     return found;
   };
-  const moves = [['center'], ['home'], ['min'], ['max'], ['to', -45]];
-  const degreeRange = [-90, 90];
-  const right = [[0, 1500], [0, 1500], [-90, 600], [90, 2400], [-45, 1050]];
-  assert.deepEqual(moved({ degreeRange, range: degreeRange }, ...moves), right);
-  const found = [[90, 2400], [0, 1500], [0, 1500], [180, 3300], [0, 1500]];
-  assert.deepEqual(moved({ degreeRange }, ...moves), found);
-  assert.deepEqual(moved({ degreeRange: [0, 270] }, ['center'], ['to', 270]), [[90, 1200], [180, 1800]]);
+  const [range, moves] = [[0, 270], [['to', 135], ['to', 270]]];
+  assert.deepEqual(moved({ range, degreeRange: range }, ...moves), [[135, 1500], [270, 2400]]);
+  assert.deepEqual(moved({ range, deviceRange: range }, ...moves), [[135, 1950], [270, 3300]]);
+  const turns = 6.75 * ((moved({ pwmRange: [600, 2370], deviceRange: [0, 2430] }, ['to', 90])[0][1] - 600) / 1770);
+  assert.equal(turns, 3.375);
 
   const beyond = Array(5).fill(['step', 10]);
   const steps = moved({}, ['to', 180], ...beyond, ...Array(6).fill(['step', -10])).map(([degrees]) => degrees);
