@@ -1,12 +1,13 @@
 #!/bin/bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# theiamcr 3.5.1: a goal beyond the home switch sends a motor as far short of the switch, and is given as its position.
+# theiamcr 3.5.1: a motor that is sent 431 steps beyond its home switch stops at the switch, and is given as beyond it.
 #
-# Expected of moveAbs(8390) for the focus of the TL1250, whose switch is at 7959 and whose last step is 8390: it stops
-# at the switch while the limits are respected, as its own warning says, and otherwise goes to 8390. What happens: the
-# board is sent the distance from the switch without its sign, which is the command of moveAbs(7528) to the byte, and
-# goes there; yet currentStep is 8390, wrong by 862. Without the limits a move by 431 steps follows, which ends at the
-# switch. Each call gives 0, no error. Goals short of the switch are right. The serial port is a stub.
+# The focus of a TL1250 has its switch at step 7959 and its last step at 8390. Expected of moveAbs(8390) without limits,
+# which is documented as a move to the switch and then one of "the additional steps beyond": the motor stands at 8390.
+# What happens: the first move is sent with the distance from the switch without its sign, which is to the byte the
+# command of moveAbs(7528), 431 steps short of the switch; the additional 431 steps end at the switch. With the limits,
+# by which "moves are prevented from exceeding the PI limit position", the motor stays at 7528. In both cases the call
+# gives 0, no error, and currentStep is 8390. Goals short of the switch are right. The serial port is a stub.
 # For us: no later moveRel of this motor is right until it is homed. Bound each goal by PIStep.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
@@ -66,11 +67,10 @@ def go(goal):
 right = go(7528)
 assert right[0] == 0 and right[2:] == (7528, 7528)
 focus.home()
-limited = go(LAST)
-assert limited == (0, right[1], 7528, LAST)
-focus.home()
-assert focus.respectLimits and Board.position == focus.currentStep == HOME
 print('without limits:', focus.setRespectLimits(False))
 free = go(LAST)
 assert free[0] == 0 and free[1][0] == right[1][0] and free[2:] == (HOME, LAST)
+focus.home()
+print('with limits:', focus.setRespectLimits(True))
+assert go(LAST) == (0, right[1], 7528, LAST)
 PYTHON
