@@ -21,6 +21,7 @@ from gear_kinematics.bag import MessagesByTopic
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.kinematics import Mechanism, matrix_method
 from gear_kinematics.validation.independent_bodies import ERRORS_OF, own_joints
+from gear_kinematics.validation.independent_message import IndependentMessage, State
 from gear_kinematics.validation.task import Task
 
 _KEPT = 20_000  # inputs, outputs, poses and joints that wait for each other
@@ -29,7 +30,6 @@ _UNITS = {'position': 'rad', 'velocity': 'rad/s', 'effort': 'N·m'}
 _UNITS |= {'position of bodies': 'm', 'orientation of bodies': 'rad'}
 _UNITS |= {'position of joints': 'rad', 'slide of joints': 'm'}
 _UNITS |= {'velocity of joints': 'rad/s', 'slide velocity of joints': 'm/s'}
-_State = tuple[int, float, float, float]  # stamp, ns, position, velocity, effort; NaN for absent
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,45 +53,6 @@ class IndependentReport:
         return f'{self.compared} outputs {verdict} the matrix method; largest errors: {worst}'
 
 
-class _Cdr:
-    """Reads a serialised message from its start."""
-
-    def __init__(self, data: bytes) -> None:
-        self._data, self._order, self._at = data, '<' if data[1] & 1 else '>', 4
-        (seconds,), (nanoseconds,) = self._take('i'), self._take('I')
-        self.stamp = int(1_000_000_000 * seconds + nanoseconds)
-        self._text()
-
-    def _take(self, code: str, count: int = 1) -> tuple[Any, ...]:
-        size = struct.calcsize(code)
-        self._at += -(self._at - 4) % size
-        values = struct.unpack_from(f'{self._order}{count}{code}', self._data, self._at)
-        self._at += size * count
-        return values
-
-    def _text(self) -> str:
-        (size,) = self._take('I')
-        self._at += size
-        return self._data[self._at - size : self._at].rstrip(b'\0').decode()
-
-    def array(self, size: int = 1) -> tuple[Any, ...]:
-        """Read an array, of items of so many float64."""
-        (count,) = self._take('I')
-        return self._take('d', size * count) if count else ()
-
-    def joints(self) -> tuple[list[str], list[tuple[float, ...]]]:
-        """Read the names and the arrays of a JointState."""
-        return [self._text() for _ in range(self._take('I')[0])], [self.array() for _ in range(3)]
-
-    def joint(self, name: str) -> _State:
-        """Read a JointState, and select a joint by name, by index, or '' as the only one."""
-        names, arrays = self.joints()
-        index = names.index(name) if name in names else int(name or len(names) - 1)
-        position, *others = (a[index] if index < len(a) else math.nan for a in arrays)
-        velocity, effort = (value if math.isfinite(value) else math.nan for value in others)
-        return self.stamp, position, velocity, effort
-
-
 class Independent:
     """Compares outputs with what their inputs mean, in one pass over a recording."""
 
@@ -108,8 +69,8 @@ class Independent:
         self._limits = {name: task.tolerances.of(unit) for name, unit in units.items()}
         self._errors: dict[str, float] = {}
         self._wrong: list[int] = []
-        self._inputs: dict[int, list[_State]] = defaultdict(list)
-        self._outputs = list[_State]()
+        self._inputs: dict[int, list[State]] = defaultdict(list)
+        self._outputs = list[State]()
         self._bodies: dict[str, list[tuple[int, Any]]] = {topics.poses: [], joint_states: []}
         self._motions: dict[str, dict[int, list[tuple[float, float]]]] = {
             topic: defaultdict(list) for topic in self._bodies
@@ -125,18 +86,18 @@ class Independent:
         for topic, data in ((of, data) for of in topics for data in messages[of].data):
             self._given += topic != self._topics.rotor
             with suppress(ValueError, IndexError, struct.error):  # it cannot be decoded
-                cdr = _Cdr(data)
+                message = IndependentMessage(data)
                 if topic == self._topics.rotor:
-                    state = cdr.joint(self._parameters.rotor_joint)
+                    state = message.joint(self._parameters.rotor_joint)
                     if abs(state[1]) <= _LARGEST:  # NaN is not
-                        self._inputs[cdr.stamp].append(state)
+                        self._inputs[message.stamp].append(state)
                 elif topic == self._topics.output:
-                    self._outputs.append(cdr.joint(self._joint))
+                    self._outputs.append(message.joint(self._joint))
                 elif topic == self._topics.poses:
-                    self._bodies[topic].append((cdr.stamp, cdr.array(7)))
+                    self._bodies[topic].append((message.stamp, message.array(7)))
                 else:
-                    joints = own_joints(self._parameters, *cdr.joints())
-                    self._bodies[topic].append((cdr.stamp, joints))
+                    joints = own_joints(self._parameters, *message.joints())
+                    self._bodies[topic].append((message.stamp, joints))
         self._compare()
         self._outputs = self._outputs[-_KEPT:]
         self._bodies = {topic: kept[-_KEPT:] for topic, kept in self._bodies.items()}
@@ -181,7 +142,7 @@ class Independent:
                 for name, errors in errors_of(gear, np.transpose(moved), given_bodies).items():
                     self._note(name, of, errors)
 
-    def _angle(self, given: _State, output: _State) -> float:
+    def _angle(self, given: State, output: State) -> float:
         """Return the rotor angle of an input, whose turns or zero may come from the output."""
         parameters, stamp, position = self._parameters, given[0], given[1]
         if (period := parameters.rotor_period) and self._last:

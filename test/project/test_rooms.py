@@ -77,12 +77,12 @@ def test_closed_form_and_matrix_method_share_no_formula(imports):
         assert {name for name in taken if within(name, f'{core}.{maker}')} <= of_both, taker
 
 
-@pytest.mark.parametrize('name', ['independent', 'independent_bodies'])
+@pytest.mark.parametrize('name', ['independent', 'independent_bodies', 'independent_message'])
 def test_independent_comparison_shares_nothing_with_the_node(name, imports):
     """It reads recordings and parameters; what the node computes is done by other code."""
     path, package = f'validation/{name}.py', 'gear_kinematics'
     shared = {name.removeprefix(f'{package}.') for name in imports[path] if within(name, package)}
-    others = 'bag', 'parameters', 'validation.independent_bodies'
+    others = 'bag', 'parameters', 'validation.independent_bodies', 'validation.independent_message'
     assert not {name for name in shared if not within(name, *others)} - {
         'kinematics',
         'kinematics.Mechanism',

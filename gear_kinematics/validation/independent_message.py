@@ -1,0 +1,47 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Decodes serialised messages for the independent comparison, by `struct`."""
+
+import math
+import struct
+from typing import Any
+
+State = tuple[int, float, float, float]  # stamp, ns, position, velocity, effort; NaN for absent
+
+
+class IndependentMessage:
+    """Reads a serialised message from its start."""
+
+    def __init__(self, data: bytes) -> None:
+        self._data, self._order, self._at = data, '<' if data[1] & 1 else '>', 4
+        (seconds,), (nanoseconds,) = self._take('i'), self._take('I')
+        self.stamp = int(1_000_000_000 * seconds + nanoseconds)
+        self._text()
+
+    def _take(self, code: str, count: int = 1) -> tuple[Any, ...]:
+        size = struct.calcsize(code)
+        self._at += -(self._at - 4) % size
+        values = struct.unpack_from(f'{self._order}{count}{code}', self._data, self._at)
+        self._at += size * count
+        return values
+
+    def _text(self) -> str:
+        (size,) = self._take('I')
+        self._at += size
+        return self._data[self._at - size : self._at].rstrip(b'\0').decode()
+
+    def array(self, size: int = 1) -> tuple[Any, ...]:
+        """Read an array, of items of so many float64."""
+        (count,) = self._take('I')
+        return self._take('d', size * count) if count else ()
+
+    def joints(self) -> tuple[list[str], list[tuple[float, ...]]]:
+        """Read the names and the arrays of a JointState."""
+        return [self._text() for _ in range(self._take('I')[0])], [self.array() for _ in range(3)]
+
+    def joint(self, name: str) -> State:
+        """Read a JointState, and select a joint by name, by index, or '' as the only one."""
+        names, arrays = self.joints()
+        index = names.index(name) if name in names else int(name or len(names) - 1)
+        position, *others = (a[index] if index < len(a) else math.nan for a in arrays)
+        velocity, effort = (value if math.isfinite(value) else math.nan for value in others)
+        return self.stamp, position, velocity, effort
