@@ -15,34 +15,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.measurement.ramp_gate import jumped, left_out, longest, shifted, usual
+from gear_kinematics.measurement.error_steps import IdealMotion, Steps, impossible_steps
+from gear_kinematics.measurement.ramp_gate import jumped, left_out, longest, usual
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RotorMotion
 from gear_kinematics.measurement.sentences import NAMED, Observation, Observed
-from gear_kinematics.measurement.two_encoders import directions, output_by_rotor
+from gear_kinematics.measurement.two_encoders import output_by_rotor
 from gear_kinematics.report.document import number
 
 _FEWEST = 50  # samples
 _LEAST_TRAVEL = math.radians(3.0)  # of the output, from which on the ratio shows
-_STEPS = 12.0  # times the 98 % quantile of steps of the error: beyond the error of any gear
-_LEAST_STEP = math.radians(0.25)
-_SPIKE, _LEAST_SPIKE, _WINDOW = 20.0, math.radians(0.02), 5
-"""Times the 90 % quantile of the distance from the medians of neighbours, and least distance, rad,
-that shows a stray reading; number of these neighbours on either side."""
 _STAYS = 4  # samples in a row that are no stray reading
-_REVERSAL = 4  # samples around a reversal in which the output may lag
 _DELAY = 0.01  # s, by which either encoder may be late, so that its speed changes later
 _ALIKE, _SHORTEST = 16, 1e-6
 """Number of samples in a row that may have the same time; shortest period of samples, s."""
-_MOST_LOST = math.radians(5.0)  # lost motion of a usable gear, at most
-_LIKELY, _TRIED, _MOST_OF = 4.0, 8, 0.6
-"""Times that quantile from which on a step may be a slip; number of such steps that are tried;
-share of the step that stays."""
-_LEAST_SLIP = math.radians(0.08)
-_PLACE = math.radians(2.0)  # width of the bins of output angles at which errors are compared
 _FROZEN = math.radians(3.0)  # motion of the output by one encoder while the other stands still
 _LEAST_SHARE = 0.25  # of samples that are used; if it were less, the ratio is not understood
 _CLEAR = 4.0  # times the limit of a step: slips are clear, however short the parts between them
-_MOST_FAULTS = 0.02  # of the steps: more show a unit or a range that is not understood
 _RANGE = 0.9  # share of its travel by which the rotor steps where its encoder wraps
 NO_ENCODER = 2e-6
 """rad, peak to peak, 0.4 arc seconds: no gear with an encoder at its output deviates by less."""
@@ -60,15 +48,6 @@ class _Compared(NamedTuple):
     period: float  # change of the error where an encoder wraps
 
 
-class _Steps(NamedTuple):
-    """Steps of the error that no gear can make, (m - 1,)."""
-
-    impossible: NDArray[np.bool_]
-    slipped: NDArray[np.bool_]  # those of them that are permanent, however small
-    limit: float  # greatest step of a gear, rad
-    spikes: NDArray[np.bool_]  # (m,): stray readings that are no such steps
-
-
 def gated(recording: Recording) -> Recording:
     """Leave out readings that contradict each other, and say when they were.
 
@@ -82,7 +61,9 @@ def gated(recording: Recording) -> Recording:
     if (rest := float(np.ptp(error - line(rotor)))) < NO_ENCODER:
         fault = Observation.COMPUTED(deviation=rest)
         return replace(recording, faults=(*recording.faults, fault))
-    if not (steps := _steps(error, compared.ideal, _DELAY / _period(both.seconds))):
+    period = _period(both.seconds)
+    spans = np.maximum(np.diff(both.seconds[rows]) / period, 1.0)
+    if not (steps := impossible_steps(error, IdealMotion(compared.ideal, spans, _DELAY / period))):
         return recording
     # A stray reading of the rotor shows in all rows that are interpolated from it.
     shown = 2 * samples / len(both.rotor.stamp) if both.interpolated else 1.0
@@ -144,31 +125,6 @@ def _compared(both: Encoders) -> _Compared | None:
     return _Compared(rows, frozen, rotor[rows], ideal[rows], error, slope * turned, periods[-1])
 
 
-def _steps(error: Array, ideal: Array, delay: float) -> _Steps | None:
-    """Find the steps of the error that no gear can make; None if there are too many.
-
-    The error and the ideal output angle, (n,) each, are in rad, a delay in samples.
-    """
-    level, moved = usual(error), np.diff(ideal)
-    calm = np.diff(level)
-    fastest = float(np.quantile(np.abs(np.diff(usual(ideal))), 0.98))
-    usually = float(np.quantile(np.abs(calm), 0.98))
-    limit = max(_STEPS * usually, _LEAST_STEP)
-    lost = _lost_motion(calm, moved, fastest)
-    if np.mean((np.abs(calm) > limit) & ~lost) > _MOST_FAULTS:
-        return None
-    steps = np.diff(error)
-    # Lost motion lasts until the next reversal; what comes back at once is a stray reading.
-    most = min(1.1 * float(np.max(np.abs(calm), where=lost, initial=0.0)), _MOST_LOST)
-    lost = _lost_motion(steps, moved, fastest) & (np.abs(steps) <= most)
-    reverses, _ = _reversals(moved, _REVERSAL + math.ceil(delay))
-    rows = np.flatnonzero(reverses & (np.abs(steps) > limit) & ~lost)
-    lost[rows] = np.abs(steps[rows]) <= _delayed(ideal, rows, delay)
-    slipped = _slipped(level, ideal, usually, reverses)
-    spikes = _spikes(error, ideal, reverses, delay)
-    return _Steps(((np.abs(steps) > limit) & ~lost) | slipped, slipped, limit, spikes)
-
-
 def _stood_still(time: Array, still: Array, *, timed: bool) -> Observed:
     times = np.split(time[still], 1 + np.flatnonzero(np.diff(still) > 1))
     unit = ' s' if timed else ''
@@ -188,78 +144,8 @@ def _frozen(still: Array, other: Array) -> NDArray[np.bool_]:
     return found
 
 
-def _lost_motion(steps: Array, ideal: Array, fastest: float) -> NDArray[np.bool_]:
-    """Find the steps of the error, rad, by which the output lags at a reversal of the rotor."""
-    moved = np.abs(ideal)
-    # Where a sample is missing at the reversal, the motion there and back is one step.
-    moved[1:-1] = np.maximum(moved[1:-1], np.minimum(moved[:-2], moved[2:]))
-    most = np.minimum(moved, fastest)
-    reverses, after = _reversals(ideal, _REVERSAL)
-    lag = -steps * np.where(after, np.sign(after), np.sign(ideal))
-    lost: NDArray[np.bool_] = reverses & (lag > 0.0) & (lag <= 1.1 * most)
-    return lost
-
-
-def _reversals(ideal: Array, around: int) -> tuple[NDArray[np.bool_], Array]:
-    """Find steps of the ideal output angle, rad, with a reversal in so many samples around.
-
-    A recording may begin and end with one. Also returns the sum of the signs of as many steps from
-    each one on.
-    """
-    signs = np.concatenate([np.zeros(around), np.sign(ideal), np.zeros(around)])
-    sums = np.convolve(signs, np.ones(around), 'valid')
-    before, after = sums[: len(ideal)], sums[around : around + len(ideal)]
-    reverses: NDArray[np.bool_] = before * after <= 0.0
-    reverses[:around] = reverses[-around:] = True
-    return reverses, after
-
-
-def _delayed(ideal: Array, rows: Array, delay: float) -> Array:
-    """Greatest change of the error, rad, around rows by a delay, in samples, of an encoder."""
-    around = _REVERSAL + math.ceil(delay)
-    speeds = np.pad(np.diff(usual(ideal)), around)
-    near = np.lib.stride_tricks.sliding_window_view(speeds, 2 * around + 1)
-    return np.asarray(1.1 * delay * np.ptp(near[rows], axis=1))
-
-
-def _slipped(
-    error: Array, ideal: Array, usually: float, reverses: NDArray[np.bool_]
-) -> NDArray[np.bool_]:
-    """Find steps of the error after which it differs at all angles, in both directions, (n - 1,).
-
-    The error, without stray readings, and the ideal output angle are (n,), rad; `usually` is the
-    98 % quantile of the steps, rad; `reverses`, (n - 1,), says which are close to a reversal.
-    """
-    steps = np.diff(error)
-    found = np.zeros(len(steps), bool)
-    likely = np.flatnonzero(np.abs(steps) > max(_LIKELY * usually, _LEAST_SLIP))
-    if not len(likely):
-        return found
-    way = directions(ideal, _PLACE)
-    place = np.round(ideal / _PLACE) + 1j * way
-    for row in likely[np.argsort(-np.abs(steps[likely]))][:_TRIED].tolist():
-        shifts = shifted(place, error, slice(0, row + 1), slice(row + 1, len(error)))
-        shares = shifts / steps[row]
-        if not len(shares) and way[row] == way[row + 1] != 0:
-            # What the gear does at an angle, it does there on the way back, too.
-            there = np.abs(ideal - ideal[row]) < _PLACE
-            passes = [_rise(error, ideal - ideal[row], there & (way == w)) for w in (-1, 1)]
-            shares = np.diff(passes) / steps[row]
-        # In one direction alone, a delay changes the error with the speed, too.
-        enough = len(shares) >= (2 if reverses[row] else 1)
-        found[row] = enough and shares.min() > _MOST_OF and shares.max() < 1.0 / _MOST_OF
-    return found
-
-
-def _rise(error: Array, beyond: Array, rows: NDArray[np.bool_]) -> float:
-    """Return the median change of the error in `rows` as the angle passes 0, rad, or NaN."""
-    parts = [error[rows & side] for side in (beyond <= 0.0, beyond > 0.0)]
-    low, high = (float(np.median(part)) if len(part) else math.nan for part in parts)
-    return high - low
-
-
 def _followed(
-    error: Array, rows: Array, steps: _Steps, period: float, stays: int
+    error: Array, rows: Array, steps: Steps, period: float, stays: int
 ) -> tuple[Array, list[int]]:
     """Follow the error from its longest part without an impossible step, in both directions.
 
@@ -274,15 +160,18 @@ def _followed(
     spread = float(np.ptp(error[kept[0]]))
     for step, others in ((1, parts[longest + 1 :]), (-1, parts[:longest][::-1])):
         last = parts[longest][1] - 1 if step > 0 else parts[longest][0]
-        reached, beyond = error[slice(*parts[longest])][::-step][:stays], False
+        reached, beyond = kept[0][::-step][:stays], False
         for begin, end in others:
             near, far = (begin, end - 1) if step > 0 else (end - 1, begin)
             gap = abs(rows[near] - rows[last]) > _STAYS
             # The interpolation mixes some of a stray rotor reading into its neighbours.
-            level = np.median(error[begin:end][::step][:stays])
+            ahead = np.arange(begin, end)[::step]
+            level, late = (
+                np.median(each[ahead[:stays]]) - np.median(each[reached])
+                for each in (error, steps.late)
+            )
             place = begin if step > 0 else end
-            off = abs(math.remainder(level - np.median(reached), period))
-            moved = off > steps.limit + spread * gap
+            moved = abs(math.remainder(level, period)) > steps.limit + spread * gap + abs(late)
             if moved or steps.slipped[place - 1]:
                 if end - begin < stays and not steps.slipped[place - 1]:
                     continue
@@ -291,27 +180,8 @@ def _followed(
             if not beyond:
                 kept.append(np.arange(begin, end))
             last = far
-            reached = np.concatenate([error[begin:end][::-step], reached])[:stays]
+            reached = np.concatenate([ahead[::-1], reached])[:stays]
     return np.sort(np.concatenate(kept)), sorted(jumps)
-
-
-def _spikes(
-    error: Array, ideal: Array, reverses: NDArray[np.bool_], delay: float
-) -> NDArray[np.bool_]:
-    """Find readings that leave the five before and the five after, however slow the motion, (n,).
-
-    They leave both to the same side, unlike those in which play is crossed, and by more than a
-    delay explains. At a reversal, play and a delay together do the same.
-    """
-    level, far = usual(error), _WINDOW // 2 + 1
-    level = np.pad(level, far, 'edge')
-    before, after = error - level[: -2 * far], error - level[2 * far :]
-    off = np.minimum(np.abs(before), np.abs(after)) * ~np.append(reverses, True)
-    most = max(_SPIKE * float(np.quantile(off, 0.9)), _LEAST_SPIKE)
-    found: NDArray[np.bool_] = (off > most) & (before * after > 0.0)
-    rows = np.flatnonzero(found)
-    found[rows] = off[rows] > most + _delayed(ideal, rows, delay)
-    return found
 
 
 def _without(both: Encoders, rotor: Array, kept: Array, stray: Array) -> Encoders:

@@ -327,6 +327,32 @@ def test_short_stops_are_no_stray_readings_where_an_encoder_is_late(gate, delay)
     assert after is before
 
 
+@pytest.mark.parametrize(
+    ('rate', 'play', 'delay', 'kept', 'seed'),
+    [
+        (30.0, 60.0, 0.0, 1.0, 3),
+        (200.0, 60.0, 0.0, 0.7, 0),
+        (200.0, 60.0, 0.005, 1.0, 2),
+        (200.0, 5.0, -0.005, 1.0, 1),
+        (500.0, 60.0, 0.005, 1.0, 0),
+    ],
+)
+def test_no_slip_is_seen_where_a_robot_moves_and_stops(gate, rate, play, delay, kept, seed):
+    """It speeds up within 10 ms, in play or with a late encoder; some samples may be lost."""
+    random = np.random.default_rng(seed)
+    ends = np.cumsum(random.uniform(0.1, 1.5, 40))
+    moves = random.uniform(-1.0, 1.0, 40) * (np.arange(40) % 2)
+    fine = np.arange(0.0, ends[-1], 1e-3)
+    angle = np.interp(fine, ends, np.cumsum(moves))
+    angle = np.convolve(np.pad(angle, 5, 'edge'), np.full(11, 1.0 / 11.0), 'valid')
+    times = np.arange(0.0, ends[-1], 1.0 / rate)
+    times = times[random.random(len(times)) < kept]
+    output = np.interp(times - delay, fine, with_play(angle, play * ARC_MINUTE))
+    output += random.normal(0.0, 1e-4, len(times))
+    before, after = gate(np.column_stack([times, -19.0 * np.interp(times, fine, angle), output]))
+    assert after is before
+
+
 def test_wraps_of_encoders_of_one_turn_are_no_faults(clean, gate):
     clean[:, 1:] = np.remainder(clean[:, 1:], 2.0 * np.pi)
     before, after = gate(clean)

@@ -1,0 +1,162 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Steps of the error, the output less the rotor over their ratio, that no gear can make."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.measurement.ramp_gate import shifted, usual
+from gear_kinematics.measurement.recording import Array
+from gear_kinematics.measurement.two_encoders import directions
+
+_STEPS = 12.0  # times the 98 % quantile of steps of the error: beyond the error of any gear
+_LEAST_STEP = math.radians(0.25)
+_SPIKE, _LEAST_SPIKE, _WINDOW = 20.0, math.radians(0.02), 5
+"""Times the 90 % quantile of the distance from the medians of neighbours, and least distance, rad,
+that shows a stray reading; number of these neighbours on either side."""
+_REVERSAL = 4  # samples around a reversal in which the output may lag
+_DELAYED = 1.1  # times the greatest change of the error that a delay explains
+_MOST_LOST = math.radians(5.0)  # lost motion of a usable gear, at most
+_LIKELY, _TRIED, _MOST_OF = 4.0, 8, 0.6
+"""Times that quantile from which on a step may be a slip; number of such steps that are tried;
+share of the step that stays."""
+_LEAST_SLIP = math.radians(0.08)
+_PLACE = math.radians(2.0)  # width of the bins of output angles at which errors are compared
+_MOST_FAULTS = 0.02  # of the steps: more show a unit or a range that is not understood
+
+
+class Steps(NamedTuple):
+    """Steps of the error that no gear can make, (m - 1,)."""
+
+    impossible: NDArray[np.bool_]
+    slipped: NDArray[np.bool_]  # those of them that are permanent, however small
+    limit: float  # greatest step of a gear, rad
+    late: Array  # (m,), rad: change of the error by a late encoder
+    spikes: NDArray[np.bool_]  # (m,): stray readings that are no such steps
+
+
+class IdealMotion(NamedTuple):
+    """The ideal motion of the output in m samples."""
+
+    ideal: Array  # (m,), rad
+    spans: Array  # (m - 1,): times between the samples, in usual periods, at least 1
+    delay: float  # usual periods by which either encoder may be late
+
+    def late_at(self, rows: Array, spans: Array | int) -> Array:
+        """Return the greatest change of the error by a delay around rows, within spans, rad."""
+        around = _REVERSAL + math.ceil(self.delay)
+        speeds = np.pad(np.diff(usual(self.ideal)), around)
+        near = np.lib.stride_tricks.sliding_window_view(speeds, 2 * around + 1)[rows]
+        return np.asarray(_DELAYED * np.minimum(self.delay, spans) * np.ptp(near, axis=1))
+
+    def reversals(self, around: int) -> tuple[NDArray[np.bool_], Array]:
+        """Find the steps with a reversal in so many samples around, (m - 1,).
+
+        A recording may begin and end with one. Also returns the sum of the signs of as many steps
+        from each one on.
+        """
+        signs = np.pad(np.sign(np.diff(self.ideal)), around)
+        sums = np.convolve(signs, np.ones(around), 'valid')
+        before, after = sums[: -around - 1], sums[around:-1]
+        reverses: NDArray[np.bool_] = before * after <= 0.0
+        reverses[:around] = reverses[-around:] = True
+        return reverses, after
+
+    def lost(self) -> tuple[Array, Array]:
+        """Return by how far the output may lag in a step after a reversal, rad, and the ways.
+
+        The ways, (m - 1,), are the directions of the motion there, and 0 elsewhere.
+        """
+        moved = np.diff(self.ideal)
+        near, after = self.reversals(_REVERSAL)
+        near |= directions(self.ideal, _MOST_LOST)[1:] == 0
+        ways = np.where(near, np.sign(np.where(after, after, moved)), 0.0)
+        # A stray reading of the rotor moves further than the rotor usually, and than it around.
+        path = np.pad(usual(self.ideal), _WINDOW, 'edge')
+        paces = np.abs(path[_WINDOW:] - path[:-_WINDOW]) / _WINDOW
+        fastest = np.maximum(paces[: len(moved)], paces[_WINDOW + 1 :])
+        fastest = np.maximum(fastest, np.quantile(np.abs(np.diff(usual(self.ideal))), 0.98))
+        moved = np.abs(moved)
+        # Where a sample is missing at the reversal, the motion there and back is one step.
+        moved[1:-1] = np.maximum(moved[1:-1], np.minimum(moved[:-2], moved[2:]))
+        return 1.1 * np.minimum(moved, self.spans * fastest), ways
+
+
+def impossible_steps(error: Array, motion: IdealMotion) -> Steps | None:
+    """Find the steps of the error, (m,), rad, that no gear makes; None if there are too many."""
+    level = usual(error)
+    calm, steps = np.diff(level), np.diff(error)
+    usually = float(np.quantile(np.abs(calm), 0.98))
+    limit = max(_STEPS * usually, _LEAST_STEP)
+    lag, ways = motion.lost()
+    lost, lags = (((each := -own * ways) > 0.0) & (each <= lag) for own in (calm, steps))
+    if np.mean((np.abs(calm) > limit) & ~lost) > _MOST_FAULTS:
+        return None
+    # Lost motion lasts until the next reversal; what comes back at once is a stray reading.
+    most = min(1.1 * float(np.max(np.abs(calm), where=lost, initial=0.0)), _MOST_LOST)
+    beyond = (np.abs(steps) > limit) & ~(lags & (np.abs(steps) <= most))
+    reverses, _ = motion.reversals(_REVERSAL + math.ceil(motion.delay))
+    rows = np.flatnonzero(reverses & beyond)
+    beyond[rows] = np.abs(steps[rows]) > limit + motion.late_at(rows, motion.spans[rows])
+    slipped = _slipped(level, usually, reverses, motion)
+    late = _DELAYED * motion.delay * np.gradient(usual(motion.ideal))
+    return Steps(beyond | slipped, slipped, limit, late, _spikes(error, reverses, motion))
+
+
+def _slipped(
+    error: Array, usually: float, reverses: NDArray[np.bool_], motion: IdealMotion
+) -> NDArray[np.bool_]:
+    """Find steps of the error after which it differs at all angles, in both directions, (m - 1,).
+
+    The error, without stray readings, is (m,), rad; `usually` is the 98 % quantile of the steps,
+    rad; `reverses`, (m - 1,), says which are close to a reversal.
+    """
+    steps, ideal = np.diff(error), motion.ideal
+    found = np.zeros(len(steps), bool)
+    likely = np.flatnonzero(np.abs(steps) > max(_LIKELY * usually, _LEAST_SLIP))
+    if not len(likely):
+        return found
+    likely = likely[np.argsort(-np.abs(steps[likely]))][:_TRIED]
+    late = reverses[likely] | (
+        np.abs(steps[likely]) <= motion.late_at(likely, motion.spans[likely])
+    )
+    way = directions(ideal, _PLACE)
+    place = np.round(ideal / _PLACE) + 1j * way
+    for row, needed in zip(likely.tolist(), (1 + late).tolist(), strict=True):
+        shifts = shifted(place, error, slice(0, row + 1), slice(row + 1, len(error)))
+        shares = shifts / steps[row]
+        if not len(shares) and way[row] == way[row + 1] != 0:
+            # What the gear does at an angle, it does there on the way back, too.
+            there = np.abs(ideal - ideal[row]) < _PLACE
+            passes = [_rise(error, ideal - ideal[row], there & (way == w)) for w in (-1, 1)]
+            shares = np.diff(passes) / steps[row]
+        # In one direction alone, a delay changes the error with the speed, too.
+        enough = len(shares) >= needed
+        found[row] = enough and shares.min() > _MOST_OF and shares.max() < 1.0 / _MOST_OF
+    return found
+
+
+def _rise(error: Array, beyond: Array, rows: NDArray[np.bool_]) -> float:
+    """Return the median change of the error in `rows` as the angle passes 0, rad, or NaN."""
+    parts = [error[rows & side] for side in (beyond <= 0.0, beyond > 0.0)]
+    low, high = (float(np.median(part)) if len(part) else math.nan for part in parts)
+    return high - low
+
+
+def _spikes(error: Array, reverses: NDArray[np.bool_], motion: IdealMotion) -> NDArray[np.bool_]:
+    """Find readings that leave the five before and the five after, however slow the motion, (m,).
+
+    They leave both to the same side, unlike those in which play is crossed, and by more than a
+    delay explains. At a reversal, play and a delay together do the same.
+    """
+    level, far = usual(error), _WINDOW // 2 + 1
+    level = np.pad(level, far, 'edge')
+    before, after = error - level[: -2 * far], error - level[2 * far :]
+    off = np.minimum(np.abs(before), np.abs(after)) * ~np.append(reverses, True)
+    most = max(_SPIKE * float(np.quantile(off, 0.9)), _LEAST_SPIKE)
+    found: NDArray[np.bool_] = (off > most) & (before * after > 0.0)
+    rows = np.flatnonzero(found)
+    found[rows] = off[rows] > most + motion.late_at(rows, _WINDOW)
+    return found
