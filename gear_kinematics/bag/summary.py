@@ -3,21 +3,17 @@
 
 from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
 
 from gear_kinematics.bag.errors import BagError, DamagedBagError
-from gear_kinematics.bag.reading import Bag, ReportProgress
+from gear_kinematics.bag.reading import Bag, MessagesByTopic, ReportProgress
 from gear_kinematics.bag.roles import find_rotor_topic, joints_on
-from gear_kinematics.wire.cdr import SECOND, MalformedMessageError, header_stamp
-from gear_kinematics.wire.joint_reader import (
-    JointReader,
-    RejectedInputError,
-    Rejection,
-    joints_of,
-)
+from gear_kinematics.wire.batches import Array, JointStateBatch
+from gear_kinematics.wire.cdr import SECOND, header_stamp
+from gear_kinematics.wire.joint_reader import joints_of
 from gear_kinematics.wire.topics import (
     BODY_POSES,
     JOINT_STATE,
@@ -29,7 +25,7 @@ from gear_kinematics.wire.topics import (
 
 _GAP = 5.0  # median periods; a longer period counts as a gap
 _WITH_STAMPS = {JOINT_STATE, POSE_ARRAY}
-_UNSET = {-1, 0}  # stamps of messages that are cut off, and of those without one
+_UNSET = [-1, 0]  # stamps of messages that are cut off, and of those without one
 _FEWEST = 10  # messages from which a rate is computed
 _PARTS: Mapping[str, str] = {
     OUTPUT_ENCODER: 'encoder',
@@ -46,12 +42,12 @@ class TopicSummary(NamedTuple):
     type: str
     part: str  # `rotor`, `output`, `poses` or `encoder`, or empty
     messages: int
-    joints: tuple[str, ...]  # joints of the first message, if the topic has joint states
+    joints: tuple[str, ...]  # joints in any of its messages, if it has joint states
     rate: float | None  # rate from the median period, Hz; None for too few messages
     mean_rate: float | None  # mean rate, Hz; it differs from `rate` where messages come in bursts
     gaps: int  # periods longer than five median ones
     longest_gap: float  # longest of these periods, s
-    followed: str = ''  # joint of the rotor or, on another topic, the first that can be read
+    followed: str = ''  # joint of the rotor or, on another topic, the first of its joints
     of_others: int = 0  # messages without that joint, which rate and gaps leave out
 
 
@@ -81,40 +77,42 @@ def summarise(
         if rotor_topic:
             raise
         unclear = str(error).removeprefix(f'{bag.path}: ')
-    others, further = Counter[str](), defaultdict[str, dict[str, None]](dict)
-    followed = {}
+    others, found = Counter[str](), defaultdict[str, dict[str, None]](dict)
+    followed = dict[str, str]()
     if rotor and joints and joints[0]:
         recorded = joints_on(bag, [rotor])[rotor]
         followed[rotor] = next((joint for joint in joints if joint in recorded), joints[0])
-    readers = {topic: JointReader(joint) for topic, joint in followed.items()}
-    times = {topic: list[tuple[int, int]]() for topic in bag.topics}
+    times = {topic: [np.zeros((2, 0), np.int64)] for topic in bag.topics}
     ends: list[int] = []
     stamped = {topic for topic, kind in bag.topics.items() if kind in _WITH_STAMPS} - bag.not_cdr
-    states = {topic for topic in stamped if bag.topics[topic] == JOINT_STATE}
     try:
         for batch in bag.batches(bag.topics, progress, any_encoding=True):
-            for topic, received, data in batch:
-                if topic in states:
-                    if not followed.get(topic):
-                        followed[topic] = _first_joint(data)
-                        readers[topic] = JointReader(followed[topic])
-                    if followed[topic] and not _has_joint(readers[topic], data):
-                        others[topic] += 1
-                        further[topic].update(dict.fromkeys(joints_of(data)))
-                        continue
-                stamp = header_stamp(data) if topic in stamped else 0
-                times[topic].append((received if stamp in _UNSET else stamp, received))
+            for topic, messages in MessagesByTopic(bag.topics, batch).items():
+                stamp = received = np.array(messages.received, np.int64)
+                if topic in stamped:
+                    stamp = np.array([*map(header_stamp, messages.data)], np.int64)
+                    stamp = np.where(np.isin(stamp, _UNSET), received, stamp)
+                own = np.ones(len(received), bool)
+                states = topic in stamped and bag.topics[topic] == JOINT_STATE
+                tables = JointStateBatch(messages.data).tables if states else []
+                for rows in sorted((rows for rows, *_ in tables), key=itemgetter(0)):
+                    names = joints_of(messages.data[rows[0]])
+                    found[topic] |= dict.fromkeys(names)
+                    if names:
+                        followed.setdefault(topic, names[0])
+                    own[rows] = followed.get(topic) in {None, *names}
+                others[topic] += int(np.count_nonzero(~own))
+                times[topic].append(np.stack([stamp, received])[:, own])
             ends = [*ends[:1], batch[0][1], batch[-1][1]]
     except DamagedBagError as error:
         damage = str(error)
-    there = joints_on(bag, [topic for topic in states if times[topic] or others[topic]])
     topics = [
         _summary(
             name,
             kind,
             'rotor' if name == rotor else _PARTS.get(base_name(name), ''),
-            [*(dict.fromkeys(there.get(name, [])) | further[name])],
-            times[name],
+            [*found[name]],
+            np.hstack(times[name]),
             followed.get(name, ''),
             others[name],
         )
@@ -126,43 +124,26 @@ def summarise(
     return Summary(duration, tuple(topics), unclear, damage)
 
 
-def _first_joint(data: bytes) -> str:
-    """Return the first joint in a message, or '' if there is none that can be read."""
-    with suppress(MalformedMessageError, RejectedInputError, IndexError):
-        joint = joints_of(data)[0]
-        JointReader(joint).read(data)
-        return joint
-    return ''
-
-
-def _has_joint(reader: JointReader, data: bytes) -> bool:
-    """Return whether a message has the joint of a reader."""
-    try:
-        reader.read(data)
-    except RejectedInputError as rejection:
-        return str(rejection) != Rejection.JOINT_MISSING
-    return True
-
-
 def _summary(
     name: str,
     kind: str,
     part: str,
     joints: list[str],
-    times: list[tuple[int, int]],
+    times: Array,
     followed: str,
     others: int,
 ) -> TopicSummary:
-    stamped, received = np.diff(np.array(times, np.int64).reshape(-1, 2), axis=0).T
+    stamped, received = np.diff(times)
     repeated = 2 * np.count_nonzero(stamped) < len(stamped)  # as without their nanoseconds
     apart = 10 * np.count_nonzero(stamped < 0) > len(stamped)  # as of drivers with two clocks
     periods = (received if repeated or apart else stamped).astype(np.float64) / SECOND
     periods = periods[periods > 0.0]  # the clock may be set back
     rate, mean, gaps, longest = None, None, 0, 0.0
-    if len(times) >= _FEWEST and len(periods):
+    count = times.shape[1]
+    if count >= _FEWEST and len(periods):
         median = float(np.median(periods))
         long = periods[periods > _GAP * median]
         rate, gaps, longest = 1.0 / median, len(long), float(long.max(initial=0.0))
-        mean = (len(times) - 1) / float(periods.sum())
+        mean = (count - 1) / float(periods.sum())
     numbers = rate, mean, gaps, longest, followed, others
-    return TopicSummary(name, kind, part, len(times) + others, tuple(joints), *numbers)
+    return TopicSummary(name, kind, part, count + others, tuple(joints), *numbers)
