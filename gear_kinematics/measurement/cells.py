@@ -66,8 +66,13 @@ def numbers(column: Any, point: str = '.') -> Any:
     other = re.escape('.' if point == ',' else ',')
     marked = text[text.str.contains(other)]
     grouped = rf'[-+]?[1-9]\d{{0,2}}({other}\d{{3}})+({re.escape(point)}\d*)?'
-    both = marked.str.contains(re.escape(point)) | (marked.str.count(other) > 1)
-    thousands = (both.any() or len(marked) < len(text)) and marked.str.fullmatch(grouped).all()
+    thousands = len(marked) > 0 and marked.str.fullmatch(grouped).all()
+    sure = marked.str.contains(re.escape(point)) | (marked.str.count(other) > 1)
+    if thousands and not (sure.any() or text.str.fullmatch(r'[-+]?\d{1,3}').any()):
+        raise ValueError(
+            f'{column.name} has three digits behind each {other[-1]}, which may be decimals or '
+            'thousands: write the numbers in another way'
+        )
     plain = text.str.replace(other, '' if thousands else '.', regex=True)
     values = pd.to_numeric(plain.str.replace(',', '.'), errors='coerce').to_numpy(float)
     if known := np.count_nonzero(np.isfinite(values)):
@@ -78,7 +83,8 @@ def numbers(column: Any, point: str = '.') -> Any:
 
 
 def checked(column: Any, name: str, names: Sequence[str], unit: str) -> Any:
-    """Return a column; ValueError if a further row of names says another one, or another unit."""
+    """Return a column by its name; ValueError if a further row says another name, or unit."""
+    column = column.rename(name)
     if column.dtype.kind in 'iufbmM':
         return column
     text, (words, own, *_) = column.astype(str).str.strip(), meaning(name)
@@ -108,16 +114,19 @@ def _moments(text: Any) -> Any:
         text, of_day = text.str.rstrip('APMapm '), of_day.str.rstrip('APMapm ')
         plain = of_day.str.replace(r'^\d+:\d+[.].*', r'0:\g<0>', regex=True)
         moments = pd.Timestamp(0) + pd.to_timedelta(plain, errors='coerce') + later
-    if not moments.notna().any():  # other dates, of which 1/2/2026 is in January
+    if not moments.notna().any():  # other dates
         date = r'\d\d?[./-](\d\d?|[A-Za-z]{3})[./-](\d{4}|(?<=[./])\d\d) +\d\d?:\d\d'
         date = rf'\d{{4}}[./-]\d\d?[./-]\d\d?[ T]+\d\d?:\d\d|{date}'  # with AM or PM
         dates = text.where(text.str.match(date))
         dates = dates.str.replace(r'([./])(\d\d)(?= )', r'\g<1>20\2', regex=True)
-        day_first = dates.str.match(r'\d+\.').any()
         with warnings.catch_warnings():
             warnings.simplefilter('ignore', UserWarning)  # about texts in no common format
-            moments = pd.to_datetime(dates, dayfirst=day_first, utc=True, errors='coerce')
-        moments = moments + later
+            orders = [
+                pd.to_datetime(dates, dayfirst=first, utc=True, errors='coerce')
+                for first in (False, True)
+            ]
+        # Over midnight, the wrong order of day and month is a month longer, or no date.
+        moments = min(orders, key=lambda one: (one.isna().sum(), one.max() - one.min())) + later
     return moments.dt.tz_localize(None)
 
 

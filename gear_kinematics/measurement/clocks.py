@@ -47,6 +47,9 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
         raise ValueError(f'the times in {clock.name}: {cause}; give another with --time-column')
     steps = np.diff(times)[later]
     step = float(np.median(steps))
+    minutes = np.abs(steps - step - 40.0) < 0.5 * step  # from 59 to 100
+    if step <= _MOST_STEP and minutes.any() and np.all(times % 100.0 < 60.0):  # noqa: PLR2004, s
+        raise ValueError(f'the times in {clock.name} are hours, minutes and seconds: divide them')
     speed = float(np.quantile(np.abs(np.diff(angle)[later]) / steps, MOST))
     if role == 'angle':  # a locked shaft, whose times only give the order
         speed = 0.0
@@ -60,8 +63,6 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
         likely = ['days']
     elif common := [unit for unit in dated if unit in likely]:
         likely = common
-    elif 's' in likely and not np.all(times == np.round(times)):
-        likely = ['s']
     if (len(likely) != 1 and role == 'rotor') or (
         _is_temps(clock) and times[0] > _LATE_ROWS * step
     ):
@@ -165,12 +166,16 @@ def _newest_first(times: Array) -> bool:
 def _restore(stamp: Array) -> Iterator[tuple[int, int]]:
     """Make stamps, ns, go on where the clock was set back; yield the last before, and the size.
 
-    Rows that were written late are few, or time jumps forward after them.
+    Rows that were written late are few, or time jumps forward after them; before those with a time
+    of the future, it jumps forward, too.
     """
     steps = np.diff(stamp)
     usual = np.median(steps[steps > 0]) if np.any(steps > 0) else 0
     for k, end in pairwise([*(1 + np.flatnonzero(steps < 0)).tolist(), len(stamp)]):
         before, again = stamp[k - 1], stamp[k:end]
+        first = int(np.argmax(stamp[:k] > stamp[k]))
+        if first and stamp[first] - stamp[first - 1] > _LONGEST_STEP * usual:
+            continue
         passed = np.flatnonzero(again > before)
         rise = np.diff(again[: passed[0] + 1 if len(passed) else len(again)])
         if len(rise) >= _FEWEST_AGAIN and rise.min() >= 0 and rise.max() <= _LONGEST_STEP * usual:

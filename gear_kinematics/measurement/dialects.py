@@ -221,7 +221,8 @@ def _layout(lines: Sequence[str]) -> _Layout:
     row, *_ = samples = [rows[place] for place in filled[first:]]
     # A line that is not divided, such as a title, has no names.
     if any(len(_cells_above(line, separator, len(row))) >= min(2, len(row)) for line in above):
-        found = _names(above, separator, max(map(len, samples)), 1 + max(numeric), row[0])
+        begin = [cells[0].strip('"') for cells in samples[:_BEGIN]]
+        found = _names(above, separator, max(map(len, samples)), 1 + max(numeric), begin)
         if not found[0][0]:  # the index of pandas
             found[0][0] = 'time' if MOMENT.fullmatch(row[0]) else '1'
     else:
@@ -237,11 +238,11 @@ def _score(lines: Sequence[str], separator: str, point: str) -> float:
 
 
 def _names(
-    above: Sequence[str], separator: str, width: int, numbers: int, first: str
+    above: Sequence[str], separator: str, width: int, numbers: int, begin: Sequence[str]
 ) -> tuple[list[str], dict[str, str], dict[str, str]]:
     """Find names of columns, their units and clocks in the lines above rows of a width.
 
-    `numbers` is how many cells with numbers a row has at least; `first` is the first of them.
+    `numbers` is how many cells with numbers a row has at least; the first rows `begin` with these.
 
     Raises:
         ValueError: if the names do not fit the numbers of a row.
@@ -259,7 +260,7 @@ def _names(
         if len({*names}) < len(names) or (key not in _CLOCKS and meaning(key).role != 'time'):
             continue
         unit = _CLOCKS.get(key, meaning(key).unit)
-        unit = 'filetime' if key == 'name' and _FILETIME.fullmatch(first) else unit
+        unit = 'filetime' if key == 'name' and _FILETIME.fullmatch(begin[0]) else unit
         clocks = {name: f'time of {name}' for name in names}
         units = known_units(pairs.get('unit') or pairs.get('') or label[::2])
         columns = [one for name in names for one in (clocks[name], name)]
@@ -283,6 +284,8 @@ def _names(
     for k in range(len(names) - 1, 0, -1):  # a comma, of the same kind, before a unit
         if len(names) > width and known_units([names[k]]):
             names[k - 1 : k + 1] = [f'{names[k - 1]} [{names[k]}]']
+    if len(names) == numbers - 1 and [*begin] == [*'123']:  # the row names of R
+        names = ['', *names]
     if len(names) < numbers or (separator == ' ' and len(names) > width):
         raise ValueError(f'rows of {width} cells are below {len(names)} names: {", ".join(names)}')
     names = [*names[:width], *[''] * (width - len(names))]

@@ -33,8 +33,8 @@ _KINDS = {word: kind for kind, words in _VOCABULARY.items() for word in words.sp
 _RANKS = {word: rank for rank, word in enumerate(_KINDS)}
 _EITHER = {'shaft', 'joint', 'gearbox', 'gear'}
 """Words for the output that do not mean it beside one for the rotor, as in motor_shaft."""
-_OTHERS = '% ‰ percent pct a ma v mv volts adc w n kg g m mm °c min h'
-FOREIGN = {*_OTHERS.split()}
+_SHARES, _OTHERS = '% ‰ percent pct', 'a ma v mv volts adc w n kg g m mm °c min h'
+FOREIGN = {*_SHARES.split(), *_OTHERS.split()}
 """Units of quantities other than torque and angle, and words that may be times."""
 _CERTAIN = {'time', 'stamp', 'timestamp', 'timestamps', 'zeit', 'zeitstempel'}
 """Words for times that mean them beside unknown words, too, if the numbers rise."""
@@ -155,7 +155,8 @@ def meaning(name: str) -> Meaning:
     outputs = {word for word in kinds if kinds[word] == 'output'}
     output = bool(outputs - _EITHER if rotor else outputs)
     role, rank = _role(words, unit, rotor=rotor, output=output)
-    unsure = role == 'time' and (rotor or output or not kinds.keys() <= _KINDS.keys())
+    known = kinds.keys() <= _KINDS.keys() and (not words or 'time' in kinds.values())
+    unsure = role == 'time' and (rotor or output or not known)
     return Meaning(words, unit, role, rank, rotor, output, unsure)
 
 
@@ -166,11 +167,11 @@ def _role(
     none = '', ()
     keys = [word for word in words if _KINDS.get(word) != 'filling' and not word.isdigit()]
     kinds = {_KINDS.get(word) for word in keys}
-    if not words and unit in TIME_UNITS:
+    if not keys and unit in TIME_UNITS:  # as of unix_ms
         coarse = TIME_UNITS[unit] > 1.0  # such as the hour beside seconds, or hours of operation
-        return 'time', (len(_KINDS) + 1 if coarse else 9,)
+        return 'time', (len(_KINDS) + 1 if coarse or words else 9,)
     if times := [word for word in keys if _KINDS.get(word) == 'time']:
-        foreign = unit not in {'', *TIME_UNITS} or not FOREIGN.isdisjoint(words)
+        foreign = unit not in {'', *TIME_UNITS} or not {*_SHARES.split()}.isdisjoint(words)
         if kinds == {'time', None} and _CERTAIN & {*times} and not foreign:  # such as loop_time
             return 'time', (len(_KINDS), len(words))
         # The stamp of a message is when it was sampled; a log has when it was received.

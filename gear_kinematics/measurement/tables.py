@@ -165,7 +165,8 @@ class _Samples:
         together = None if own_of else self._together(usable, clock, clocks)
         if clock and not clock.unit:
             role = 'rotor' if 'rotor' in self.found else 'angle'
-            clock = with_unit(clock, raw[clocks[role]], data[role], role)
+            turned = data[role] * (self.found[role].unit != 'counts')  # whose speed is unknown
+            clock = with_unit(clock, raw[clocks[role]], turned, role)
         self._clock, self.timed = clock, clock is not None
         self.series: dict[str, _Series] = {}
         for roles in [[role] for role in usable] if together is None else [[*usable]]:

@@ -398,6 +398,9 @@ ENCODERS = {
     'AdvantageScope': lambda t, r, o: 'Timestamp,Key,Value\n' + ''.join(
         f'{at:.2f},/Motor/Position,{rotor:.5f}\n{at:.2f},/Output/Position,{out:.5f}\n'
         for at, rotor, out in zip(t, r, o, strict=True)),
+    'day first, over midnight': plain(time=clock('%d/%m/%Y %X.%f', hours=-492)),
+    'times of a system': plain('unix_ms,rotor,output', unit=1e3),
+    'R': plain('"time" "rotor" "output"', ' ', time=lambda v: f'"{v / 0.04 + 1.0:.0f}" {v:.2f}'),
     'days of pandas': plain(',rotor,output', time=lambda v: f'0 days 00:00:{v:09.6f}'),
     'times of each side': lambda t, r, o: written(
         [t[:-1], r[:-1], t[1:], o[1:]], 'motor_time,motor_pos,output_time,output_pos', '{:.5f}'),
@@ -486,7 +489,9 @@ def test_every_dialect_is_read(tmp_path, gear, reference, dialect):
     assert_measured(recording, gear)
     # All but the rows that are out of order or none, of which there are at most 3.
     assert kind == 'ramps' or 1317 <= recording.rows <= 1320
-    assert recording.encoders is None or recording.encoders.timed or 'without times' in dialect
+    if kind == 'encoders':
+        duration = 0.0 if 'without times' in dialect else 52.76
+        assert recording.encoders.duration == pytest.approx(duration, abs=1.1)
 
 
 @pytest.mark.parametrize('readings', [2, 7, 8, 10])
@@ -538,6 +543,15 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
             [t * 1e3, r, o], 'time_ms;rotor_rad;output_rad',
             (lambda v: f'{v:,.0f}'.replace(',', '.'), '{:.5f}', '{:.5f}'), ';'),
          'time_ms has three decimals or none, as if points divided'),
+        (lambda t, r, o: written(
+            [t, r * 1e3 + 9e5, o], 'time,rotor_counts,output_rad  # three decimals',
+            ('{:.2f}', lambda v: f'"{v / 1e3:.3f}"'.replace('.', ','), '{:.5f}')),
+         'rotor_counts has three digits behind each ,'),
+        (lambda t, r, o: written([t + 95_930.0 + 40.0 * (t >= 30.0), r, o], NAMES),
+         'the times in time are hours, minutes and seconds'),
+        *((lambda t, r, o, step=step: written([25.0 * step * t, 1e-2 * r, 1e-2 * o], NAMES,
+                                   ('{:.4f}', '{:.7f}', '{:.7f}')),
+          f'steps of {step} do not tell') for step in (0.2, 0.9993)),
         (lambda t, r, o: written([40 + t, r, o], 'temps,rotor_rad,output_rad'),
          "temps: steps of 0.04 do not tell their unit: .* --time-column 'temps .ms.'"),
         (lambda t, r, o: written([t, r, o], 'time,input,output'), 'neither an angle and'),
@@ -644,6 +658,8 @@ UNTOLD = {
     'revolutions': lambda t, r, o: written([t, r * REV % 1.0, o * REV % 1.0], NAMES),
     'a unit of one encoder alone': lambda t, r, o: written(
         [t, *in_counts(r), o * DEG], 'time,rotor,output [deg]'),
+    'counts at steps that may be s or ms': lambda t, r, o: written(
+        [25.0 * t, *in_counts(r, o)], 'time,rotor_inc,output_inc'),
     'unknown word': plain('time,motor_pos_x,output_pos_x'),
     'times': lambda t, r, o: written([25 * t, r / 3, o / 3], NAMES),
     'both motors': plain('time,motor1_pos,motor2_pos'),
@@ -958,19 +974,21 @@ def test_times_of_both_sides_that_never_meet_are_refused(tmp_path, gear, referen
         read_rotor(path, Sources(), gear.gear.gear_ratio)
 
 
+@pytest.mark.parametrize('other', ['time,output_time', 'time1,time2', 'time_a,time_b'])
 @pytest.mark.parametrize(('late', 'asked'), [(0.5, True), (0.004, False), (1.79e9, False)])
 def test_two_times_that_are_apart_and_may_be_of_one_encoder_each_are_asked_for(
-    tmp_path, gear, reference, late, asked
+    tmp_path, gear, reference, late, asked, other
 ):
     """Taken for the times of both, either would be an error by the way within half a second."""
     t, r, o = reference('encoders')
-    names = 'time,motor_pos [rad],output_time,output_pos [rad]'
+    usual, other = other.split(',')
+    names = f'{usual},motor_pos [rad],{other},output_pos [rad]'
     path = saved(tmp_path, written([t, r, t + late, o], names, '{:.5f}'))
     if asked:
-        with pytest.raises(RecordingError, match=r'time and output_time may be .* of one'):
+        with pytest.raises(RecordingError, match=rf'{usual} and {other} may be .* of one'):
             read(path, gear)
-    recording = read_table(path, Sources(time='time' if asked else ''), gear.gear.gear_ratio)
-    assert recording.columns[0] == 'time [s] from time'
+    recording = read_table(path, Sources(time=usual if asked else ''), gear.gear.gear_ratio)
+    assert recording.columns[0] == f'time [s] from {usual}'
 
 
 def test_rows_with_a_torque_of_their_own_are_no_filled_gaps(tmp_path, gear):
