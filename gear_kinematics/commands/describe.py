@@ -49,7 +49,8 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _sentence(facts: Mapping[str, Any]) -> str:
-    ratio = f'The rotor turns {facts["gear_ratio"]} times as fast as the output'
+    turns = facts['gear_ratio'].removeprefix('-')
+    ratio = f'For each turn of the output, the rotor makes {turns} in the opposite direction'
     if facts['interference']:
         return f'{ratio}; {facts["interference"]}.'
     return (
