@@ -265,8 +265,8 @@ def test_one_of_several_files_has_something_for_the_node(tmp_path):
 READ_BY_RCL = {
     'y N yes off TRUE': [True, False, True, False, True],
     '15 017 0x1F +5 -0': [15, 15, 31, 5, 0],
-    '1.5e-3 15e-4 .0015 +.5 08 1.e+3 inf -.INF': [0.0015, 0.0015, 0.0015, 0.5, 8.0, 1e3, math.inf,
-                                                  -math.inf],
+    '1.5e-3 15e-4 .0015 +.5 08 1.e+3 inf -.INF NaN': [
+        0.0015, 0.0015, 0.0015, 0.5, 8.0, 1e3, math.inf, -math.inf, math.nan],
     "1:20 8_0 0b11 0x_50 0o17 TrUe 1e 2001-01-01 = '5' 'y'": [
         '1:20', '8_0', '0b11', '0x_50', '0o17', 'TrUe', '1e', '2001-01-01', '=', '5', 'y'],
 }  # fmt: skip
@@ -300,6 +300,7 @@ def test_names_in_a_node_file_are_texts_as_for_rcl(tmp_path):
         (b'%TAG ! tag:x,2000:\n---\na: 1', '%TAG is not supported'),
         (b'[1, 2]', 'no ros__parameters in it'),
         (b'/**: {ros__parameters: 5}', 'no ros__parameters in it'),
+        (b'/**: {ros__parameters: {rotor_joint: }}', 'rotor_joint must be of type str, not None'),
         (b'a b: {ros__parameters: {ring_teeth: 80}}', '/a b is not a valid node name'),
         (2**20 * b'#' + b'\n', 'longer than 1048576 bytes'),
     ],
