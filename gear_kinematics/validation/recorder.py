@@ -35,7 +35,7 @@ _MOST_BACK = 0.1  # of the inputs, that a node can miss so more than once
 _QUIET_TIME = 150_000_000  # ns without a loss after which it has settled earlier
 _MAX_END = 500_000_000  # ns by which outputs may end before their inputs
 HOLE = 1.5  # median periods between inputs; beyond, an input between them was not recorded
-_MAX_STAMPS = 32_768  # of inputs
+_MAX_STAMPS = 32_768  # of inputs, besides those of a batch
 _MAX_RESETS = 64  # latest ones, after which an output can come
 _APART = 2**40  # ns between the clocks before and after a reset of the stamps
 _MAX_DELAY = 10_000_000_000  # ns by which the age of an output may differ from that of inputs
@@ -236,7 +236,7 @@ class RecordedInputs:
             return np.zeros(len(stamp), bool)
         if not self._known:
             return np.ones(len(stamp), bool)
-        known, ages = np.concatenate(self._known, axis=1)[:, -_MAX_STAMPS:]
+        known, ages = np.concatenate(self._known, axis=1)
         known, rows = np.unique(known, return_index=True)
         period = float(np.median(np.diff(known))) if len(known) > 1 else 0.0
         bounds = np.concatenate([[-_NEVER], known, [_NEVER]])
