@@ -16,7 +16,7 @@ _SCALARS = {
     'bool': ('y|Y|yes|Yes|YES|true|True|TRUE|on|On|ON|n|N|no|No|NO|false|False|FALSE|off|Off|OFF',
              'yYnNtTfFoO'),
     'int': ('[-+]?(0[0-7]*|[1-9][0-9]*|0x[0-9a-fA-F]+)', '-+0123456789'),
-    'float': (r'[-+]?((?i:\.?inf|\.?nan|infinity)|([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?)',
+    'float': (r'[-+]?((?i:\.?inf|\.?nan|infinity)|([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][-+]?[0-9]+)?)',
               '-+.0123456789iInN'),
     'null': ('|~|null|Null|NULL', ['', *'~nN']),
 }  # fmt: skip

@@ -279,6 +279,14 @@ def test_values_of_a_node_file_are_what_rcl_reads(tmp_path, scalars, values):
     assert [*map(repr, found)] == [*map(repr, values)]
 
 
+@pytest.mark.parametrize('begin', ['', '.', '1.', '0x', '1e'])
+def test_a_long_text_that_begins_as_a_number_is_read_at_once(tmp_path, begin):
+    """In a time that rises with its square, it would take hours."""
+    text = f'{begin}{500_000 * "1"}x'
+    path = write(tmp_path, f'/**: {{ros__parameters: {{k: {text}}}}}')
+    assert given_parameters(path, NODE) == {'k': text}
+
+
 def test_names_in_a_node_file_are_texts_as_for_rcl(tmp_path):
     names = 'on', 'y', '017', '1.50', 'null', '='
     blocks = ''.join(f'    {name}:\n      k: 1\n' for name in names)
