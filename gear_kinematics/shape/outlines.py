@@ -44,10 +44,8 @@ _LEAST_ROOM = 0.3
 class Pose(NamedTuple):
     """Pose of a body in the frame of the stator; `...` is the shape of the rotor angles."""
 
-    centre: Array
-    """Position of the body's origin, (..., 2), m."""
-    angle: Array
-    """Orientation of the body within a turn, (...), rad."""
+    centre: Array  #: position of the body's origin, (..., 2), m
+    angle: Array  #: orientation of the body within a turn, (...), rad
 
     def place(self, outline: Array) -> Array:
         """Transform points (n, 2) of the body to the frame of the stator, (..., n, 2)."""

@@ -15,10 +15,8 @@ from numpy.typing import NDArray
 from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.shape.outlines import Polygons, bodies
 
-FACE_WIDTH = 0.01
-"""Face width of the gears, m."""
-PLATE = 0.2 * FACE_WIDTH
-"""Thickness of coupling and arm, m."""
+FACE_WIDTH = 0.01  #: face width of the gears, m
+PLATE = 0.2 * FACE_WIDTH  #: thickness of coupling and arm, m
 STL_HEADER = b'gear_kinematics, m'
 """Header of the files. Readers take a file that begins with "solid" for text."""
 
@@ -40,8 +38,7 @@ class Solid(NamedTuple):
     """A prism about z = 0."""
 
     outlines: Polygons
-    height: float
-    """Height along the axis, m."""
+    height: float  #: height along the axis, m
 
     @property
     def reach(self) -> float:

@@ -37,8 +37,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 
 Array = NDArray[np.float64]
 
-PRESSURE_ANGLE = math.radians(20.0)
-"""α of the basic rack, rad (ISO 53)."""
+PRESSURE_ANGLE = math.radians(20.0)  #: α of the basic rack, rad (ISO 53)
 _CLEARANCE = 0.25  # between tip and root, modules (ISO 53, type A)
 _BACKLASH = 0.02  # between the flanks, along their normal, modules; taken from the satellite
 _LEAST_TIP = 0.2  # thickness, modules, below which a tip counts as pointed
@@ -118,8 +117,7 @@ class ToothPair:
     """The teeth of ring gear and satellite; lengths in m, angles in rad."""
 
     mechanism: Mechanism
-    module: float
-    """Module of the teeth, m."""
+    module: float  #: module of the teeth, m
     addendum: float
     """Height of the teeth above their reference circle, modules: 1, or less if shortened."""
 
@@ -233,10 +231,8 @@ class Involute(NamedTuple):
     """External involute teeth; also the spaces of the ring gear, taken as teeth."""
 
     teeth: int
-    base_radius: float
-    """Radius of the base circle, m."""
-    base_half_angle: float
-    """Half the angular thickness of a tooth on the base circle, rad."""
+    base_radius: float  #: radius of the base circle, m
+    base_half_angle: float  #: half the angular thickness of a tooth on the base circle, rad
 
     @classmethod
     def of(cls, teeth: int, module: float, profile_shift: float, backlash: float) -> Self:

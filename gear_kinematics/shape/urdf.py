@@ -14,8 +14,7 @@ from xml.etree import ElementTree as ET
 from gear_kinematics.kinematics import Gear, Mechanism
 from gear_kinematics.shape.visuals import Cylinder, Visual, cam_centre, cylinders, meshed, simple
 
-MACRO_PREFIX = '${prefix}'
-"""The `frame_prefix` of a URDF that `as_macro` takes."""
+MACRO_PREFIX = '${prefix}'  #: the `frame_prefix` of a URDF that `as_macro` takes
 _MACRO = """<?xml version="1.0" encoding="utf-8"?>
 <!-- Printed by gearkin urdf. The block is the origin of the stator in the parent link:
   <xacro:gear_actuator parent="base" prefix="shoulder_"><origin xyz="0 0 0"/></xacro:gear_actuator>

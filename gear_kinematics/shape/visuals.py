@@ -35,18 +35,12 @@ class Cylinder(NamedTuple):
 class Visual(NamedTuple):
     """A shape on a link."""
 
-    link: str
-    """Name of the link, without the prefix."""
-    shape: str
-    """Name of the geometry element in the URDF."""
-    size: Mapping[str, str]
-    """Attributes of the geometry element."""
-    xyz: Point = (0.0, 0.0, 0.0)
-    """Position of the shape's centre, m."""
-    yaw: float = 0.0
-    """Turn of the shape about the z axis, rad."""
-    opaque: bool = False
-    """Whether the colour is opaque, whatever `COLOURS` says."""
+    link: str  #: name of the link, without the prefix
+    shape: str  #: name of the geometry element in the URDF
+    size: Mapping[str, str]  #: attributes of the geometry element
+    xyz: Point = (0.0, 0.0, 0.0)  #: position of the shape's centre, m
+    yaw: float = 0.0  #: turn of the shape about the z axis, rad
+    opaque: bool = False  #: whether the colour is opaque, whatever `COLOURS` says
 
     @classmethod
     def cylinder(cls, link: str, cylinder: Cylinder, xyz: Point = (0.0, 0.0, 0.0)) -> Self:

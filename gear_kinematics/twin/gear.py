@@ -77,28 +77,21 @@ class TwinGear:
         MechanismError: if a branch is rigid, or the rotor has no inertia.
     """
 
-    parameters: NodeParameters
-    """Parameters of the mechanism, the bodies and the encoders."""
+    parameters: NodeParameters  #: parameters of the mechanism, the bodies and the encoders
     stiffness: tuple[float, ...]
     """Stiffness of each branch once its flanks touch, N·m/rad; the greatest of a curve."""
     shaft_stiffness: float
     """Stiffness of the shaft between both arms, N·m/rad; infinite for a rigid one."""
     interference: float
     """Twist of the loop at the arms by the preload, rad; the remaining play if negative."""
-    play: float
-    """Angle between the flanks of a branch, rad; at least the remaining play."""
-    friction: float = 0.0
-    """Friction torque, N·m; the mean of a curve."""
+    play: float  #: angle between the flanks of a branch, rad; at least the remaining play
+    friction: float = 0.0  #: friction torque, N·m; the mean of a curve
     curve: LoadingCurve | None = None
     """Curve of all branches together once their flanks touch; only without shaft and preload."""
-    errors: tuple[Order, ...] = ()
-    """Periodic errors of the output angle over the rotor angle."""
-    rotor_damping: float = 0.0
-    """Viscous damping of the rotor, N·m·s/rad."""
-    output_inertia: float
-    """Inertia of the output shaft, kg·m²."""
-    ratio: float = field(init=False)
-    """Signed gear ratio i."""
+    errors: tuple[Order, ...] = ()  #: periodic errors of the output angle over the rotor angle
+    rotor_damping: float = 0.0  #: viscous damping of the rotor, N·m·s/rad
+    output_inertia: float  #: inertia of the output shaft, kg·m²
+    ratio: float = field(init=False)  #: signed gear ratio i
     preload: float = field(init=False)
     """Preload T0 of two branches, N·m; negative if branch A pushes in the negative direction."""
     dead_bands: tuple[tuple[float, float], ...] = field(init=False)
