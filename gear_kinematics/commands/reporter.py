@@ -61,10 +61,8 @@ class Reporter:
 
         The document will have a number of sections; if `compared`, the last of several compares
         the others, and has the figure for `--plot`. The command itself writes `others`, by option.
-
-        Raises:
-            ValueError: if options exclude each other, or a file must not or cannot be written.
-            ModuleNotFoundError: if a form needs a package that is not installed.
+        Raises ValueError if options exclude each other, or a file must not or cannot be written,
+        and ModuleNotFoundError if a form needs a package that is not installed.
         """
         self._options = options
         # Reports without `--verbose` have nothing to leave out.
@@ -91,10 +89,8 @@ class Reporter:
         """Print the document, unless a form of it goes to stdout, and write the files.
 
         `configs` are the parameter files that were used. It is not `printed` if one line on stderr
-        was enough. Returns the exit code for the verdict.
-
-        Raises:
-            ValueError: if there is nothing to plot; everything else is written by then.
+        was enough. Returns the exit code for the verdict. Raises ValueError if there is nothing to
+        plot; everything else is written by then.
         """
         plot: str | None = self._options.plot
         document = replace(document, origin=self._origin(configs))

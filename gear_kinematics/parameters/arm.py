@@ -45,11 +45,9 @@ def load_actuators(
 ) -> dict[str, NodeParameters]:
     """Read the parameters of all actuators of a node, by name; see `NodeParameters.load`.
 
-    Paths in the file are relative to it.
-
-    Raises:
-        ConfigError: if it cannot be read, has nothing for the node, leaves open which node is
-            meant, or has values or names that are refused, of which the text lists all.
+    Paths in the file are relative to it. Raises ConfigError if it cannot be read, has nothing for
+    the node, leaves open which node is meant, or has values or names that are refused, of which
+    the text lists all.
     """
     path = path or default_config()
     given = given_parameters(path, node)
@@ -88,8 +86,7 @@ def as_file(actuators: Iterable[NodeParameters], node: str = '/**') -> str:
 def arm_urdf(actuators: Mapping[str, NodeParameters]) -> tuple[str, list[str]]:
     """Write the URDF of all actuators with known bodies, side by side; return the others' names.
 
-    Raises:
-        ValueError: if only the ratios are known, or there is no such mechanism.
+    Raises ValueError if only the ratios are known, or there is no such mechanism.
     """
     from gear_kinematics.shape.urdf import side_by_side  # noqa: PLC0415, of few programs
 

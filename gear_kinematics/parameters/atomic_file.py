@@ -13,11 +13,9 @@ def replace_file(path: Path, content: bytes, *, new: bool = False) -> None:
     """Write a file and flush it to the disk; a link to a file is kept.
 
     A process that is killed meanwhile leaves nothing behind, unless the file system has no files
-    without a name, or in the moment between the two names.
-
-    Raises:
-        OSError: if the file cannot be written: it is there although it must be `new`, or a link
-            leads to nothing. The previous content then remains, whenever the error occurs.
+    without a name, or in the moment between the two names. Raises OSError if the file cannot be
+    written: it is there although it must be `new`, or a link leads to nothing. The previous
+    content then remains, whenever the error occurs.
     """
     if new and os.path.lexists(path):
         raise FileExistsError(errno.EEXIST, 'exists already')

@@ -18,9 +18,8 @@ from gear_kinematics.parameters.yaml_file import Dumper, read_yaml
 def write_home(path: Path, actuators: Mapping[str, NodeParameters], node: str) -> None:
     """Write the zeros of all actuators of the node with a full name; a single one has ''.
 
-    Raises:
-        OSError: if they cannot be written. Older zeros are removed, as they would be wrong at the
-            next start; the text says so where that fails as well.
+    Raises OSError if they cannot be written. Older zeros are removed, as they would be wrong at
+    the next start; the text says so where that fails as well.
     """
     if path.is_symlink():
         raise OSError(errno.ELOOP, 'it is a link, which could lead to any file')
@@ -50,11 +49,9 @@ def read_home(
 ) -> tuple[dict[str, float], str] | None:
     """Read `rotor_zero`, rad, by actuator from a file of at most 256 KiB, and when it was set.
 
-    An arm's file has the zeros of the actuators that were homed. None if there is no file.
-
-    Raises:
-        ConfigError: if it cannot be used, or a zero belongs to another node, by its full name, to
-            another actuator, gear, joint or kind of encoder.
+    An arm's file has the zeros of the actuators that were homed. None if there is no file. Raises
+    ConfigError if it cannot be used, or a zero belongs to another node, by its full name, to
+    another actuator, gear, joint or kind of encoder.
     """
     if path.is_symlink():
         raise ConfigError(f'{path}: the home file must not be a link')

@@ -175,10 +175,8 @@ class NodeParameters:
         """Read a node's parameters from a file of ROS as the node would; others have defaults.
 
         Without a namespace, the node is the only one of its name in the file. It may have `others`
-        besides, which are checked. `actuator` selects one of an arm.
-
-        Raises:
-            ConfigError: as `load_actuators`, and if it is open which actuator is meant.
+        besides, which are checked. `actuator` selects one of an arm. Raises ConfigError as
+        `load_actuators` does, and if it is open which actuator is meant.
         """
         from gear_kinematics.parameters import arm  # noqa: PLC0415, it imports this module
 

@@ -33,16 +33,9 @@ def animate(
 ) -> bytes:
     """Animate the first branch, and its magnified centres with the rose of O4, as a GIF.
 
-    Args:
-        mechanism: the mechanism.
-        module: module of the teeth, m.
-        frames: rotor positions to draw.
-        force: tooth force F_t, N, which adds the forces on the satellite; 0 adds none.
-        fps: frames per second; a GIF rounds their duration to hundredths of a second.
-        progress: called with the number of each frame.
-
-    Raises:
-        ModuleNotFoundError: without matplotlib.
+    The module of the teeth is in m. A tooth force F_t, N, adds the forces on the satellite. A GIF
+    rounds the duration of a frame to hundredths of a second. `progress` is called with the number
+    of each frame. Raises ModuleNotFoundError without matplotlib.
     """
     with canvas((_WIDTH, _HEIGHT * _WIDTH)) as figure:
         figure.set_dpi(_DPI)

@@ -19,8 +19,7 @@ _SAMPLES = 361  # per turn
 def roses(mechanism: Mechanism) -> Figure:
     """Plot the paths of the centres of the Oldham couplings, branch by branch.
 
-    Raises:
-        ValueError: if there are more petals than `MOST_PETALS`.
+    Raises ValueError if there are more petals than `MOST_PETALS`.
     """
     panels = []
     paths = np.moveaxis(_MM * rose(mechanism), 1, 0)
@@ -34,8 +33,7 @@ def roses(mechanism: Mechanism) -> Figure:
 def rose(mechanism: Mechanism) -> Array:
     """Compute the complete paths of the couplings' centres O4, (n, B, 2), m (eqs. 21, 22).
 
-    Raises:
-        ValueError: if there are more petals than `MOST_PETALS`.
+    Raises ValueError if there are more petals than `MOST_PETALS`.
     """
     if mechanism.oldham_petals > MOST_PETALS:
         raise ValueError(

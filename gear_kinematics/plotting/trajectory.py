@@ -36,8 +36,7 @@ class Trajectory(NamedTuple):
     def at_constant_speed(cls, speed: float, turns: int) -> Self:
         """Create a motion from φ2 = 0 on at a speed, rad/s, sampled for smooth curves.
 
-        Raises:
-            ValueError: if there are more turns of the rotor than `MOST_TURNS`.
+        Raises ValueError if there are more turns of the rotor than `MOST_TURNS`.
         """
         if turns > MOST_TURNS:
             raise ValueError(f'{turns} turns of the rotor are more than {MOST_TURNS}')
@@ -84,10 +83,8 @@ def read_trajectory(
 ) -> Trajectory:
     """Read the rotor's motion from a bag, up to the first stamp that jumps back.
 
-    Missing velocities are derived from the positions.
-
-    Raises:
-        BagError: if the bag cannot be read, or has fewer than two rotor states of different times.
+    Missing velocities are derived from the positions. Raises BagError if the bag cannot be read,
+    or has fewer than two rotor states of different times.
     """
     with Bag(path) as bag:
         topic = find_rotor_topic(bag, rotor_topic, parameters.rotor_joint)

@@ -11,11 +11,7 @@ _Angle = TypeVar('_Angle', float, NDArray[np.float64])
 
 
 def arc(angle: float) -> str:
-    """Format an angle to a thousandth of a second of arc: -1° 02′ 03.450″.
-
-    Args:
-        angle: finite, rad.
-    """
+    """Format a finite angle, rad, to a thousandth of a second of arc: -1° 02′ 03.450″."""
     thousandths = round(arc_seconds(abs(angle)) * 1000.0)
     sign = '-' if angle < 0.0 and thousandths else ''
     minutes, rest = divmod(thousandths, 60_000)

@@ -117,16 +117,9 @@ def poses(
     *,
     rotor_turns: 'ArrayLike' = 0,
 ) -> dict[str, Pose]:
-    """Compute the poses of the bodies of a branch.
+    """Compute the poses of the `BODIES` of the branch with an index, then that of `arrows`.
 
-    Args:
-        mechanism: the mechanism.
-        rotor_angle: rotor angle φ2, rad, of any shape `(...)`.
-        branch: index of the branch.
-        rotor_turns: whole turns to be added, as for `solve`.
-
-    Returns:
-        The poses of the `BODIES`, in this order, followed by that of `arrows`.
+    The rotor angle φ2, rad, has any shape `(...)`; whole turns are added to it as in `solve`.
     """
     state = solve(mechanism, rotor_angle, rotor_turns=rotor_turns)
     shape = state.output_angle.shape

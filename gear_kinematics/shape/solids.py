@@ -66,11 +66,7 @@ def solids(mechanism: Mechanism, module: float) -> dict[str, Solid]:
 
 
 def to_stl(solid: Solid) -> bytes:
-    """Write a solid as binary STL.
-
-    Raises:
-        ModuleNotFoundError: if the extra `mesh` is not installed.
-    """
+    """Write a solid as binary STL; ModuleNotFoundError if the extra `mesh` is not installed."""
     corners = triangles(solid)
     first, second, third = corners.astype(np.float64).swapaxes(0, 1)
     normals = np.cross(second - first, third - first)

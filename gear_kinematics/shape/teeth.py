@@ -67,10 +67,8 @@ def outlines(mechanism: Mechanism, module: float) -> Outlines:
 
     Draw the satellite at `satellite_centre`, turned by `output_angle`, and the ring gear of a
     branch turned by its `ring_phase`. If the teeth cannot mesh (see `tooth_pair`), or are too many
-    to be seen, the outlines are the rolling circles. The module is in metres.
-
-    Raises:
-        MechanismError: if the module is not finite and greater than 0.
+    to be seen, the outlines are the rolling circles. The module is in metres; MechanismError if it
+    is not finite and greater than 0.
     """
     try:
         pair = tooth_pair(mechanism, module)
@@ -91,11 +89,8 @@ def ring_phase(mechanism: Mechanism, branch: Branch) -> float:
 def tooth_pair(mechanism: Mechanism, module: float) -> 'ToothPair':
     """Find the highest teeth, up to those of the basic rack, that mesh without interference.
 
-    The module is in metres.
-
-    Raises:
-        InterferenceError: if there are none; the text gives the numbers.
-        MechanismError: if the module is not finite and greater than 0.
+    The module is in metres; MechanismError if it is not finite and greater than 0. Raises
+    InterferenceError if there are no such teeth; the text gives the numbers.
     """
     if not 0.0 < module < math.inf:
         raise MechanismError([f'module must be finite and greater than 0, not {module!r}'])

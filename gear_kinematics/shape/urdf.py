@@ -35,11 +35,8 @@ def joint_names(gear: Gear, *, output_joint: str, frame_prefix: str) -> list[str
     """List the joints of the URDF: rotor, satellites, Oldham couplings, output shaft.
 
     If only the ratio of the gear is known, the output shaft's joint is the only one. The name
-    `output_joint` is complete; the others get the prefix.
-
-    Raises:
-        ValueError: if `output_joint` is empty or the name of another joint, or a name is not
-            printable.
+    `output_joint` is complete; the others get the prefix. Raises ValueError if `output_joint` is
+    empty or the name of another joint, or a name is not printable.
     """
     names = []
     if isinstance(gear, Mechanism):
@@ -59,18 +56,11 @@ def joint_names(gear: Gear, *, output_joint: str, frame_prefix: str) -> list[str
 def urdf(
     mechanism: Mechanism, *, module: float, output_joint: str, frame_prefix: str, meshes: str = ''
 ) -> str:
-    """Write the URDF of a mechanism.
+    """Write the URDF of a mechanism; ValueError for names that `joint_names` refuses.
 
-    Args:
-        mechanism: the mechanism.
-        module: module of the teeth, m; with the tooth numbers it determines the sizes.
-        output_joint: complete name of the output shaft's joint.
-        frame_prefix: prefix of the names of all links and of the other joints.
-        meshes: the URI below which viewers find the `solids` as STL; '' shows simple shapes. The
-            inertias are those of the simple shapes.
-
-    Raises:
-        ValueError: if `output_joint` is empty or the name of another joint.
+    The module of the teeth, m, determines the sizes. `output_joint` is the complete name of the
+    output shaft's joint; the prefix is before all other names. `meshes` is the URI below which
+    viewers find the `solids` as STL; '' shows simple shapes, which always give the inertias.
     """
     joint_names(mechanism, output_joint=output_joint, frame_prefix=frame_prefix)  # checks them
     e = mechanism.eccentricity
@@ -106,10 +96,8 @@ def urdf(
 def side_by_side(urdfs: Iterable[str], spacing: float) -> str:
     """Join the URDFs of several actuators in one, which has the single root that a URDF needs.
 
-    Args:
-        urdfs: URDFs of mechanisms, all of whose links and joints have different names. The stator
-            of each is fixed to the link `base`.
-        spacing: distance between neighbours along x, m.
+    All their links and joints have different names. The stators are fixed to the link `base`, with
+    a spacing along x, m.
     """
     robot = ET.Element('robot', name='gear_kinematics')
     ET.SubElement(robot, 'link', name='base')
@@ -127,9 +115,8 @@ def side_by_side(urdfs: Iterable[str], spacing: float) -> str:
 def as_macro(urdf: str, joint: str) -> str:
     """Wrap a URDF in the xacro macro `gear_actuator`, which fixes the stator to a link of a robot.
 
-    Args:
-        urdf: a URDF written with the `frame_prefix` `MACRO_PREFIX`.
-        joint: default name of the output shaft's joint, as an expression of xacro.
+    The URDF has the `frame_prefix` `MACRO_PREFIX`. `joint` is the default name of the output
+    shaft's joint, as an expression of xacro.
     """
     robot = ET.fromstring(urdf)  # noqa: S314, our own
     child = f'child[@link="{MACRO_PREFIX}output_shaft"]/..'

@@ -24,8 +24,7 @@ _FASTEST = 1.0 / _STEP  # rad/s: half of the bound, where the period is 5 % too 
 class FastModel:
     """Implements `TwinModel` without MuJoCo; it begins at rest, without load, at φ2 = 0.
 
-    Raises:
-        MechanismError: if the gear is too stiff for its inertias.
+    Raises MechanismError if the gear is too stiff for its inertias.
     """
 
     def __init__(self, gear: TwinGear) -> None:

@@ -73,8 +73,7 @@ class LoadingCurve:
 class TwinGear:
     """A gear to be simulated; angles and torques are those of the output.
 
-    Raises:
-        MechanismError: if a branch is rigid, or the rotor has no inertia.
+    Raises MechanismError if a branch is rigid, or the rotor has no inertia.
     """
 
     parameters: NodeParameters  #: parameters of the mechanism, the bodies and the encoders
@@ -122,16 +121,11 @@ class TwinGear:
     def load(
         cls, config: Path, node: str = NODE, calibration: Path | None = None, actuator: str = ''
     ) -> Self:
-        """Read a gear from a parameter file.
+        """Read a gear from the parameters of a node in a file of ROS.
 
-        Args:
-            config: parameter file of ROS, such as config/simulated_actuator.yaml.
-            node: name of the node whose parameters are read.
-            calibration: calibration with the errors; None for the one that the file names, if any.
-            actuator: name of the actuator, in the file of an arm with several.
-
-        Raises:
-            ValueError: if a file cannot be used, or the gear cannot be simulated.
+        The errors are those of the `calibration`, or else of the one that the file names, if any.
+        `actuator` selects one of an arm. Raises ValueError if a file cannot be used, or the gear
+        cannot be simulated.
         """
         shared = NodeParameters.load(config, node, PARAMETERS, actuator)
         given = by_actuator(given_parameters(config, node))[shared.actuator]

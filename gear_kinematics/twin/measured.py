@@ -27,16 +27,10 @@ Report = Mapping[str, Any]
 def measured(gear: TwinGear, reports: Iterable[Path]) -> tuple[TwinGear, list[str]]:
     """Replace properties of a gear by measured figures; later reports replace earlier ones.
 
-    Args:
-        gear: supplies all other properties, and the shaft between the arms, which a measured
-            loop does not show.
-        reports: the JSON of `gearkin preload`, or of `gearkin lost-motion` on one recording.
-
-    Returns:
-        The gear, and the assumptions about everything that the reports leave undetermined.
-
-    Raises:
-        ValueError: if a report cannot be used; the text names it.
+    The reports are the JSON of `gearkin preload`, or of `gearkin lost-motion` on one recording.
+    The gear keeps all other properties, and the shaft between the arms, which a measured loop does
+    not show. The returned texts say what is assumed where the reports leave something
+    undetermined. Raises ValueError if a report cannot be used; the text names it.
     """
     notes: list[str] = []
     for path in reports:

@@ -39,15 +39,11 @@ def mjcf(
 ) -> str:
     """Write the model, at rest without load at a rotor angle of 0.
 
-    Args:
-        gear: a gear with a known mechanism, whose satellites and couplings have masses.
-        remarks: lines of the comment in the file.
-        shown: whether to draw the bodies: with their teeth, unless the parameter `meshes` is none.
-        single_precision: whether to soften the closed loops, as MuJoCo Warp requires.
-
-    Raises:
-        MechanismError: if only the ratio of the gear is known, or such a mass is missing.
-        ModuleNotFoundError: if the extra `mesh` is not installed, which teeth need.
+    The remarks are lines of the comment in the file. The bodies are `shown` with their teeth,
+    unless the parameter `meshes` is none. With `single_precision`, the closed loops are softer, as
+    MuJoCo Warp requires. Raises MechanismError if only the ratio of the gear is known, or its
+    satellites or couplings have no masses, and ModuleNotFoundError without the extra `mesh`, which
+    teeth need.
     """
     mechanism, loads = gear.parameters.mechanism, gear.parameters.loads
     needed = 'satellite_mass', 'satellite_inertia', 'coupling_mass', 'coupling_inertia'

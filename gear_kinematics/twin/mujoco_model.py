@@ -14,8 +14,7 @@ mujoco.set_mju_user_warning(lambda _: None)  # else MUJOCO_LOG.TXT in the curren
 class MujocoModel:
     """Implements `TwinModel` with MuJoCo; it begins at rest, without load, at φ2 = 0.
 
-    Raises:
-        MechanismError: as `mjcf`.
+    Raises MechanismError as `mjcf` does.
     """
 
     def __init__(self, gear: TwinGear) -> None:

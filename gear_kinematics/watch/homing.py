@@ -21,9 +21,8 @@ _PATIENCE = 5.0  # s to wait for the answer
 def home(wanted: str, actuator: str) -> Answer:
     """Call `~/home` of the node with a full name, or of the only one, and return its answer.
 
-    Raises:
-        ValueError: if there is no such node, or there are several to choose from.
-        RuntimeError: if the node does not answer.
+    Raises ValueError if there is no such node, or there are several to choose from, and
+    RuntimeError if the node does not answer.
     """
     wanted = wanted and f'/{wanted.removeprefix("/")}'
     with replay_node('') as node:
