@@ -155,11 +155,11 @@ def _validator(task: Task, bag: Bag, topics: Topics) -> Validator:
     poses = further.pop(BODY_POSES, '')
     topics = topics._replace(poses=topics.poses or task.poses_topic or poses)
     encoder, joint = '', parameters.distinct_encoder_joint
+    near = find_in_namespace(bag, [OUTPUT_ENCODER], topics.output).get(OUTPUT_ENCODER)
     if parameters.absolute:
-        encoder = find_encoder_topic(bag, topics.rotor, None, joint)
-    if TRANSMISSION_ERROR in further and not encoder:
-        near = find_in_namespace(bag, [OUTPUT_ENCODER], topics.output)
-        encoder = near.get(OUTPUT_ENCODER) or topic_with_joint(bag, topics.rotor, joint)
+        encoder = near or find_encoder_topic(bag, topics.rotor, None, joint)
+    elif TRANSMISSION_ERROR in further:
+        encoder = near or topic_with_joint(bag, topics.rotor, joint)
     return Validator(task, topics, further, encoder=encoder)
 
 

@@ -3,6 +3,7 @@
 
 import json
 import math
+from dataclasses import replace
 from itertools import compress
 
 import jsonschema
@@ -20,6 +21,7 @@ from arm_recordings import (
     recording,
 )
 from blocked_bags import BAGS, gearkin_here, refusal
+from calibrations import calibration
 from shipped_bags import JOINT_STATE, write_bag
 from validating import feed
 
@@ -28,7 +30,7 @@ from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation import Task, explain
 from gear_kinematics.validation.arm import ArmValidator
 from gear_kinematics.validation.causes import FindingCause
-from gear_kinematics.validation.validate_bag import of_arm, validate
+from gear_kinematics.validation.validate_bag import of_arm, validate, validate_bag
 from gear_kinematics.validation.validator import Validator
 
 PAIR, WRIST, ALL = 40, 41, 42
@@ -213,12 +215,20 @@ def test_corrected_outputs_that_are_not_judged_are_those_of_their_joints(tmp_pat
     ]
     messages = sorted(recording() + corrected, key=lambda message: message[1])
     topics = dict.fromkeys((topic for topic, *_ in messages), JOINT_STATE)
-    report = validate(write_bag(tmp_path / 'bag', messages, topics), config(tmp_path / 'arm.yaml'))
-    found = [
-        FindingCause.CORRECTION_UNJUDGED in [f.cause for f in each.findings]
-        for each in report.actuators
-    ]
-    assert found == [True, False, False]
+    bag = write_bag(tmp_path / 'bag', messages, topics)
+    arm = load_actuators(config(tmp_path / 'arm.yaml'))
+    tasks = [Task(bag, each) for each in arm.values()]
+
+    def causes(tasks: list[Task]) -> list[list[FindingCause]]:
+        found = validate_bag(of_arm(tasks)).actuators
+        return [[finding.cause for finding in each.findings] for each in found]
+
+    unjudged = [FindingCause.CORRECTION_UNJUDGED in each for each in causes(tasks)]
+    assert unjudged == [True, False, False]
+    # The node had none for the elbow, although one is given.
+    tasks[1] = replace(tasks[1], calibration=calibration())
+    left_out = [FindingCause.JOINT_LEFT_OUT in each for each in causes(tasks)]
+    assert left_out == [False, True, False]
 
 
 @pytest.mark.parametrize(('last', 'expected'), [(100, 1.196), (200, None)])

@@ -93,6 +93,18 @@ def test_outputs_on_another_topic_are_not_their_own_encoder(tmp_path, config):
     assert texts(validate_bag(Task(bag, config, output_topic='/arm/states'))) == [UNJUDGED]
 
 
+def test_of_two_encoders_it_is_that_in_the_namespace_of_the_outputs(tmp_path):
+    """The rotors of both nodes are in another one."""
+    messages = []
+    for topic, *rest in recorded(SINGLE):
+        messages.append(('/motors/left' if topic == ROTOR else f'/left{topic}', *rest))
+        if topic == ENCODER:
+            messages.append((f'/right{ENCODER}', *rest))
+    types = {topic: TYPES.get(topic.removeprefix('/left'), JOINT_STATE) for topic, *_ in messages}
+    bag = write_bag(tmp_path / 'bag', messages, types)
+    assert texts(validate_bag(Task(bag, SINGLE))) == [AGREES]
+
+
 @pytest.mark.parametrize('strict', [False, True])
 @pytest.mark.parametrize('start', np.random.default_rng(3).uniform(-3.0, 3.0, 4).tolist())
 @BOTH
