@@ -31,6 +31,13 @@ def add_rotor(parser: argparse.ArgumentParser, *, configured: bool = True) -> No
     group.add_argument('--joint', metavar='NAME', help=f'joint of the rotor{text}')
 
 
+def add_encoder(parser: argparse.ArgumentParser) -> None:
+    """Add the option for the topic of the output encoder."""
+    text = 'topic of the output encoder (default: found by type, name and joint)'
+    group = arguments.group(parser, 'recording')
+    group.add_argument('--encoder-topic', metavar='NAME', help=text)
+
+
 def add_outputs(parser: argparse.ArgumentParser) -> None:
     """Add the options for the names of the node's topics in a bag."""
     group = arguments.group(parser, 'recording')

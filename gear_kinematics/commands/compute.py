@@ -19,6 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('bag', type=Path, metavar='BAG', help='file or folder')
     parser.add_argument('out', type=Path, metavar='OUT', help='folder to create')
     bags.add_rotor(parser)
+    bags.add_encoder(parser)
     arguments.add_config(parser, actuator=arguments.ALL)
     arguments.add_ratio(parser)
     bags.add_calibration(parser)
@@ -55,12 +56,15 @@ def run(options: argparse.Namespace) -> ExitCode:
             taken = only_joint(bag, rotor, first)
             configs = {'': replace(configs[''], rotor_joint=taken)}
         absolute = [each.distinct_encoder_joint for each in configs.values() if each.absolute]
+        encoder = ''
+        if absolute:
+            encoder = find_encoder_topic(bag, rotor, options.encoder_topic, *absolute)
         result = compute(
             bag,
             options.out,
             configs,
             topics=outputs_of(bag, rotor),
-            encoder_topic=find_encoder_topic(bag, rotor, None, *absolute) if absolute else '',
+            encoder_topic=encoder,
             calibrations=calibrations,
             others=options.topics,
             files=bags.files_of(options, configs, options.bag),

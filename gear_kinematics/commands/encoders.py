@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_kinematics.commands import arguments
-from gear_kinematics.commands.bags import add_rotor
+from gear_kinematics.commands.bags import add_encoder, add_rotor
 from gear_kinematics.commands.output import complain
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.columns import GIVEN_UNITS, Sources
@@ -42,9 +42,7 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: boo
     text = 'recording by ROS, or table such as a CSV file'
     parser.add_argument('recordings', nargs=number, type=Path, metavar='BAG|TABLE', help=text)
     add_rotor(parser, configured=configured)
-    recording = arguments.group(parser, 'recording')
-    text = 'topic of the output encoder (default: found by type, name and joint)'
-    recording.add_argument('--encoder-topic', metavar='NAME', help=text)
+    add_encoder(parser)
     arguments.group(parser, 'gear')  # before the columns, also where the command adds to it
     if configured:
         arguments.add_config(parser)

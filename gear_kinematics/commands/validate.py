@@ -21,6 +21,7 @@ from gear_kinematics.validation.validate_bag import WORK, of_arm, validate_bag
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('bags', nargs='+', metavar='BAG', help='file, directory or glob')
     bags.add_rotor(parser)
+    bags.add_encoder(parser)
     bags.add_outputs(parser)
     arguments.add_config(
         parser,
@@ -103,6 +104,7 @@ def _task(bag: Path, tolerances: Tolerances, options: argparse.Namespace) -> Tas
             rotor_topic=options.rotor_topic,
             output_topic=options.output_topic,
             poses_topic=options.poses_topic,
+            encoder_topic=options.encoder_topic,
             namespace=f'/{node.strip("/")}'.rpartition('/')[0] if '/' in node else None,
             calibration=bags.load_calibration(options, config, bag),
             debug=options.debug,

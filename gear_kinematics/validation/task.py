@@ -43,6 +43,7 @@ class Task:
     rotor_topic: str | None = None  # each topic that is None is found by type and name
     output_topic: str | None = None
     poses_topic: str | None = None
+    encoder_topic: str | None = None
     namespace: str | None = None  # that of the node, to choose among several sets of topics
     calibration: Calibration | None = None  # needed to judge the corrected output
     actuators: 'tuple[Task, ...]' = ()  # one for each actuator of an arm; empty for one gear

@@ -156,10 +156,11 @@ def _validator(task: Task, bag: Bag, topics: Topics) -> Validator:
     topics = topics._replace(poses=topics.poses or task.poses_topic or poses)
     encoder, joint = '', parameters.distinct_encoder_joint
     near = find_in_namespace(bag, [OUTPUT_ENCODER], topics.output).get(OUTPUT_ENCODER)
-    if parameters.absolute:
-        encoder = near or find_encoder_topic(bag, topics.rotor, None, joint)
+    given = task.encoder_topic or near
+    if parameters.absolute or (given and TRANSMISSION_ERROR in further):
+        encoder = find_encoder_topic(bag, topics.rotor, given, joint)
     elif TRANSMISSION_ERROR in further:
-        encoder = near or topic_with_joint(bag, topics.rotor, joint)
+        encoder = topic_with_joint(bag, topics.rotor, joint)
     return Validator(task, topics, further, encoder=encoder)
 
 
@@ -193,7 +194,7 @@ def _played(
     rotor, *_ = find_topics(bag, given, outputs=False, joints=joints, namespace=task.namespace)
     encoder, joint = '', task.parameters.distinct_encoder_joint
     if task.parameters.absolute:
-        encoder = find_encoder_topic(bag, rotor, None, joint)
+        encoder = find_encoder_topic(bag, rotor, task.encoder_topic, joint)
     task, taken = _of_only_joint(task, bag, rotor)
     total = count_due(bag, [rotor]) if progress else None
     messages = play(

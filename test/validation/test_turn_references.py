@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from blocked_bags import gearkin_here
+from blocked_bags import gearkin_here, refusal
 from live import rotor_bytes
 from node_loop import ENCODER, answered
 from replaying import SECOND, edited
@@ -247,6 +247,25 @@ def test_a_computed_bag_has_the_outputs_of_the_node_and_passes(tmp_path, config)
         assert [m for m in computed if m[0] == topic] == [m for m in messages if m[0] == topic]
     done = gearkin_here('validate', tmp_path / 'out')
     assert (done.returncode, AGREES in done.stdout) == (0, True)
+
+
+def test_of_two_other_encoders_one_is_named(tmp_path):
+    """That of another shaft comes first."""
+    one, other = '/bench/output_encoder', '/arm/output_encoder'
+    messages = []
+    for topic, *rest in both_encoders(recorded(SINGLE)):
+        if topic == ENCODER:
+            stamp = rest[0]
+            messages.append((other, stamp, rotor_bytes(stamp, ['shaft'], [0.2 - STEP])))
+        messages.append((one if topic == ENCODER else topic, *rest))
+    types = dict.fromkeys((ROTOR, one, other), JOINT_STATE)
+    bag, out = write_bag(tmp_path / 'bag', messages, types), tmp_path / 'out'
+    (bag / 'actuator.yaml').write_text(SINGLE.as_file(), 'utf-8')
+    assert f'{other}, {one}; name it with --encoder-topic' in refusal('compute', bag, out)
+    assert gearkin_here('compute', bag, out, '--encoder-topic', one).returncode == 0
+    for given, agrees in (one, True), (other, False):
+        done = gearkin_here('validate', out, '--encoder-topic', given)
+        assert (done.returncode == 0, AGREES in done.stdout) == (agrees, agrees)
 
 
 @pytest.mark.live
