@@ -1,15 +1,14 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# DynamicAxisControl 1.0.2: a move of 100 mm ends at 33 mm after it was at 50 mm, and a CoreXY gantry takes 146 h to go
-# home.
+# DynamicAxisControl 1.0.2: a CoreXY gantry takes 146 h to go home from 100 mm, and a move of 100 mm ends at 33 mm.
 #
-# Two axes with 2 m/s² and 0.5 m/s. Expected of LinearMotion: all moves end at their goal, as one of 200 mm does. What
-# happens to a move that is too short to reach 0.5 m/s: the positions that are returned rise to a half of the stroke,
-# turn back and end at 0.328 of it, 32.8 mm for 100 mm. The time of the acceleration is taken as sqrt(s/2a) and not
-# sqrt(s/a), and the braking begins there. Expected of SyncCoreXYAxis: a move from (100, 100) mm to (0, 0) takes 0.65 s
-# as the way there does. What happens: it takes 526 317 s, as any goal below 1 mm in both axes counts as a stroke below
-# the threshold of 1 mm, also (-100, -50) mm, and such a move is made with the least acceleration and speed; the
-# positions of the other motor run away to -7e12 turns.
+# Two axes with 2 m/s² and 0.5 m/s. Expected of SyncCoreXYAxis: a move from (100, 100) mm to (0, 0) takes 0.65 s as the
+# way there does. What happens: it takes 526 317 s, as any goal below 1 mm in both axes counts as a stroke below the
+# threshold of 1 mm, also (-100, -50) mm, and such a move is made with the least acceleration and speed; the positions
+# of the other motor run away to -7e12 turns. Expected of LinearMotion: all moves end at their goal, as one of 200 mm
+# does. What happens to a move that is too short to reach 0.5 m/s: the positions that are returned rise to a half of the
+# stroke, turn back and end at 0.328 of it. The time of the acceleration is taken as sqrt(s/2a) and not sqrt(s/a), and
+# the braking begins there.
 # For us: plan a short move with another library, and place the home of a gantry at 1 mm or beyond.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
