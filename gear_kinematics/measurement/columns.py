@@ -3,7 +3,7 @@
 
 import re
 import shlex
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -133,20 +133,20 @@ def find_columns(
     }
 
 
-def own_clocks(names: Sequence[str], columns: Iterable[Column]) -> dict[str, str]:
-    """Find the columns of times that those of values may have of their own, by name of the latter.
+def own_clocks(names: Sequence[str], columns: Mapping[str, Column]) -> dict[str, str]:
+    """Find the columns of times, by role, that columns of values may have of their own.
 
     It is that of the same side of the gear, or the last one before the values.
     """
     times = {name: meaning(name) for name in names if meaning(name).role == 'time'}
     found = {}
-    for column in columns:
+    for role, column in columns.items():
         side = meaning(column.name)[4:6]
         same = [one for one, says in times.items() if says[4:6] == side and any(side)]
         before = [*filter(times.get, names[: names.index(column.name)])]
         sure = [one for one in before if not meaning(_NUMBERED.sub('', one)).unsure]
         if same or sure:
-            found[column.name] = (same or sure)[-1]
+            found[role] = (same or sure)[-1]
     return found
 
 

@@ -54,12 +54,25 @@ def series_of(
     return columns, known, clocks
 
 
-def own_rows(series: Mapping[str, Array]) -> dict[str, Array]:
-    """Find the rows of each series, (n,), if the others have the last value repeated there.
+def rows_of(
+    series: Mapping[str, Array], usable: Mapping[str, Array], *, timed: bool
+) -> list[tuple[list[str], Array]]:
+    """Find which series were sampled together, and in which of their `usable` rows, (n,).
 
-    So gaps are filled after tables with other times were joined: no row has two new values.
-    Without such gaps, the result is empty.
+    If they are `timed`, and tables with other times were joined, each has rows of its own: few
+    rows have all, as gaps are empty, or none has two new values, as gaps repeat the last ones.
     """
+    together = np.all([*usable.values()], axis=0)
+    own = _new(series)
+    if 2 * np.count_nonzero(together) < max(map(np.count_nonzero, usable.values())):
+        own = usable
+    if own and timed:
+        return [([role], usable[role] & rows) for role, rows in own.items()]
+    return [([*usable], together)]
+
+
+def _new(series: Mapping[str, Array]) -> Mapping[str, Array]:
+    """Find the rows of each series, if others repeat their last values there; otherwise none."""
     changed = {role: np.diff(values, prepend=np.nan) != 0.0 for role, values in series.items()}
     rotor, output = (changed.get(role, np.ones(1, bool)) for role in ('rotor', 'output'))
     torque = changed.get('torque', np.zeros(1, bool))  # perhaps beside one of the two

@@ -40,7 +40,7 @@ from gear_kinematics.measurement.recording import (
     match,
 )
 from gear_kinematics.measurement.sentences import Observation, Observed
-from gear_kinematics.measurement.series import own_rows
+from gear_kinematics.measurement.series import rows_of
 from gear_kinematics.wire.cdr import SECOND
 
 T = TypeVar('T')
@@ -149,8 +149,8 @@ class _Samples:
         clock = self.found.pop('time', None)
         usual = clock.name if clock else ''
         clocks = {role: table.clocks.get(one.name, usual) for role, one in self.found.items()}
-        own = own_clocks(table.names, self.found.values())
-        own = {} if table.clocks or sources.time or not clock else own
+        asked = clock and not (table.clocks or sources.time)
+        own = own_clocks(table.names, self.found) if asked else {}
         raw, clock = self._loaded(table, clock, {*clocks.values(), *own.values()})
         clocks |= self._own(own, raw, usual, table)
         if len({*clocks.values()}) == 1 and len(lengths := {*map(len, raw.values())}) > 1:
@@ -160,28 +160,31 @@ class _Samples:
         usable = {role: np.abs(values) <= LARGEST_ANGLE for role, values in data.items()}  # no NaN
         if 'rotor' in self.found and 'torque' in self.found and not usable['torque'].any():
             del self.found['torque'], data['torque'], usable['torque']
-        own_of = own_rows(data) if clock and len({*clocks.values()}) == 1 else {}
-        usable |= {role: usable[role] & rows for role, rows in own_of.items()}
-        together = None if own_of else self._together(usable, clock, clocks)
+        groups = [([role], rows) for role, rows in usable.items()]
+        if len({*clocks.values()}) == 1:
+            groups = rows_of(data, usable, timed=clock is not None)
+        if not all(rows.any() for _, rows in groups):
+            names = ', '.join(column.name for column in self.found.values())
+            raise ValueError(f'no usable rows: none has numbers in all of {names}')
         if clock and not clock.unit:
             role = 'rotor' if 'rotor' in self.found else 'angle'
             turned = data[role] * (self.found[role].unit != 'counts')  # whose speed is unknown
             clock = with_unit(clock, raw[clocks[role]], turned, role)
         self._clock, self.timed = clock, clock is not None
         self.series: dict[str, _Series] = {}
-        for roles in [[role] for role in usable] if together is None else [[*usable]]:
+        for roles, kept in groups:
             times, values = raw.get(clocks[roles[0]]), {role: data[role] for role in roles}
-            kept, alone = (usable[roles[0]], False) if together is None else (together, True)
-            one = self._sampled(values, kept, times, alone=alone)
+            one = self._sampled(values, kept, times, alone=len(groups) == 1)
             self.series |= dict.fromkeys(roles, one)
         angles = (role for role in self.found if role != 'torque')
         self._shown = {role: find_step(self.series[role].values[role]) for role in angles}
         role = 'output' if 'output' in self.found else 'angle'
         self.used = len(self.series[role].stamp)
-        named = ' and '.join(dict.fromkeys([*clocks.values()] if own else [usual]))
+        named = ' and '.join(dict.fromkeys(clocks.values()))
         self.said = [f'time [{clock.unit}] from {named}' if clock else 'no times']
         self.said += map(described, self.found, self.found.values())
-        rows = np.count_nonzero(usable[role]) if together is None else len(together)
+        kept = next(rows for roles, rows in groups if role in roles)
+        rows = len(kept) if len(groups) == 1 else np.count_nonzero(kept)
         thinned = f', one in {self._every} of the file' if self._every > 1 else ''
         self.said.append(f'{self.used} of {rows} rows{thinned}')
 
@@ -217,13 +220,13 @@ class _Samples:
         """
         found = {}
         filled = {name: values == values for name, values in raw.items()}  # noqa: PLR0124, no NaN
-        for role, column in self.found.items():
-            times = own.get(column.name, usual)
-            if times != usual and (
-                meaning(usual).on_rotor != meaning(usual).on_output
-                or np.array_equal(filled[times], filled[column.name])
-                > np.array_equal(filled[usual], filled[column.name])
-            ):
+        named = meaning(usual).on_rotor != meaning(usual).on_output
+        for role, times in own.items():
+            alike = [
+                np.array_equal(filled[one], filled[self.found[role].name])
+                for one in (times, usual)
+            ]
+            if times != usual and (named or alike == [True, False]):
                 units = {table.units.get(one) or meaning(one).unit for one in (times, usual)}
                 if len(units) > 1:
                     raise ValueError(f'{times} and {usual} are not in the same unit')
@@ -235,22 +238,6 @@ class _Samples:
                     time=usual,
                 )
         return found
-
-    def _together(
-        self, usable: dict[str, Array], clock: Column | None, clocks: dict[str, str]
-    ) -> Array | None:
-        """Return the rows with all quantities; None if each is to be read at its own times."""
-        names = ', '.join(column.name for column in self.found.values())
-        counts = [*map(np.count_nonzero, usable.values())]
-        rows = None
-        if len({*clocks.values()}) == 1:
-            rows = np.all([*usable.values()], axis=0)
-            # PlotJuggler writes each series at its own times, and leaves the other columns empty.
-            if clock and 2 * np.count_nonzero(rows) < max(counts):
-                rows = None
-        if not min(counts) or (rows is not None and not rows.any()):
-            raise ValueError(f'no usable rows: none has numbers in all of {names}')
-        return rows
 
     def _sampled(
         self, data: dict[str, Array], kept: Array, times: Array | None, *, alone: bool
