@@ -16,6 +16,7 @@ from gear_kinematics.wire.nearest import nearest
 
 _NODE_PATTERN = re.compile(r'(/(\*\*?|[A-Za-z_]\w*))+', re.ASCII)
 """A node's name in a parameter file, as in rcl; `*` is any token, `**` any number of tokens."""
+_LONGEST = 255  # characters of a name in ROS
 
 _GEAR = {'gear_ratio', 'ring_teeth', 'satellite_teeth', 'rotor_joint', 'rotor_direction',
          'rotor_zero', 'rotor_encoder', 'output_joint', 'calibration', 'home_file'}  # fmt: skip
@@ -136,7 +137,15 @@ def _full_name(path: Path, node: str, blocks: Iterable[tuple[str, object]]) -> s
 
 def _applies(pattern: str, name: str) -> bool:
     """Return whether a block of a parameter file is for a node, as in rclpy and rclcpp."""
-    return re.fullmatch(pattern.replace('/*', r'(/\w+)'), name, re.ASCII) is not None
+    tokens, covered = name.split('/')[1:], {0}  # numbers of tokens that the parts so far can cover
+    for part in pattern.split('/')[1:]:
+        if part == '**':
+            covered = {*range(min(covered), len(tokens) + 1)}
+        else:
+            covered = {k + 1 for k in covered if k < len(tokens) and part in {'*', tokens[k]}}
+        if not covered:
+            return False
+    return len(tokens) in covered
 
 
 def _read(path: Path) -> list[tuple[str, dict[str, Any]]]:
@@ -148,8 +157,8 @@ def _read(path: Path) -> list[tuple[str, dict[str, Any]]]:
     # `node` and `/node` mean the same to rcl, but are two blocks.
     found = [(f'/{name.removeprefix("/")}', parameters) for name, parameters in blocks.items()]
     for name, _ in found:
-        if not _NODE_PATTERN.fullmatch(name):
-            raise ConfigError(f'{path}: {name} is not a valid node name')
+        if len(name) > _LONGEST or not _NODE_PATTERN.fullmatch(name):
+            raise ConfigError(f'{path}: {name:.{_LONGEST}} is not a valid node name')
     return found
 
 

@@ -287,6 +287,20 @@ def test_a_long_text_that_begins_as_a_number_is_read_at_once(tmp_path, begin):
     assert given_parameters(path, NODE) == {'k': text}
 
 
+def test_many_wildcards_are_compared_at_once(tmp_path):
+    """Trying one after the other would take years."""
+    name = f'{60 * "/x"}/gear_state_publisher'
+    for pattern in (f'{60 * "/**"}/y', f'{30 * "/**/*"}/y'):
+        path = write(tmp_path, f'"{pattern}": {{ros__parameters: {{ring_teeth: 80}}}}')
+        with refused(ConfigError, path, f'no parameters of {name} in it'):
+            given_parameters(path, name)
+    path = write(tmp_path, f'"{80 * "/**/x"}": {{ros__parameters: {{ring_teeth: 80}}}}')
+    with refused(ConfigError, path, '/x is not a valid node name'):
+        given_parameters(path, name)
+    path = write(tmp_path, f'"{20 * "/**/x/*"}/**": {{ros__parameters: {{ring_teeth: 80}}}}')
+    assert given_parameters(path, name) == {'ring_teeth': 80}
+
+
 def test_names_in_a_node_file_are_texts_as_for_rcl(tmp_path):
     names = 'on', 'y', '017', '1.50', 'null', '='
     blocks = ''.join(f'    {name}:\n      k: 1\n' for name in names)
