@@ -57,10 +57,7 @@ class OutputEncoder:
         self._ratio = parameters.gear.gear_ratio
         longest = parameters.longest_delay_ns
         self._farthest = CLOCK_RESET + longest  # ns, between the latest stamps of both encoders
-        self.comparison.configure(
-            max_gap=longest,
-            travel=parameters.transmission_error_travel,
-        )
+        self.comparison.configure(max_gap=longest, travel=parameters.transmission_error_travel)
         self.slip_watch = SlipWatch(parameters)
         self.reference = self._turn_reference if parameters.absolute else None
         self._segment: int | None = None

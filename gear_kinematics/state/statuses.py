@@ -48,16 +48,8 @@ class Condition(Enum):
         "the rotor's encoder jumped by {angle:.4g} rad at {time:.3f} s",
         'Check whether the drive restarted or repeats readings; if they wrap, set rotor_encoder.',
     )
-    WRAPS = (
-        ERROR,
-        'the positions wrap every {angle:.4g} rad: set {setting}',
-        _HOME,
-    )
-    TOO_SELDOM = (
-        ERROR,
-        _TOO_SELDOM,
-        _HOME,
-    )
+    WRAPS = ERROR, 'the positions wrap every {angle:.4g} rad: set {setting}', _HOME
+    TOO_SELDOM = ERROR, _TOO_SELDOM, _HOME
     GAP = (
         ERROR,
         'a gap of {gap:.3f} s could hide a turn of the rotor',
