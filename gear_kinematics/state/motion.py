@@ -41,6 +41,11 @@ def all_in_reach(
     *_, former_step, former_span = known.former
     former, moving = known.former, known.moving
     steps = np.diff(positions, prepend=position)
+    gaps, pauses = np.diff(stamps, prepend=known.stamp), [known.held_up]
+    held = (steps == 0.0) & (gaps > STALEST_NS)
+    for stamp, gap in zip(stamps[held].tolist(), gaps[held].tolist(), strict=True):
+        pauses.append(pauses[-1].at_rest(stamp - gap, stamp))
+    seen = held.cumsum()
     rows = np.flatnonzero(steps)
     when, steps = stamps[rows], steps[rows]
     changed = np.concatenate([[since], when])
@@ -78,6 +83,7 @@ def all_in_reach(
                 return None
         if k < len(rows) and not regular[k]:
             last = place, began, float(step[k + 1]), int(span[k + 1])
+            held_up = max(held_up, pauses[seen[rows[k]]])  # the later one
             held_up = held_up.before(int(when[k]) - began, last, prior)
             reach = limits.reach(int(when[k]), int(until[k]), last, prior, noise[k], held_up)
             if not reach[0] <= steps[k] <= reach[1]:
@@ -86,6 +92,7 @@ def all_in_reach(
         before = float(positions[rows[-2]]) if len(rows) > 1 else position
         former = before, int(changed[-2]), float(step[-2]), int(span[-2])
     latest = float(positions[-1]), int(changed[-1]), float(step[-1]), int(span[-1])
+    held_up = max(held_up, pauses[-1])
     return Motion(latest, former, moving, int(stamps[-1]), float(noise[-1]), held_up)
 
 

@@ -135,8 +135,8 @@ class Plausibility:
                 self._last = position, stamp, step, span
                 self._stamp = stamp
                 return BELIEVED
-        elif not (step or former or self._doubted):  # it stands
-            self._stamp = stamp
+        elif not (step or former or self._doubted or stamp - self._stamp > STALEST_NS):
+            self._stamp = stamp  # it stands
             return BELIEVED
         return self._look_closer(position, step, stamp)
 
@@ -246,11 +246,12 @@ class Plausibility:
                 way = speed * time - 0.5 * self.limits.acceleration * time * time
                 if way > self.noise:
                     return self._doubt(position, stamp)
-            if not speed or time > 2.0 * speed / self.limits.acceleration:
-                if self._last[2]:
-                    self._moving = self._last
+            if self._last[2] and time > 2.0 * speed / self.limits.acceleration:
+                self._moving = self._last
                 self._last = *self._last[:2], 0.0, 0
                 self._look_always()
+        if stamp - self._stamp > STALEST_NS:
+            self._held_up = self._held_up.at_rest(self._stamp, stamp)
         self._stamp = stamp
         self._doubted.clear()
         return BELIEVED
@@ -269,6 +270,7 @@ class Plausibility:
     def _restart(self, position: float, stamp: int) -> None:
         self.reset()
         self._last, self._stamp = (position, stamp, 0.0, 0), stamp
+        self._held_up = HeldUp(stamp, STALEST_NS)
 
     def _doubt(self, position: float, stamp: int) -> Belief:
         """Note a reading that is out of reach, and see whether it agrees with those before."""

@@ -16,6 +16,7 @@ FLOOR = 0.05  # rad: noise of any encoder, and what two successive steps may alw
 REGULAR = 1.0 / 3.0  # share of the usual time by which one may vary in `RotorLimits.even_step`
 _ROUNDING = 1e-6  # of a step of single precision, by a conversion of units in double precision
 _UNEVEN = 0.25  # of a speed: what it may differ by, as readings are older than their stamps
+_CLOSE = 750_000  # ns, below which readings can be those of a burst, rather than of a fast driver
 
 Reading = tuple[float, int, float, int]
 """The first believed reading with a position: rad; ns; the step from the one before, rad, and the
@@ -27,28 +28,37 @@ class HeldUp(NamedTuple):
 
     end: int = 0
     length: int = 0
-    usual: int = 0  # time between two readings before it
+    usual: int = 0  # time between two readings before it; 0 if all came in bursts
     speed: float = math.inf  # rad/s, before it
     position: float = math.nan  # rad, before it; NaN if its time is uncertain
 
     def late(self, last: int, stamp: int) -> float:
         """Return by how much the time between two readings may exceed that of their stamps, ns.
 
-        In a burst it is the usual time. A burst lasts no longer than the pause before it.
+        In a burst it is the usual time, if that is known. A burst lasts no longer than the pause
+        before it.
         """
-        left = self.length - (last - self.end)
-        return min(float(left), 1.25 * self.usual) - (stamp - last)
+        left, since = float(self.length - (last - self.end)), stamp - last
+        usual = self.usual or (left if since < _CLOSE else 0.0)
+        return min(left, 1.25 * usual) - since
 
     def before(self, span: int, last: Reading, former: Reading) -> 'HeldUp':
         """Take the time until a reading, ns, after two others, and return the pause before it."""
         _, end, _, length = last
-        left = self.length - (end - self.end)
-        if 2 * span >= length or length <= left:
+        since = end - self.end
+        if 2 * span >= length or length <= self.length - since:
             return self
-        if left + length > -self.length:  # readings of the burst before tell no speed
-            return HeldUp(end, length, max(former[3], self.usual))
+        if since - length < 2 * self.length:  # the stamps of the burst before tell no speed
+            usual = max(former[3], self.usual)
+            return HeldUp(end, length, usual if usual > _CLOSE else 0)
         speed = abs(former[2]) / former[3] * 1e9 if former[3] else math.inf
         return HeldUp(end, length, former[3], speed, former[0])
+
+    def at_rest(self, last: int, stamp: int) -> 'HeldUp':
+        """Take the stamp of a reading that repeats the position of the one before, ns."""
+        pause = stamp - last
+        regular = self.end == last and pause <= 2 * max(self.length, self.usual)
+        return HeldUp(stamp, 0, pause) if regular else HeldUp(stamp, pause)
 
 
 def _stale(last: Reading, former: Reading, late: float) -> float:
@@ -102,7 +112,7 @@ class RotorLimits(NamedTuple):
         _, changed, step, span = last
         elapsed, held = (stamp - changed) * 1e-9, (until - changed) * 1e-9
         if held > STALEST:  # it stands, as far as its last readings tell
-            elapsed = (stamp - until) * 1e-9
+            elapsed = (stamp - until + max(0.0, held_up.late(until, stamp))) * 1e-9
             fast = self.acceleration * min(held, 2.0 * elapsed)
             slow = -fast
         elif span:

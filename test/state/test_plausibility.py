@@ -26,7 +26,10 @@ TURN = 2.0 * math.pi
 START = 100 * SECOND
 LIMITS = 650.0, 6500.0  # rad/s and rad/s², the defaults
 RATES = (10, 25, 50, 100, 200, 500, 1000)
-KINDS = ('exact', 'quantised', 'hall', 'early', 'late', 'burst', 'held', 'old', 'noisy', 'gaps')
+KINDS = (
+    *('exact', 'quantised', 'hall', 'early', 'late', 'burst', 'bursts'),
+    *('held', 'old', 'noisy', 'gaps'),
+)
 
 
 def motion(rate: int, count: int, generator) -> tuple[np.ndarray, np.ndarray]:
@@ -62,6 +65,9 @@ def disturbed(kind, times, angles, rate, generator) -> tuple[np.ndarray, np.ndar
             held = (times >= start) & (times < start + gap)
             times[held] = start + gap + 5e-5 * np.arange(np.count_nonzero(held))
         times = np.maximum.accumulate(times)
+    elif kind == 'bursts':  # the same, all, as by a USB adapter
+        of, n = generator.integers(1, 2 + rate // 50), np.arange(count)
+        times = n // of * of / rate + generator.uniform(0.0, 1e-4) * (n % of)
     elif kind == 'held':
         angles = angles[np.arange(count) // max(1, rate // 100) * max(1, rate // 100)]
     elif kind == 'old':  # by up to an interval, with stamps on a grid
@@ -280,6 +286,24 @@ def test_readings_that_were_held_up_are_believed_at_each_phase_of_a_motion(first
     judge = Plausibility(*LIMITS)
     for angle, stamp in zip(4.0 * np.sin(25.0 * times), np.round(arrivals * SECOND), strict=True):
         assert judge.judge(float(angle), START + int(stamp)) is BELIEVED
+
+
+@pytest.mark.parametrize('first', range(5))
+def test_a_rotor_that_starts_within_a_burst_is_believed(first):
+    """Each 0.1 s come 5 readings that were taken 20 ms apart."""
+    n = np.arange(40)
+    times = 0.02 * (n - 25 - first).clip(0)
+    judge = Plausibility(*LIMITS)
+    assert judge.judge(0.001, START - SECOND) is BELIEVED
+    for stamp, angle in zip(START + 100_000_000 * (n // 5) + n, 3000.0 * times**2, strict=True):
+        assert judge.judge(float(angle), int(stamp)) is BELIEVED
+
+
+def test_a_pause_behind_the_first_reading_hides_no_wrong_one():
+    arrivals = [START, *(START + 90_000_000 + 2_000_000 * np.arange(20)).tolist()]
+    judge = Plausibility(*LIMITS)
+    beliefs = [judge.judge(0.01 * k + (k == 15), stamp) for k, stamp in enumerate(arrivals)]
+    assert [k for k, each in enumerate(beliefs) if each is not BELIEVED] == [15]
 
 
 @pytest.mark.parametrize('velocities', [True, False])
@@ -520,7 +544,13 @@ def test_a_motor_that_exceeds_its_speed_little_by_little_is_named(at_once):
 @given(st.integers(0, 2**32), st.lists(st.integers(1, 99), max_size=4), st.sampled_from(KINDS))
 def test_batches_are_judged_as_one_by_one(seed, bad, kind):
     generator = np.random.default_rng(seed)
-    times, angles = disturbed(kind, *motion(500, 100, generator), 500, generator)
+    rate = int(generator.choice([50, 500]))
+    times, angles = motion(rate, 100, generator)
+    stop = int(generator.integers(100))
+    if stop > 50:
+        angles *= 0.001
+        angles[stop : stop + 20] = angles[stop]
+    times, angles = disturbed(kind, times, angles, rate, generator)
     for n in bad:
         angles[n % len(angles) :] += 1000.0 if n % 2 else 0.0
         angles[n % len(angles)] -= 300.0
