@@ -1,6 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The times in a table: their unit, and the rows that are in order."""
 
+import math
 import shlex
 from bisect import bisect_right
 from collections.abc import Iterator
@@ -13,6 +14,7 @@ from gear_kinematics.measurement.columns import Column, ColumnsError
 from gear_kinematics.measurement.names import TIME_UNITS, meaning
 from gear_kinematics.measurement.recording import Array
 from gear_kinematics.measurement.sentences import Observation, Observed
+from gear_kinematics.report.document import number
 from gear_kinematics.wire.cdr import SECOND
 
 _DATES = 978_307_200.0, 4_102_444_800.0  # s since 1970: the years 2001 and 2100
@@ -28,6 +30,7 @@ _LATE_ROWS = 25  # most successive rows out of order; more show a clock that was
 _FEWEST_AGAIN, _LONGEST_STEP = 2, 1.5
 """Least number of rows that repeat times after a clock was set back; their greatest step, in usual
 steps."""
+_SAME_SPAN = 0.02  # decades by which times of equal length differ, in units of their own
 _DAY = 86_400 * SECOND
 FASTEST, MOST = 1000.0, 0.9
 """Speed that hardly any rotor exceeds, rad/s; share of the samples in motion that are slower."""
@@ -74,6 +77,17 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
         )
     unit = likely[0] if likely else 's'
     return clock._replace(unit=unit, scale=TIME_UNITS[unit])
+
+
+def check_units(rotor: Array, output: Array) -> None:
+    """Raise ValueError if the stamps of both encoders, ns, are a power of 1000 apart in length."""
+    spans = [float(np.ptp(stamp)) / SECOND for stamp in (rotor, output)]
+    decades = abs(math.log10(spans[0] / spans[1])) if min(spans) else 0.0
+    if decades > 1.0 and abs(math.remainder(decades, 3.0)) < _SAME_SPAN:
+        raise ValueError(
+            f'the times of the rotor span {number(spans[0])} s, those of the output '
+            f'{number(spans[1])} s, as in another unit: convert one of them'
+        )
 
 
 def are_no_times(clock: Column, times: Array) -> bool:

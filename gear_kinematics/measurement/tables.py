@@ -14,7 +14,7 @@ import numpy as np
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.measurement.advice import advice, rising
 from gear_kinematics.measurement.assumed_units import against, differ_as_degrees
-from gear_kinematics.measurement.clocks import are_no_times, stamps, with_unit
+from gear_kinematics.measurement.clocks import are_no_times, check_units, stamps, with_unit
 from gear_kinematics.measurement.columns import (
     Column,
     ColumnsError,
@@ -313,6 +313,7 @@ class _Samples:
             rotor, output = self.unwrapped('rotor', period), self.unwrapped('output')
         before, share, inside = np.arange(self.used), np.zeros(self.used), np.ones(self.used, bool)
         if other is not main:
+            check_units(main.stamp, other.stamp)
             gap = _GAP * float(np.median(np.diff(main.stamp)))
             before, share, inside = match(main.stamp, other.stamp, gap)
             if not inside.any():

@@ -146,6 +146,16 @@ def test_times_that_cannot_be_read_are_an_error(tmp_path, config, time, cause):
         read(path, config)
 
 
+@pytest.mark.parametrize('units', [(1.0, 1e3), (1e3, 1.0), (1.0, 1e6), (1e9, 1.0)])
+def test_times_of_both_encoders_in_different_units_are_refused(tmp_path, config, units):
+    time, angle = np.arange(400) * 0.01, np.linspace(0.0, 1.0, 400)
+    columns = {'motor_time': units[0] * time, 'motor_rad': -19.0 * angle}
+    columns |= {'output_time': units[1] * time, 'output_rad': angle}
+    path = write_csv(tmp_path / 'both.csv', **columns)
+    with pytest.raises(RecordingError, match='as in another unit: convert one of them'):
+        read(path, config)
+
+
 def test_times_that_go_back_end_the_recording_there(tmp_path, config):
     """Interpolated over them, angles were greater than any that was recorded."""
     ideal = 0.1 * np.sin(np.arange(8000) / 300.0)
