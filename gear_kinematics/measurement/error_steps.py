@@ -19,9 +19,9 @@ that shows a stray reading; number of these neighbours on either side."""
 _REVERSAL = 4  # samples around a reversal in which the output may lag
 _DELAYED = 1.1  # times the greatest change of the error that a delay explains
 _MOST_LOST = math.radians(5.0)  # lost motion of a usable gear, at most
-_LIKELY, _TRIED, _MOST_OF = 4.0, 8, 0.6
-"""Times that quantile from which on a step may be a slip; number of such steps that are tried;
-share of the step that stays."""
+_LIKELY, _TRIED = 4.0, 8
+"""Times that quantile from which on a step may be a slip; number of such steps that are tried."""
+_MOST_OF, _DOUBTFUL = 0.6, 0.8  # shares of a slip that stay; the latter if it may be a delay
 _LEAST_SLIP = math.radians(0.08)
 _PLACE = math.radians(2.0)  # width of the bins of output angles at which errors are compared
 _MOST_FAULTS = 0.02  # of the steps: more show a unit or a range that is not understood
@@ -78,10 +78,9 @@ class IdealMotion(NamedTuple):
         paces = np.abs(path[_WINDOW:] - path[:-_WINDOW]) / _WINDOW
         fastest = np.maximum(paces[: len(moved)], paces[_WINDOW + 1 :])
         fastest = np.maximum(fastest, np.quantile(np.abs(np.diff(usual(self.ideal))), 0.98))
-        moved = np.abs(moved)
-        # Where a sample is missing at the reversal, the motion there and back is one step.
-        moved[1:-1] = np.maximum(moved[1:-1], np.minimum(moved[:-2], moved[2:]))
-        return 1.1 * np.minimum(moved, self.spans * fastest), ways
+        # Where it turns back within a step, as where samples are lost, it has moved further.
+        moved[1:-1][moved[:-2] * moved[2:] <= 0.0] = math.inf
+        return 1.1 * np.minimum(np.abs(moved), self.spans * fastest), ways
 
 
 def impossible_steps(error: Array, motion: IdealMotion) -> Steps | None:
@@ -119,12 +118,11 @@ def _slipped(
     if not len(likely):
         return found
     likely = likely[np.argsort(-np.abs(steps[likely]))][:_TRIED]
-    late = reverses[likely] | (
-        np.abs(steps[likely]) <= motion.late_at(likely, motion.spans[likely])
-    )
+    late = np.abs(steps[likely]) <= motion.late_at(likely, motion.spans[likely])
+    needed, least = 1 + (reverses[likely] | late), np.where(late, _DOUBTFUL, _MOST_OF)
     way = directions(ideal, _PLACE)
     place = np.round(ideal / _PLACE) + 1j * way
-    for row, needed in zip(likely.tolist(), (1 + late).tolist(), strict=True):
+    for row, ways, share in zip(likely.tolist(), needed, least, strict=True):
         shifts = shifted(place, error, slice(0, row + 1), slice(row + 1, len(error)))
         shares = shifts / steps[row]
         if not len(shares) and way[row] == way[row + 1] != 0:
@@ -132,9 +130,9 @@ def _slipped(
             there = np.abs(ideal - ideal[row]) < _PLACE
             passes = [_rise(error, ideal - ideal[row], there & (way == w)) for w in (-1, 1)]
             shares = np.diff(passes) / steps[row]
-        # In one direction alone, a delay changes the error with the speed, too.
-        enough = len(shares) >= needed
-        found[row] = enough and shares.min() > _MOST_OF and shares.max() < 1.0 / _MOST_OF
+        # A delay changes the error with the speed, too, but hardly alike in both directions.
+        enough = len(shares) >= ways
+        found[row] = enough and shares.min() > share and shares.max() < 1.0 / share
     return found
 
 

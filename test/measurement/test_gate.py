@@ -332,6 +332,9 @@ def test_short_stops_are_no_stray_readings_where_an_encoder_is_late(gate, delay)
     [
         (30.0, 60.0, 0.0, 1.0, 3),
         (200.0, 60.0, 0.0, 0.7, 0),
+        (500.0, 60.0, 0.0, 0.7, 2),
+        (100.0, 5.0, 0.002, 1.0, 1),
+        (100.0, 5.0, 0.002, 1.0, 13),
         (200.0, 60.0, 0.005, 1.0, 2),
         (200.0, 5.0, -0.005, 1.0, 1),
         (500.0, 60.0, 0.005, 1.0, 0),
@@ -351,6 +354,30 @@ def test_no_slip_is_seen_where_a_robot_moves_and_stops(gate, rate, play, delay, 
     output += random.normal(0.0, 1e-4, len(times))
     before, after = gate(np.column_stack([times, -19.0 * np.interp(times, fine, angle), output]))
     assert after is before
+
+
+@pytest.mark.parametrize(('seed', 'delay'), [(5, 0.0), (14, 0.005), (6, -0.005), (9, -0.005)])
+def test_samples_that_are_lost_where_strokes_reverse_are_no_slip(gate, seed, delay):
+    random = np.random.default_rng(seed)
+    times = np.arange(1000)[random.random(1000) < 0.7] / 50.0
+    strokes, fine = even_strokes(math.radians(80.0), 2.7), np.arange(20_000) / 1000.0
+    output = np.interp(times - delay, fine, with_play(strokes(fine), 60.0 * ARC_MINUTE))
+    output += random.normal(0.0, 1e-4, len(times))
+    before, after = gate(np.column_stack([times, -19.0 * strokes(times), output]))
+    assert after is before
+
+
+@pytest.mark.parametrize('late', [-6, 6])
+def test_a_stray_reading_is_left_out_where_strokes_reverse_at_once(gate, late):
+    """At 1 kHz it is beyond the change of the error in 1 ms by a delay, but not in 10 ms."""
+    times, row = np.arange(10_000) / 1000.0, 4000 + late
+    ideal = even_strokes(math.radians(150.0), 2.0)(times)
+    output = with_play(ideal, 5.0 * ARC_MINUTE)
+    output += np.random.default_rng(1).normal(0.0, 1e-4, len(times))
+    output[row] += math.radians(1.0)
+    _, after = gate(np.column_stack([times, -19.0 * ideal, output]))
+    (fault,) = after.faults
+    assert (fault.what, fault.values['moments']) == (Observation.STRAY, [times[row]])
 
 
 def test_wraps_of_encoders_of_one_turn_are_no_faults(clean, gate):
