@@ -25,11 +25,15 @@ from gear_kinematics.validation.independent_message import IndependentMessage, S
 from gear_kinematics.validation.task import Task
 
 _KEPT = 20_000  # inputs, outputs, poses and joints that wait for each other
+_AGAIN = 1_000_000_000  # ns after which a stamp that comes again is of another start of the driver
 _LARGEST = math.tau * 2**51  # rad; no output answers a greater position
 _UNITS = {'position': 'rad', 'velocity': 'rad/s', 'effort': 'N·m'}
 _UNITS |= {'position of bodies': 'm', 'orientation of bodies': 'rad'}
 _UNITS |= {'position of joints': 'rad', 'slide of joints': 'm'}
 _UNITS |= {'velocity of joints': 'rad/s', 'slide velocity of joints': 'm/s'}
+
+_Waiting = tuple[int, int, Any]  # stamp and time of reception, ns, and the content of a message
+_Known = dict[int, list[tuple[int, Any]]]  # by stamp, in order: time of reception, ns, and content
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,13 +73,11 @@ class Independent:
         self._limits = {name: task.tolerances.of(unit) for name, unit in units.items()}
         self._errors: dict[str, float] = {}
         self._wrong: list[int] = []
-        self._inputs: dict[int, list[State]] = defaultdict(list)
-        self._outputs = list[State]()
-        self._bodies: dict[str, list[tuple[int, Any]]] = {topics.poses: [], joint_states: []}
-        self._motions: dict[str, dict[int, list[tuple[float, float]]]] = {
-            topic: defaultdict(list) for topic in self._bodies
-        }
-        """Angles and velocities of the rotor, rad and rad/s, that bodies lack, by their stamps."""
+        self._inputs: _Known = defaultdict(list)  # states
+        self._outputs = list[_Waiting]()  # states
+        self._bodies = {topic: list[_Waiting]() for topic in (topics.poses, joint_states)}
+        self._motions: dict[str, _Known] = {topic: defaultdict(list) for topic in self._bodies}
+        """Angles and velocities of the rotor, rad and rad/s, that bodies lack."""
         self._last: tuple[int, float] | None = None  # stamp and position of the last output
         self._offset: float | None = None  # rad, from positions to rotor angles
         self._given = self._compared = self._taken = 0
@@ -83,21 +85,23 @@ class Independent:
     def take(self, messages: MessagesByTopic) -> None:
         """Take the next messages of each topic, in the order of their reception."""
         topics = dict.fromkeys((*self._topics, self._joint_states))
-        for topic, data in ((of, data) for of in topics for data in messages[of].data):
+        every = [(of, zip(messages[of].data, messages[of].received, strict=True)) for of in topics]
+        for topic, data, received in ((of, *each) for of, given in every for each in given):
             self._given += topic != self._topics.rotor
             with suppress(ValueError, IndexError, struct.error):  # it cannot be decoded
                 message = IndependentMessage(data)
+                at = message.stamp, received
                 if topic == self._topics.rotor:
                     state = message.joint(self._parameters.rotor_joint)
                     if abs(state[1]) <= _LARGEST:  # NaN is not
-                        self._inputs[message.stamp].append(state)
+                        self._inputs[message.stamp].append((received, state))
                 elif topic == self._topics.output:
-                    self._outputs.append(message.joint(self._joint))
+                    self._outputs.append((*at, message.joint(self._joint)))
                 elif topic == self._topics.poses:
-                    self._bodies[topic].append((message.stamp, message.array(7)))
+                    self._bodies[topic].append((*at, message.array(7)))
                 else:
                     joints = own_joints(self._parameters, *message.joints())
-                    self._bodies[topic].append((message.stamp, joints))
+                    self._bodies[topic].append((*at, joints))
         self._compare()
         self._outputs = self._outputs[-_KEPT:]
         self._bodies = {topic: kept[-_KEPT:] for topic, kept in self._bodies.items()}
@@ -115,14 +119,14 @@ class Independent:
     def _compare(self) -> None:
         """Compare the outputs, poses and joints whose inputs have arrived."""
         pairs = _paired(self._outputs, self._inputs)
-        angles = [self._angle(given, output) for output, given in pairs]
-        stamps = [output[0] for output, _ in pairs]
-        both = np.reshape([(output[1:], given[1:]) for output, given in pairs], (-1, 2, 3))
+        angles = [self._angle(given, output) for *_, output, given in pairs]
+        stamps = [stamp for stamp, *_ in pairs]
+        both = np.reshape([(output[1:], given[1:]) for *_, output, given in pairs], (-1, 2, 3))
         recorded, given = both[:, 0], both[:, 1]
         rate = self._direction * given[:, 1]
         for motions in self._motions.values():
-            for stamp, angle, velocity in zip(stamps, angles, rate.tolist(), strict=True):
-                motions[stamp].append((angle, velocity))
+            for (stamp, at, *_), *motion in zip(pairs, angles, rate.tolist(), strict=True):
+                motions[stamp].append((at, motion))
         expected = [np.array(angles) / float(self._ratio), rate / float(self._ratio)]
         gear = self._parameters.gear
         if isinstance(gear, Mechanism):
@@ -136,8 +140,7 @@ class Independent:
         for topic, waiting in self._bodies.items():
             found = _paired(waiting, self._motions[topic])
             if isinstance(gear, Mechanism) and found:
-                bodies, moved = zip(*found, strict=True)
-                of, given_bodies = zip(*bodies, strict=True)
+                of, _, given_bodies, moved = zip(*found, strict=True)
                 errors_of = ERRORS_OF['poses' if topic == self._topics.poses else 'joints']
                 for name, errors in errors_of(gear, np.transpose(moved), given_bodies).items():
                     self._note(name, of, errors)
@@ -167,12 +170,19 @@ class Independent:
         self._compared += len(stamps) * (name.startswith('position'))
 
 
-def _paired(waiting: list[Any], known: dict[int, list[Any]]) -> list[tuple[Any, Any]]:
-    """Pair what begins with a stamp with what is known of it, in order; others go on waiting."""
+def _paired(waiting: list[_Waiting], known: _Known) -> list[tuple[int, int, Any, Any]]:
+    """Add what is known of their stamps to what waits, in order; others go on waiting."""
     pairs, left = [], []
     for each in waiting:
-        if rows := known.get(each[0]):
-            pairs.append((each, rows.pop(0)))
+        stamp, received, _ = each
+        rows = known.get(stamp, [])
+        while len(rows) > 1:  # the first may be from before a restart, and without an answer
+            (before, _), (after, _) = rows[:2]
+            if after - before <= _AGAIN or received - before < after - received:
+                break
+            rows.pop(0)
+        if rows:
+            pairs.append((*each, rows.pop(0)[1]))
         else:
             left.append(each)
     waiting[:] = left

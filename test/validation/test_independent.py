@@ -110,6 +110,22 @@ def test_each_of_two_equal_stamps_has_its_own_outputs(rejected, outputs, tmp_pat
     assert (report.compared, report.not_compared, report.passed) == (outputs, 0, True)
 
 
+@pytest.mark.parametrize('late', [(OUTPUT, POSES), (POSES,)])
+def test_stamps_that_come_again_in_a_restarted_simulation_have_their_own_inputs(late, tmp_path):
+    """The first pass begins before the node runs, or before its poses are recorded."""
+    states = [
+        (ROTOR, START + k * STEP, rotor_bytes(START + k % 1000 * STEP, position=[0.02 * k]))
+        for k in range(2000)
+    ]
+    settled = START + 100 * STEP
+    messages = [m for m in answered(DEFAULT, states) if m[0] not in late or m[1] > settled]
+    bag = made_bags.folder(tmp_path / 'bag', messages)
+    report = validate(bag, DEFAULT, independent=True)
+    assert report.passed
+    assert report.independent.passed
+    assert report.independent.compared == len(messages) - len(states)
+
+
 def test_the_option_adds_to_the_json(capsys):
     bag = str(BAGS / 'servo_point_to_point')
     assert main(['validate', bag, '--independent', '--json', '-']) == 0
