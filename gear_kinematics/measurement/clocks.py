@@ -25,7 +25,7 @@ _EXCEL = 25_569
 _FILETIME = 116_444_736_000_000_000
 """Times of Windows, in 100 ns, in 1970."""
 _UNREADABLE = 0.01  # greatest share of times that cannot be read
-_FALLING = 0.1  # least share of temperatures that fall
+_RISING = 0.5  # least share of all steps forward that remains at the end of doubtful times
 _LATE_ROWS = 25  # most successive rows out of order; more show a clock that was set back
 _FEWEST_AGAIN, _LONGEST_STEP = 2, 1.5
 """Least number of rows that repeat times after a clock was set back; their greatest step, in usual
@@ -95,12 +95,12 @@ def are_no_times(clock: Column, times: Array) -> bool:
 
     They are called T, or temps (French for times), or have an unknown word, as cycle_time has.
     """
-    if meaning(clock.name).unsure:
-        return not len(times) or bool(np.any(times[1:] < times[:-1]) or times[-1] <= times[0])
+    steps = np.diff(times.astype(float))
     if _is_temps(clock):
-        return not np.all(times[1:] > times[:-1])
-    falling = np.count_nonzero(times[1:] < times[:-1])
-    return clock.name == 'T' and bool(falling > _FALLING * len(times))
+        return not np.all(steps > 0.0)
+    rise, least = np.sum(steps), _RISING * np.sum(steps, where=steps > 0.0)
+    doubtful = meaning(clock.name).unsure
+    return bool((doubtful and rise <= least) or (clock.name == 'T' and rise < least))
 
 
 def _is_temps(clock: Column) -> bool:

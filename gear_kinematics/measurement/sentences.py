@@ -15,6 +15,7 @@ from gear_kinematics.wire.joint_reader import Rejection
 NAMED = 3  # moments of a kind that are named
 
 # Parts of several sentences
+_ROWS = '{rows:%d row was|%d rows were} left out: '
 _THINNED = ', as no more are kept in memory: rates and speeds are those of these'
 _RESTS = 'At zero torque the output rests anywhere within {hysteresis:arcmin}′'
 _PLAY = _RESTS + '; backlash: {low:arcmin.2} to {high:arcmin.2}′, the rest friction'
@@ -80,9 +81,9 @@ class Observation(Enum):
     STATES_THINNED = '{topic}: one state of {every} is used' + _THINNED
     STATES_OUT_OF_ORDER = '{topic}: {count} states out of order'
     ROWS_THINNED = 'one row of {every} is used' + _THINNED
-    ROWS_LEFT_OUT = '{rows} rows were left out: no numbers, or too large'
-    NO_TIMES = '{rows} rows without a time in {column} were left out'
-    TIMES_OUT_OF_ORDER = 'the time in {column} is out of order in {rows} rows: left out'
+    ROWS_LEFT_OUT = _ROWS + 'no numbers, or too large'
+    NO_TIMES = _ROWS + 'no time in {column}'
+    TIMES_OUT_OF_ORDER = _ROWS + 'the time in {column} is out of order'
     TIMES_GO_BACK = 'the time in {column} goes back after {rows} rows: the others are left out'
     SAME_TIMES = (
         '{rows} rows have {times} different times in {column}: those with the same one are taken '

@@ -404,6 +404,8 @@ ENCODERS = {
     'days of pandas': plain(',rotor,output', time=lambda v: f'0 days 00:00:{v:09.6f}'),
     'times of each side': lambda t, r, o: written(
         [t[:-1], r[:-1], t[1:], o[1:]], 'motor_time,motor_pos,output_time,output_pos', '{:.5f}'),
+    'a row from the future of one side': lambda t, r, o: written(
+        [moved(t, (200, 40.0)), r, t, o], 'motor_time,motor_pos,output_time,output_pos', '{:.5f}'),
     'a repeated time': lambda t, r, o: written(
         [*np.pad([t, r], [(0, 0), (0, 1)], constant_values=np.nan),
          *np.pad([t, o], [(0, 0), (1, 0)], constant_values=np.nan)],
@@ -1096,7 +1098,7 @@ def test_temperatures_are_no_times(tmp_path, gear, reference):
 
 def test_durations_are_no_times(tmp_path, gear, reference):
     t, r, o = reference('encoders')
-    for duration in (t - t + 0.04, 0.04 + 1e-3 * np.sin(t), -t, t + math.nan):
+    for duration in (t - t + 0.04, 0.04 + 1e-3 * np.sin(t), -t, t + math.nan, t % 3.0):
         content = written([duration, r, o], 'loop_time,rotor,output', 3 * ['{:.5f}'])
         assert not read(saved(tmp_path, content), gear).encoders.timed
 
