@@ -7,7 +7,7 @@ import io
 import math
 import re
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from itertools import takewhile
 from operator import itemgetter
@@ -109,7 +109,7 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
         size = len(head) + sum(map(len, iter(partial(file.handle.read, BLOCK), b'')))
     encoding = encoding_of(head)
     decoded = partial(opened, mode='r', compression='infer', encoding=encoding, errors='replace')
-    text = codecs.getincrementaldecoder(encoding)('replace').decode(head).rstrip('\0')
+    text = codecs.getincrementaldecoder(encoding)('replace').decode(head)
     text = _WRAPPED.sub(lambda name: name[0].replace('\n', '\v'), text.replace('\r\n', '\n'))
     lines = [*io.StringIO(text, newline=None)]
     if size > _HEAD and not (lines := lines[:-1]):
@@ -132,7 +132,7 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
             return pd.read_csv(
                 Rows(file.handle, every),
                 sep=r'\s+' if layout.separator == ' ' else layout.separator,
-                decimal=layout.point if layout.point != layout.separator else '.',
+                decimal=layout.point,
                 header=None,
                 names=range(len(layout.names)),
                 usecols=places,
@@ -198,20 +198,19 @@ def _layout(lines: Sequence[str]) -> _Layout:
     rows = {k: cells_of(lines[k], separator) for k in filled}
     known = [rows[k] for k in filled[-len(last) :]] if filled else []
     width = max(Counter(map(len, known)).items(), key=itemgetter(1), default=(0, 0))[0]
-    kinds: list[list[float]] = [[] for _ in range(width)]
-    for cells in known:
-        for kind, cell in zip(kinds, cells, strict=False):
-            kind.extend([weight(cell, point)] * (cell.lower() not in MISSING))
-    shares = [sum(map(bool, kind)) / len(kind) if kind else 0.0 for kind in kinds]
+
+    def numbers_in(cells: Iterable[str]) -> float:
+        found = [weight(cell, point) > 0.0 for cell in cells if cell.lower() not in MISSING]
+        return sum(found) / max(len(found), 1)
+
+    shares = [numbers_in(cells[k] for cells in known if k < len(cells)) for k in range(width)]
     least = 1.0 if 1.0 in shares else 0.5  # words among numbers, such as states, are no names
     numeric = [k for k, share in enumerate(shares) if share >= least]
-
-    def has_numbers(place: int) -> bool:
-        cells = [rows[place][k] for k in numeric if k < len(rows[place])]
-        weights = [weight(cell, point) for cell in cells if cell.lower() not in MISSING]
-        return bool(weights) and all(weights)
-
-    begins = (k for k, place in enumerate(filled) if all(map(has_numbers, filled[k : k + _BEGIN])))
+    whole = {
+        place: numbers_in(cells[k] for k in numeric if k < len(cells)) == 1.0
+        for place, cells in rows.items()
+    }
+    begins = (k for k in range(len(filled)) if all(map(whole.get, filled[k : k + _BEGIN])))
     if not numeric or (first := next(begins, None)) is None:
         raise ValueError(
             'no rows of numbers: write it as a CSV with a row of names and numbers without units'
@@ -249,8 +248,6 @@ def _names(
     """
     rows = [_cells_above(line, separator, width) for line in above]
     rows = [row for row in rows if not all(map(_TYPES.fullmatch, filter(None, row)))]
-    while len(rows) > 1 and len(rows[-1]) > 1 and len([*filter(None, rows[-1])]) == 1:
-        del rows[-1]  # such as the rate of sampling, of catman
     labelled = (row[1:] for row in rows[:-1] if re.search('(?i)unit|einheit', ''.join(row[:1])))
     labels = [known_units(row, FOREIGN) for row in labelled]  # Tektronix has one of each axis
     label = max(labels, key=lambda label: len([*filter(None, label)]), default=[])
@@ -265,7 +262,9 @@ def _names(
         units = known_units(pairs.get('unit') or pairs.get('') or label[::2])
         columns = [one for name in names for one in (clocks[name], name)]
         return columns, _named(names, units) | dict.fromkeys(clocks.values(), unit), clocks
-    fitting = [k for k, row in enumerate(rows) if len(row) >= numbers and not known_units(row)]
+    several = [len([*filter(None, row)]) >= min(width, 2) for row in rows]  # no rate, of catman
+    long = [k for k, row in enumerate(rows) if len(row) >= numbers and several[k]]
+    fitting = [k for k in long if not known_units(rows[k])]
     last = max(fitting, default=len(rows) - 1)
     # Descriptions may be below the names, which have most of the words that say quantities.
     whole = [k for k in fitting if len({*filter(None, rows[k])}) == width]
@@ -280,7 +279,10 @@ def _names(
     if len({*filled}) < len(filled) and len(groups) == len(names):  # such as Motor,,Load,
         for k in range(1, len(groups)):
             groups[k] = groups[k] or groups[k - 1]
-        names = [f'{group} {name}'.strip() for group, name in zip(groups, names, strict=True)]
+        times = [name for name in names if meaning(name).role == 'time']
+        for k, name in enumerate(names):
+            if times != [name]:
+                names[k] = f'{groups[k]} {name}'.strip()
     for k in range(len(names) - 1, 0, -1):  # a comma, of the same kind, before a unit
         if len(names) > width and known_units([names[k]]):
             names[k - 1 : k + 1] = [f'{names[k - 1]} [{names[k]}]']

@@ -248,6 +248,9 @@ ENCODERS = {
     'names above names': lambda t, r, o: written(
         [t, r * DEG, r, o * DEG], ',Motor,,Load\nt (s),Angle (deg),Speed (rad/s),Angle (deg)',
         '{:.5f}'),
+    'the same names above names': lambda t, r, o: written(
+        [t, r * DEG, r, o * DEG, o], 'PC,Motor,Motor,Load,Load\nt (s),'
+        'Angle (deg),Speed (rad/s),Angle (deg),Speed (rad/s)', '{:.5f}'),
     'LabVIEW': plain('"A 5" shaft\nChannels\t2\nY_Unit_Label\tdeg\tdeg\t\n***End***\n'
         'X_Value\tMotor angle\tOutput angle\tComment', '\t', angle=DEG),
     'LabVIEW, with times of each channel': lambda t, r, o: written(
@@ -755,7 +758,7 @@ def test_the_command_line_of_the_advice_works(tmp_path, gear, reference, name, u
 
 def test_names_can_be_given_with_units(tmp_path, gear, reference):
     time, rotor, output = reference('encoders')
-    path = saved(tmp_path, written([1e3 * time, DEG * rotor, output], 'a,b,c'))
+    path = saved(tmp_path, written([1e3 * time, DEG * rotor, output], 'a,b,c\n25 Hz,,'))
     given = Sources(time='a [ms]', rotor='b [deg]', output='c [rad]')
     recording = read(path, gear, given)
     assert recording.columns == (
