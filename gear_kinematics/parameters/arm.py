@@ -36,6 +36,7 @@ _TOKEN = re.compile('[A-Za-z][A-Za-z0-9_]{,63}', re.ASCII)
 _EVERY_NODE = re.compile(r'use_sim_time|start_type_description_service|qos_overrides\..*')
 """Parameters that every node has and that are ignored here."""
 _GROUPS = 'qos_overrides', 'use_sim_time', 'start_type_description_service'
+_SHOWN = 50  # unknown parameters that are named, each with the nearest known name
 _JOINTS = 'rotor_joint', 'output_joint', 'output_encoder_joint'
 """Their default is the name of the actuator."""
 
@@ -162,7 +163,7 @@ def shared_names(actuators: Mapping[str, NodeParameters]) -> list[str]:
 def unknown_parameters(
     names: Iterable[str], branches: Mapping[str, Iterable[str]], others: Iterable[str] = ()
 ) -> list[str]:
-    """List a fault for each name that no node has with these branches, then all known names."""
+    """List a fault for names that no node has with these branches, then all known names."""
     every = dict.fromkeys(branch for each in branches.values() for branch in each)
     known = [*PARAMETERS, *branch_parameters(every), *others]
     own = [
@@ -172,9 +173,8 @@ def unknown_parameters(
         if actuator and name not in COMMON
     ]
     faults, all_known = [], dict.fromkeys([*known, *own])
-    for name in names:
-        if name in all_known or _EVERY_NODE.fullmatch(name):
-            continue
+    unknown = [n for n in names if n not in all_known and not _EVERY_NODE.fullmatch(n)]
+    for name in unknown[:_SHOWN]:
         group, _, key = name.rpartition('.')
         actuator, _, branch = group.rpartition('.')
         if branch and key in BRANCH_PARAMETERS and actuator in ('', *branches):
@@ -191,6 +191,8 @@ def unknown_parameters(
             unlisted = rest in known and not nearest(first, branches)
             hint = f'; `{first}` is not in `actuators`' if unlisted else nearest(name, all_known)
         faults.append(f'unknown parameter `{name}`{hint}')
+    if more := len(unknown[_SHOWN:]):
+        faults.append(f'and {more} more')
     if faults:
         single = f', and for each actuator such as `{own[0]}`' if own else ''
         faults.append(f'there are: {", ".join(known)}{single}')

@@ -129,6 +129,12 @@ def test_every_fault_of_an_arm_is_named_in_one_line(tmp_path, given, texts):
         load_actuators(path)
 
 
+def test_of_very_many_unknown_parameters_some_are_named(tmp_path):
+    path = write(tmp_path, **{f'x{k}.y': 1 for k in range(10, 70)})
+    with refused(ConfigError, path, '`x59.y`; and 10 more; there are: ring_teeth, '):
+        load_actuators(path)
+
+
 def test_an_arm_without_an_inner_joint_may_share_a_prefix(tmp_path):
     values = {'frame_prefix': 'arm_', 'elbow.gear_ratio': '-50'}
     found = load_actuators(write(tmp_path, **values))
