@@ -14,6 +14,7 @@ import pytest
 from gear_kinematics.bag import BagError
 from gear_kinematics.commands.encoders import add_recordings, sources
 from gear_kinematics.measurement import dialects
+from gear_kinematics.measurement.cells import weight
 from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.reading import read
@@ -497,6 +498,11 @@ def test_every_dialect_is_read(tmp_path, gear, reference, dialect):
     if kind == 'encoders':
         duration = 0.0 if 'without times' in dialect else 52.76
         assert recording.encoders.duration == pytest.approx(duration, abs=1.1)
+
+
+def test_a_long_cell_that_begins_as_a_number_is_judged_at_once():
+    """In a time that rises with its square, it would take hours."""
+    assert weight(500_000 * '1' + 'x', '.') == 0.0
 
 
 @pytest.mark.parametrize('readings', [2, 7, 8, 10])
