@@ -81,12 +81,14 @@ class Bag:
     topics: Mapping[str, str]  # types by name, such as sensor_msgs/msg/JointState
     not_cdr: frozenset[str]  # topics whose messages are of another encoding
     message_count: int | None  # number of messages on all topics; None without metadata.yaml
+    joints: dict[str, list[str]]  # those on topics for which `roles.joints_on` was called
 
     def __init__(self, path: Path | str) -> None:
         """Read the topics; raises BagError if there is no readable bag."""
         self.path = Path(path)
         self._readings = ExitStack()
         self._described: dict[str, Topic] = {}
+        self.joints = {}
         with bag_errors(self.path):
             self._files, self._listed, self.message_count = find_contents(self.path)
         if not self._listed:

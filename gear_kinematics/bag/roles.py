@@ -130,22 +130,24 @@ def only_joint(bag: Bag, topic: str, joint: str) -> str:
 
 
 def joints_on(bag: Bag, topics: Sequence[str]) -> dict[str, list[str]]:
-    """Return the joints, safe to print, in the first readable messages on JointState topics."""
-    first: dict[str, list[bytes]] = {topic: [] for topic in topics}
-    left = set(topics)
+    """Return the joints, safe to print, in the first readable messages on JointState topics.
+
+    They are looked up once, as this reads the whole bag where a topic has no messages.
+    """
+    left = set(topics) - bag.joints.keys()
+    first: dict[str, list[bytes]] = {topic: [] for topic in left}
     with suppress(BagError):
-        for number, (topic, _, data) in enumerate(bag.messages(topics)):
+        for number, (topic, _, data) in enumerate(bag.messages([*left]) if left else ()):
             if number < _JUDGED or topic in left:
                 left.discard(topic)
                 first[topic].append(data)
             if number >= _JUDGED and not left:
                 break
-    joints = {}
     for topic, messages in first.items():
         rows = sorted(rows[0] for rows, *_ in JointStateBatch(messages).tables)  # of each layout
         names = (name for row in rows for name in joints_of(messages[row]))
-        joints[topic] = [*dict.fromkeys(names)]
-    return joints
+        bag.joints[topic] = [*dict.fromkeys(names)]
+    return {topic: bag.joints[topic] for topic in topics}
 
 
 def find_encoder_topic(bag: Bag, rotor: str, given: str | None = None, *joints: str) -> str:

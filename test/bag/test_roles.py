@@ -10,7 +10,13 @@ from live import rotor_bytes
 from shipped_bags import write_bag
 
 from gear_kinematics.bag import Bag, BagError
-from gear_kinematics.bag.roles import Topics, find_encoder_topic, find_rotor_topic, find_topics
+from gear_kinematics.bag.roles import (
+    Topics,
+    find_encoder_topic,
+    find_rotor_topic,
+    find_topics,
+    joints_on,
+)
 from gear_kinematics.bag.writing import BagWriter
 
 JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'
@@ -18,7 +24,7 @@ JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseA
 
 def described(topics: dict[str, str]) -> SimpleNamespace:
     """What a bag says about its topics, which have no messages."""
-    bag = SimpleNamespace(path=Path('some.mcap'), topics=topics, not_cdr=())
+    bag = SimpleNamespace(path=Path('some.mcap'), topics=topics, not_cdr=(), joints={})
     bag.messages = lambda _: iter(())
     bag.type_of = partial(Bag.type_of, bag)
     return bag
@@ -204,6 +210,17 @@ def test_which_encoder_is_meant_is_asked():
     bag = bag_with('/b/output_encoder /a/output_encoder')
     with pytest.raises(BagError, match='which topic is output_encoder'):
         find_encoder_topic(bag, '/rotor_state')
+
+
+def test_joints_are_looked_up_once(tmp_path):
+    """In the whole recording, as no message is on one of the topics."""
+    messages = [('/motor', 1, rotor_bytes(1, ['m1'], [0.0]))]
+    topics = {'/motor': ['m1'], '/silent': []}
+    bag = Bag(write_bag(tmp_path / 'bag', messages, dict.fromkeys(topics, JOINT_STATE)))
+    assert joints_on(bag, [*topics]) == topics
+    bag.messages = None
+    assert joints_on(bag, [*topics]) == topics
+    assert joints_on(bag, []) == {}
 
 
 def test_the_topic_with_most_rotors_is_theirs_even_if_each_message_has_one(tmp_path):
