@@ -81,7 +81,7 @@ class Bag:
     topics: Mapping[str, str]  # types by name, such as sensor_msgs/msg/JointState
     not_cdr: frozenset[str]  # topics whose messages are of another encoding
     message_count: int | None  # number of messages on all topics; None without metadata.yaml
-    joints: dict[str, list[str]]  # those on topics for which `roles.joints_on` was called
+    joints: dict[tuple[str, ...], dict[str, list[str]]]  # what `roles.joints_on` has returned
 
     def __init__(self, path: Path | str) -> None:
         """Read the topics; raises BagError if there is no readable bag."""

@@ -134,20 +134,23 @@ def joints_on(bag: Bag, topics: Sequence[str]) -> dict[str, list[str]]:
 
     They are looked up once, as this reads the whole bag where a topic has no messages.
     """
-    left = set(topics) - bag.joints.keys()
-    first: dict[str, list[bytes]] = {topic: [] for topic in left}
+    if (key := tuple(topics)) in bag.joints:
+        return dict(bag.joints[key])
+    first: dict[str, list[bytes]] = {topic: [] for topic in topics}
+    left = set(topics)
     with suppress(BagError):
-        for number, (topic, _, data) in enumerate(bag.messages([*left]) if left else ()):
+        for number, (topic, _, data) in enumerate(bag.messages(topics) if topics else ()):
             if number < _JUDGED or topic in left:
                 left.discard(topic)
                 first[topic].append(data)
             if number >= _JUDGED and not left:
                 break
+    joints = bag.joints[key] = {}
     for topic, messages in first.items():
         rows = sorted(rows[0] for rows, *_ in JointStateBatch(messages).tables)  # of each layout
         names = (name for row in rows for name in joints_of(messages[row]))
-        bag.joints[topic] = [*dict.fromkeys(names)]
-    return {topic: bag.joints[topic] for topic in topics}
+        joints[topic] = [*dict.fromkeys(names)]
+    return dict(joints)
 
 
 def find_encoder_topic(bag: Bag, rotor: str, given: str | None = None, *joints: str) -> str:
