@@ -63,12 +63,12 @@ def run(options: argparse.Namespace) -> ExitCode:
 def _questions(bag: Bag, summary: Summary, joints: Sequence[str]) -> Iterator[str]:
     """Yield what seems wrong in messages of the given joints, or else of a topic's only joint."""
     for topic in summary.topics:
-        if topic.part != 'rotor':
+        asked = joints or topic.joints * (len(topic.joints) == 1)
+        if topic.part != 'rotor' or not asked:
             continue
-        for joint in joints or topic.joints * (len(topic.joints) == 1):
+        for joint, question in recorded_questions(bag, topic.name, asked):
             name = f'{topic.name}: {joint}' if len(joints) > 1 else topic.name
-            for question in recorded_questions(bag, topic.name, joint):
-                yield f'{name}: {question}'
+            yield f'{name}: {question}'
 
 
 def _print_summary(name: str, summary: Summary, asked: list[str], *, verbose: bool) -> None:

@@ -146,8 +146,10 @@ def _in_order(states: JointStates, stamp: Array) -> tuple[Array, Array]:
     return stamp[rows], states.values[rows]
 
 
-def recorded_questions(bag: Bag, topic: str, joint: str) -> Iterator[Observed | Fact]:
-    """Yield the questions on a topic of a bag, up to any damage; see `questions`."""
+def recorded_questions(
+    bag: Bag, topic: str, joints: Sequence[str]
+) -> Iterator[tuple[str, Observed | Fact]]:
+    """Yield joints on a topic of a bag, and the questions on them up to any damage."""
     data, received = list[bytes](), list[int]()
     try:
         for batch in bag.by_topic([topic]):
@@ -157,4 +159,7 @@ def recorded_questions(bag: Bag, topic: str, joint: str) -> Iterator[Observed | 
                 break
     except DamagedBagError:
         pass  # the reader of the recording reports it
-    yield from questions(JointStateBatch(data), received, joint, steps=True)
+    decoded = JointStateBatch(data)
+    for joint in joints:
+        for question in questions(decoded, received, joint, steps=True):
+            yield joint, question
