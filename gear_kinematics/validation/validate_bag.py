@@ -219,17 +219,18 @@ def _played(
 
 def _explained(report: BagReport, task: Task, bag: Bag, topics: Topics) -> BagReport:
     """Add whose outputs they are, if wrong ones agree with another joint of the rotor's topic."""
-    joint, found = task.parameters.rotor_joint, list[Finding]()
-    wrong = any(topic.wrong for topic in report.topics)
-    for other in joints_on(bag, [topics.rotor])[topics.rotor] if wrong else ():
+    if not any(topic.wrong for topic in report.topics):
+        return report
+    joint, actuator = task.parameters.rotor_joint, task.parameters.actuator
+    begin = [*islice(bag.by_topic(topics), 1)]
+    for other in joints_on(bag, [topics.rotor])[topics.rotor]:
         of_other = replace(task, parameters=replace(task.parameters, rotor_joint=other))
-        if other != joint and agrees(of_other, topics, islice(bag.by_topic(topics), 1)):
-            actuator = task.parameters.actuator
+        if other != joint and agrees(of_other, topics, begin):
             cause = FindingCause.OTHER_ROTOR if actuator else FindingCause.OTHER_JOINT
             values = {'joint': joint, 'other': other, 'actuator': actuator}
-            found.append(Finding(cause, values=values, explains=True))
-            break
-    return replace(report, findings=(*found, *report.findings))
+            found = Finding(cause, values=values, explains=True)
+            return replace(report, findings=(found, *report.findings))
+    return report
 
 
 def _losses(lost: Counter[str], topics: Iterable[str]) -> Iterator[Finding]:
