@@ -128,9 +128,9 @@ def test_the_rate_is_that_of_the_first_joint_that_is_recorded(tmp_path):
     assert topic.rate == pytest.approx(100.0)
 
 
-def test_a_first_message_without_joints_hides_no_joint(tmp_path):
+def test_a_first_message_without_joints_and_stamp_hides_no_joint(tmp_path):
     """Two drivers share the topic, and each sends 100 messages a second."""
-    messages = [('/motor', 10**18, rotor_bytes(10**18, [], []))] + [
+    messages = [('/motor', 10**18, rotor_bytes(0, [], []))] + [
         ('/motor', stamp + late, rotor_bytes(stamp + late, [joint], [0.0]))
         for stamp in range(10**18 + 10**7, 2 * 10**18, 10**7)[:100]
         for joint, late in (('m1', 0), ('m2', 10**6))
@@ -148,7 +148,7 @@ def test_joints_of_the_rotor_topic_are_known_where_none_is_the_wanted_one():
 
 def test_drivers_with_a_message_each_leave_no_gaps_on_any_topic(tmp_path):
     """Three messages in a row every 10 ms, as of an arm whose motors have a driver each."""
-    joints, topics = ('elbow', 'wrist', 'hand'), ('/rotor_state', '/output_state')
+    joints, topics = ('left_elbow', 'wrist', 'hand'), ('/rotor_state', '/output_state')
     messages = [
         (topic, stamp + k, rotor_bytes(stamp + 1000 * k, [name], [0.0]))
         for stamp in range(10**18, 10**18 + 10**9, 10**7)
@@ -158,7 +158,7 @@ def test_drivers_with_a_message_each_leave_no_gaps_on_any_topic(tmp_path):
     path = write_bag(tmp_path / 'bag', messages, dict.fromkeys(topics, JOINT_STATE))
     for topic in summary(path, None, ['wrist']).topics:
         assert (topic.joints, topic.messages, topic.of_others) == (joints, 300, 200)
-        assert topic.followed == ('wrist' if topic.part == 'rotor' else 'elbow')
+        assert topic.followed == ('wrist' if topic.part == 'rotor' else 'left_elbow')
         assert (topic.rate, topic.gaps) == (pytest.approx(100.0), 0)
 
 
