@@ -148,7 +148,7 @@ def test_joints_of_the_rotor_topic_are_known_where_none_is_the_wanted_one():
 
 def test_drivers_with_a_message_each_leave_no_gaps_on_any_topic(tmp_path):
     """Three messages in a row every 10 ms, as of an arm whose motors have a driver each."""
-    joints, topics = ('left_elbow', 'wrist', 'hand'), ('/rotor_state', '/output_state')
+    joints, topics = ('left_arm_elbow', 'wrist', 'hand'), ('/rotor_state', '/output_state')
     messages = [
         (topic, stamp + k, rotor_bytes(stamp + 1000 * k, [name], [0.0]))
         for stamp in range(10**18, 10**18 + 10**9, 10**7)
@@ -158,7 +158,7 @@ def test_drivers_with_a_message_each_leave_no_gaps_on_any_topic(tmp_path):
     path = write_bag(tmp_path / 'bag', messages, dict.fromkeys(topics, JOINT_STATE))
     for topic in summary(path, None, ['wrist']).topics:
         assert (topic.joints, topic.messages, topic.of_others) == (joints, 300, 200)
-        assert topic.followed == ('wrist' if topic.part == 'rotor' else 'left_elbow')
+        assert topic.followed == ('wrist' if topic.part == 'rotor' else 'left_arm_elbow')
         assert (topic.rate, topic.gaps) == (pytest.approx(100.0), 0)
 
 
