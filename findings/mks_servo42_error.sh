@@ -8,6 +8,11 @@
 # angle of the shaft and that of the encoder are right. Expected of angle_to_steps(-90.0, 16.0), whose result has no
 # sign: 800 steps for the direction that the caller gives, or an error. What happens: 0 steps, so that the motor stands
 # still.
+# By the protocol of the MKS SERVO42C, an error of 1° is sent as e0 00 b7 97, which is 183 of 65536 units a turn; the
+# crate documents it as "1° error ≈ 182 encoder units (65536/360)". Expected of to_degrees() of the parsed answer: 1°.
+# What happens: the units are divided by 360 alone, so that each error is 0.506 times as large: 90° is 45.5°. The angle
+# of the shaft and that of the encoder are right. Expected of angle_to_steps(-90.0, 16.0), whose result has no sign: 800
+# steps for the direction that the caller gives, or an error. What happens: 0 steps, so that the motor stands still.
 # For us: multiply the error's `value` by 360/65536 yourself, and give angle_to_steps() the size of the angle.
 #
 # Exit code 0: still so. Needs cargo; installs the version into a temporary folder.
