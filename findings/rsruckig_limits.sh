@@ -10,6 +10,10 @@
 # An error comes only for limits above -1.71 rad, where the acceleration has just become constant:
 # get_position_extrema() misses each turn of the joint at a constant acceleration. It does so in ruckig,
 # too (0.19.4; its issue 215 about extrema is open), which has no such guarantee.
+# What happens: validate_input() accepts the motion with both checks, and update() leads the joint to -2.49 rad. An error
+# comes only for limits above -1.71 rad, where the acceleration has just become constant: get_position_extrema() misses
+# each turn of the joint at a constant acceleration. It does so in ruckig, too (0.19.4; its issue 215 about extrema is
+# open), which has no such guarantee.
 # For us: sample the trajectory, and compare the positions with the limits yourself before a joint follows it.
 #
 # Exit code 0: still so. Needs cargo; installs the version into a temporary folder.
