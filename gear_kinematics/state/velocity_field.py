@@ -92,6 +92,7 @@ class VelocityField:
         self.due = 0  # ns, the stamp from which on the next reading is wanted
         self.quiet_until = 0  # ns: `due`, or 0 while the velocities are not to be used
         self._total, self._count = 0.0, 0  # of the velocities since the last reading
+        self._last: float | None = None  # rad/s, the velocity at the last reading
         self._readings: list[tuple[int, float, float]] = []
         """Each stamp, ns, its position, rad, and the mean velocity since the one before, rad/s."""
         self._begin_block()
@@ -99,7 +100,7 @@ class VelocityField:
     def _begin_block(self) -> None:
         self._turns = 0  # between readings, and what is known of them
         self._path = self._squares = self._velocity_squares = self._products = 0.0
-        self._sparse = False  # whether a reading had too few velocities for their mean
+        self._fewest = SPAN  # velocities between two readings
         # Products of what the velocities differ by and what the speed changed by, as travels, by
         # the positions and by the velocities.
         self._products_of_changes, self._change_squares = [0.0, 0.0], [0.0, 0.0]
@@ -175,7 +176,10 @@ class VelocityField:
             readings.clear()
         travel = max(_TRAVEL, _NOISES * noise)
         if self._count:
-            self._sparse |= self._count < _FEW
+            self._fewest = min(self._fewest, self._count)
+            if velocity is not None and self._last is not None:  # by trapezoids
+                self._total += 0.5 * (self._last - velocity)
+            self._last = velocity
             mean, self._total, self._count = self._total / self._count, 0.0, 0
             self._moved |= mean != 0.0
             readings.append((stamp, position, mean))
@@ -216,7 +220,7 @@ class VelocityField:
                 factor = self._products / self._squares
                 if self._meaning_of(factor) is not VelocityMeaning.UNKNOWN:
                     self._decide(factor)
-            elif not (self._sparse or self._late) and self._unrelated():
+            elif self._fewest >= _FEW and not self._late and self._unrelated():
                 self._decide(math.nan)
             self._begin_block()
         elif self._turns > _READINGS * _STRIDES[-1]:
@@ -246,13 +250,13 @@ class VelocityField:
 
         One block that shows no delay ends it. Late velocities lie between those of the last two
         travels, or are earlier ones; late positions make a travel that of an earlier velocity.
-        Where there are few velocities between two readings, their mean is that of a later time
-        than the travel, and says nothing about the positions.
+        A delay within the time between two messages is none.
         """
-        for k, late in enumerate((1, -1)[: 2 - self._sparse]):
+        least = max(_LATE, SPAN * 1e-9 / self._fewest)
+        for k, late in enumerate((1, -1)):
             product, squares = self._products_of_changes[k], self._change_squares[k]
             delay = product / squares * SPAN * 1e-9 if squares else 0.0
-            if delay >= _LATE and product * product >= _EXPLAINED * self._off_squares * squares:
+            if delay >= least and product * product >= _EXPLAINED * self._off_squares * squares:
                 if self._late == late:
                     self.delay = late * delay
                 self._late = late

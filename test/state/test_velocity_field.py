@@ -179,11 +179,11 @@ def meanings(time, position, velocity):
 
 
 def test_delay_stays_named_until_velocities_are_right():
-    """Not each part of this motion shows a delay of 0.15 s, which ends after 30 s."""
+    """Not each part of this motion shows a delay of 0.06 s, which ends after 30 s."""
     time = np.arange(6000) / 100
-    position = 10.0 * np.sin(6.0 * time) + 3.0 * np.sin(15.0 * time)
-    past = time - 0.15 * (time < 30.0)
-    said = meanings(time, position, 60.0 * np.cos(6.0 * past) + 45.0 * np.cos(15.0 * past))
+    position = 10.0 * np.sin(6.0 * time) + 2.0 * np.sin(17.0 * time)
+    past = time - 0.06 * (time < 30.0)
+    said = meanings(time, position, 60.0 * np.cos(6.0 * past) + 34.0 * np.cos(17.0 * past))
     assert {*said[5:30]} == {Condition.VELOCITIES_LATE}
     assert {*said[35:]} == {None}
 
@@ -209,11 +209,41 @@ def test_errors_of_positions_at_a_steady_speed_are_no_delay(eccentric, noise):
     assert rotor.meaning is None
 
 
+@pytest.mark.parametrize('age', [0.0, 0.5])
 @pytest.mark.parametrize('rate', [10, 20, 30, 100])
-def test_velocities_of_a_slow_driver_are_no_sign_of_late_positions(rate):
-    """They are those of the end of the travel."""
-    rotor, _ = heard(lambda t: (40.0 * math.sin(3.0 * t), 120.0 * math.cos(3.0 * t)), rate, 20.0)
+def test_velocities_of_a_slow_driver_are_no_sign_of_a_delay(rate, age):
+    """They are those of the end of the travel, or their mean since the message before."""
+
+    def fields(time):
+        return 40.0 * math.sin(3.0 * time), 120.0 * math.cos(3.0 * (time - age / rate))
+
+    rotor, _ = heard(fields, rate, 20.0)
     assert rotor.velocity_field.meaning is None
+
+
+@pytest.mark.parametrize(('rate', 'delay'), [(20, 0.06), (20, -0.06), (30, 0.05), (30, -0.05)])
+def test_delay_of_more_than_an_interval_of_a_slow_driver_is_named(rate, delay):
+    def fields(time):
+        return 40.0 * math.sin(3.0 * time), 120.0 * math.cos(3.0 * (time - delay))
+
+    rotor, _ = heard(fields, rate, 20.0)
+    late = Condition.VELOCITIES_LATE if delay > 0.0 else Condition.POSITIONS_LATE
+    assert rotor.velocity_field.meaning == late(delay=pytest.approx(abs(delay), rel=0.05))
+
+
+@pytest.mark.parametrize(('rate', 'vibration'), [
+    (20, 8.5), (40, 12.2), (40, 18.0), (50, 9.1), (50, 23.0), (60, 12.3), (100, 22.1)
+])  # fmt: skip
+def test_vibration_is_no_delay(rate, vibration):
+    w = vibration * math.tau
+    size = min(1.0, 6000.0 / w**2)
+
+    def fields(time):
+        swing = size * math.sin(w * time + 1.0), size * w * math.cos(w * time + 1.0)
+        return 2.0 * math.sin(2.0 * time) + swing[0], 4.0 * math.cos(2.0 * time) + swing[1]
+
+    rotor, _ = heard(fields, rate, 20.0)
+    assert rotor.velocity_field.in_recording is None
 
 
 @pytest.mark.parametrize('settings', [SETTINGS, replace(SETTINGS, rotor_encoder='single_turn')])
