@@ -207,28 +207,25 @@ def elements_of(names: Sequence[str], rows: Sequence[Sequence[str]]) -> dict[str
     return found
 
 
-def topics_of(names: Sequence[str], rows: Sequence[Sequence[str]]) -> list[int]:
-    """Return the columns that say which series a row is of; names are in lower case."""
-    found = list[int]()
-    if {'rotor', 'output'} <= {meaning(name).role for name in names}:  # a row has both
-        return found
-    for place in (names.index(name) for name in _TOPICS if name in names):
-        cells = [row[place] for row in rows if place < len(row)]
-        if len({*cells}) < len(cells) or not all(map(str.isdecimal, cells)):  # no number of a row
-            found.append(place)
-    return found
+def key_of(names: Sequence[str], rows: Sequence[Sequence[str]]) -> tuple[str, str]:
+    """Return the column that says which series or joint a row is of, and that of its value.
 
-
-def ids_of(names: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """Return the columns that say of which joint a row is, if the rows are of several."""
+    The first is empty if a row has all series, the second if it has several values of a joint.
+    """
+    columns = [[row[place] for row in rows if place < len(row)] for place in range(len(names))]
+    roles, lower = {meaning(name).role for name in names}, [n.lower().strip('_') for n in names]
+    if 'value' in lower and not {'rotor', 'output'} <= roles:
+        for place in (lower.index(name) for name in _TOPICS if name in lower):
+            cells = columns[place]
+            if len({*cells}) < len(cells) or not all(map(str.isdecimal, cells)):  # no row number
+                return names[place], names[lower.index('value')]
     found = []
-    for place, name in enumerate(names):
-        cells = [row[place] for row in rows if place < len(row)]
+    for name, cells in zip(names, columns, strict=True):
         changes = sum(one != other for one, other in pairwise(cells))
         several = 2 * len({*cells}) <= len(cells) and changes > _OFTEN * (len(cells) - 1)
         plain = all(cell[:1] not in '[(' for cell in cells)
         plain &= all(cell.isdecimal() or not weight(cell, '.') for cell in cells)
         if several and plain and _IDS.fullmatch(' '.join(meaning(name).words)):
             found.append(name)
-    angles = any(meaning(name).role == 'angle' for name in names)  # of neither side
-    return sorted(found, key=lambda name: 'name' not in meaning(name).words) if angles else []
+    found.sort(key=lambda name: 'name' not in meaning(name).words)
+    return (found[0] if found and 'angle' in roles else ''), ''

@@ -22,10 +22,9 @@ from gear_kinematics.measurement.cells import (
     cells_of,
     checked,
     elements_of,
-    ids_of,
+    key_of,
     may_be_divided,
     numbers,
-    topics_of,
     weight,
 )
 from gear_kinematics.measurement.names import FOREIGN, known_units, meaning
@@ -142,14 +141,11 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
                 dtype=kind,
             )
 
-    lower = [name.lower().strip('_') for name in layout.names]
     sample = [cells_of(line, layout.separator) for line in lines[layout.start :][:_ROWS]]
-    topics = topics_of(lower, sample) if 'value' in lower else []
-    keys = [layout.names[place] for place in topics] or ids_of(layout.names, sample)
-    if keys:
-        frame = read(range(len(lower)), 1).set_axis(layout.names, axis=1)
-        value = layout.names[lower.index('value')] if topics else ''
-        return loaded(*series_of(frame, layout.point, keys[0], value, layout.units))
+    key, value = key_of(layout.names, sample)
+    if key:
+        frame = read(range(len(layout.names)), 1).set_axis(layout.names, axis=1)
+        return loaded(*series_of(frame, layout.point, key, value, layout.units))
     elements = elements_of(layout.names, sample)
     arrays = {element.place for element in elements.values()}
     names = [name for k, name in enumerate(layout.names) if k not in arrays] + [*elements]
