@@ -6,7 +6,14 @@ from collections.abc import Sequence
 
 from gear_kinematics.kinematics.rotor_turns import TURN
 
+_MOST_NAMES = 256
 _LEAST_RANGE = 0.5  # rad, of an encoder: ten times the noise that is expected of any
+
+
+def names(values: Sequence[str]) -> None:
+    """Refuse more branches or actuators than any robot has, which would fill the memory."""
+    if len(values) > _MOST_NAMES:
+        raise ValueError(f'at most {_MOST_NAMES} names, not {len(values)}')
 
 
 def stiffness(values: Sequence[float]) -> None:

@@ -40,7 +40,9 @@ class NodeParameters:
     satellite_teeth: int = parameter('Teeth of the satellites, zs', 1, 99_999, read_only=True)
     eccentricity: float = parameter('Eccentricity of the cams, m', 1e-6, 1.0, read_only=True)
     module: float = parameter('Module of the teeth, m; for their shape', 1e-6, 0.1, read_only=True)
-    branches: tuple[Branch, ...] = parameter('Names of the branches', read_only=True)
+    branches: tuple[Branch, ...] = parameter(
+        'Names of the branches', read_only=True, check=checks.names
+    )
     gear_ratio: str = parameter(
         "Exact ratio of a gear of another kind, such as '-19' or '1457/26'; '': from the teeth",
         read_only=True,
@@ -162,7 +164,7 @@ class NodeParameters:
     )
 
     actuators: tuple[str, ...] = parameter(
-        'Names of the actuators of an arm; empty: one gear', read_only=True
+        'Names of the actuators of an arm; empty: one gear', read_only=True, check=checks.names
     )
 
     @staticmethod

@@ -157,6 +157,16 @@ def test_fault_names_parameter_value_and_bound(tmp_path, name, value, bounds):
         assert bound in text or str(float(bound)) in text
 
 
+@pytest.mark.parametrize('name', ['branches', 'actuators'])
+def test_more_names_than_any_robot_has_are_refused(tmp_path, name):
+    """The bodies of 20 000 branches fill 7 GB."""
+    names = [f'x{k}' for k in range(257)]
+    assert fault(tmp_path, **{name: names}).endswith(f'{name}: at most 256 names, not 257')
+    path = tmp_path / 'all.yaml'
+    path.write_text(yaml.safe_dump({'/**': {'ros__parameters': {name: names[1:]}}}), 'utf-8')
+    load(path, actuator='x1' * (name == 'actuators'))
+
+
 @pytest.mark.parametrize(
     ('name', 'value'),
     [
