@@ -99,10 +99,12 @@ def test_of_two_encoders_it_is_that_in_the_namespace_of_the_outputs(tmp_path):
     for topic, *rest in recorded(SINGLE):
         messages.append(('/motors/left' if topic == ROTOR else f'/left{topic}', *rest))
         if topic == ENCODER:
-            messages.append((f'/right{ENCODER}', *rest))
+            off = rotor_bytes(rest[0], ['shaft'], [0.2 - STEP])
+            messages.append((f'/right{ENCODER}', rest[0], off))
     types = {topic: TYPES.get(topic.removeprefix('/left'), JOINT_STATE) for topic, *_ in messages}
     bag = write_bag(tmp_path / 'bag', messages, types)
     assert texts(validate_bag(Task(bag, SINGLE))) == [AGREES]
+    assert not validate_bag(Task(bag, SINGLE, encoder_topic=f'/right{ENCODER}')).passed
 
 
 @pytest.mark.parametrize('strict', [False, True])
