@@ -65,13 +65,14 @@ def numbers(column: Any, point: str = '.') -> Any:
         return text.map(lambda digits: int(digits, 16)).to_numpy()
     other = re.escape('.' if point == ',' else ',')
     marked = text[text.str.contains(other)]
-    grouped = rf'[-+]?[1-9]\d{{0,2}}({other}\d{{3}})+({re.escape(point)}\d*)?'
+    decimals = rf'({re.escape(point)}\d*)?'
+    grouped = rf'[-+]?[1-9]\d{{0,2}}({other}\d{{3}})+{decimals}'
     thousands = len(marked) > 0 and marked.str.fullmatch(grouped).all()
     sure = marked.str.contains(re.escape(point)) | (marked.str.count(other) > 1)
-    if thousands and not (sure.any() or text.str.fullmatch(r'[-+]?\d{1,3}').any()):
+    if thousands and not (sure.any() or text.str.fullmatch(rf'[-+]?\d{{1,3}}{decimals}').any()):
         raise ValueError(
-            f'{column.name} has three digits behind each {other[-1]}, which may be decimals or '
-            'thousands: write the numbers in another way'
+            f'{column.name} has three digits behind each {"comma" if point == "." else "point"}, '
+            'which may be decimals or thousands: write the numbers in another way'
         )
     plain = text.str.replace(other, '' if thousands else '.', regex=True)
     values = pd.to_numeric(plain.str.replace(',', '.'), errors='coerce').to_numpy(float)

@@ -166,6 +166,9 @@ ENCODERS = {
         [t, r, o], NAMES, 3 * [lambda v: f'"{v:.5f}"'.replace('.', ',')]),
     'thousands by comma, in quotes': lambda t, r, o: written(
         [t, r * DEG, o * DEG], WITH_DEG.replace(';', ','), 3 * [lambda v: f'"{v:,.3f}"']),
+    'thousands by comma, and decimals below 1000': lambda t, r, o: written(
+        [t, r * 1e3, o], 'time,rotor [mrad],output [rad]',
+        ('{:.2f}', lambda v: f'"{v:,.0f}"' if abs(v) >= 999.5 else f'{v:.1f}', '{:.5f}')),
     'thousands by point': lambda t, r, o: written(
         [t, r * DEG, o * DEG], WITH_DEG, 3 * [grouped('.', ',')], ';'),
     'thousands by space': lambda t, r, o: written(
@@ -557,7 +560,7 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         (lambda t, r, o: written(
             [t, r * 1e3 + 9e5, o], 'time,rotor_counts,output_rad  # three decimals',
             ('{:.2f}', lambda v: f'"{v / 1e3:.3f}"'.replace('.', ','), '{:.5f}')),
-         'rotor_counts has three digits behind each ,'),
+         'rotor_counts has three digits behind each comma'),
         (lambda t, r, o: written([t + 95_930.0 + 40.0 * (t >= 30.0), r, o], NAMES),
          'the times in time are hours, minutes and seconds'),
         *((lambda t, r, o, step=step: written([25.0 * step * t, 1e-2 * r, 1e-2 * o], NAMES,
