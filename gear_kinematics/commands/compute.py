@@ -57,7 +57,7 @@ def run(options: argparse.Namespace) -> ExitCode:
             configs = {'': replace(configs[''], rotor_joint=taken)}
         absolute = [each.distinct_encoder_joint for each in configs.values() if each.absolute]
         encoder = ''
-        if absolute:
+        if absolute or options.encoder_topic:
             encoder = find_encoder_topic(bag, rotor, options.encoder_topic, *absolute)
         result = compute(
             bag,

@@ -156,9 +156,8 @@ def _validator(task: Task, bag: Bag, topics: Topics) -> Validator:
     topics = topics._replace(poses=topics.poses or task.poses_topic or poses)
     encoder, joint = '', parameters.distinct_encoder_joint
     near = find_in_namespace(bag, [OUTPUT_ENCODER], topics.output).get(OUTPUT_ENCODER)
-    given = task.encoder_topic or near
-    if parameters.absolute or (given and TRANSMISSION_ERROR in further):
-        encoder = find_encoder_topic(bag, topics.rotor, given, joint)
+    if parameters.absolute or task.encoder_topic or (near and TRANSMISSION_ERROR in further):
+        encoder = find_encoder_topic(bag, topics.rotor, task.encoder_topic or near, joint)
     elif TRANSMISSION_ERROR in further:
         encoder = topic_with_joint(bag, topics.rotor, joint)
     return Validator(task, topics, further, encoder=encoder)
@@ -193,7 +192,7 @@ def _played(
     given, joints = {'rotor': task.rotor_topic}, [task.parameters.rotor_joint]
     rotor, *_ = find_topics(bag, given, outputs=False, joints=joints, namespace=task.namespace)
     encoder, joint = '', task.parameters.distinct_encoder_joint
-    if task.parameters.absolute:
+    if task.parameters.absolute or task.encoder_topic:
         encoder = find_encoder_topic(bag, rotor, task.encoder_topic, joint)
     task, taken = _of_only_joint(task, bag, rotor)
     total = count_due(bag, [rotor]) if progress else None

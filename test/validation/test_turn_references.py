@@ -14,7 +14,7 @@ from live import rotor_bytes
 from node_loop import ENCODER, answered
 from replaying import SECOND, edited
 from rosbag2_recorder import Message, record
-from shipped_bags import JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, read_bag, write_bag
+from shipped_bags import BAGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, read_bag, write_bag
 from validating import texts, validate
 
 from gear_kinematics.bag import MessagesByTopic
@@ -268,6 +268,15 @@ def test_of_two_other_encoders_one_is_named(tmp_path):
     for given, agrees in (one, True), (other, False):
         done = gearkin_here('validate', out, '--encoder-topic', given)
         assert (done.returncode == 0, AGREES in done.stdout) == (agrees, agrees)
+
+
+@pytest.mark.parametrize('command', ['compute', 'validate'])
+def test_an_encoder_topic_that_is_not_recorded_is_refused(tmp_path, command):
+    """Even where the parameters need none."""
+    bags = [BAGS / 'servo_point_to_point', tmp_path / 'out'][: 1 + (command == 'compute')]
+    done = gearkin_here(command, *bags, '--encoder-topic', '/none')
+    assert done.returncode == 2
+    assert 'no topic /none of type' in done.stdout + done.stderr
 
 
 @pytest.mark.live
