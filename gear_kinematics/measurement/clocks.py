@@ -52,7 +52,7 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
     step = float(np.median(steps))
     minutes = np.abs(steps - step - 40.0) < 0.5 * step  # from 59 to 100
     if step <= _MOST_STEP and minutes.any() and np.all(times % 100.0 < 60.0):  # noqa: PLR2004, s
-        raise ValueError(f'the times in {clock.name} are hours, minutes and seconds: divide them')
+        raise ValueError(f'the times in {clock.name} are hours, minutes and seconds: add colons')
     speed = float(np.quantile(np.abs(np.diff(angle)[later]) / steps, MOST))
     if role == 'angle':  # a locked shaft, whose times only give the order
         speed = 0.0
