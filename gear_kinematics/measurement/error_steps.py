@@ -35,6 +35,7 @@ class Steps(NamedTuple):
     limit: float  # greatest step of a gear, rad
     late: Array  # (m,), rad: change of the error by a late encoder
     spikes: NDArray[np.bool_]  # (m,): stray readings that are no such steps
+    leaps: Array  # (m,), rad: by how far readings leave those before and after, to the same side
 
 
 class IdealMotion(NamedTuple):
@@ -101,7 +102,7 @@ def impossible_steps(error: Array, motion: IdealMotion) -> Steps | None:
     beyond[rows] = np.abs(steps[rows]) > limit + motion.late_at(rows, motion.spans[rows])
     slipped = _slipped(level, usually, reverses, motion)
     late = _DELAYED * motion.delay * np.gradient(usual(motion.ideal))
-    return Steps(beyond | slipped, slipped, limit, late, _spikes(error, reverses, motion))
+    return Steps(beyond | slipped, slipped, limit, late, *_spikes(error, reverses, motion))
 
 
 def _slipped(
@@ -143,18 +144,23 @@ def _rise(error: Array, beyond: Array, rows: NDArray[np.bool_]) -> float:
     return high - low
 
 
-def _spikes(error: Array, reverses: NDArray[np.bool_], motion: IdealMotion) -> NDArray[np.bool_]:
+def _spikes(
+    error: Array, reverses: NDArray[np.bool_], motion: IdealMotion
+) -> tuple[NDArray[np.bool_], Array]:
     """Find readings that leave the five before and the five after, however slow the motion, (m,).
 
     They leave both to the same side, unlike those in which play is crossed, and by more than a
-    delay explains. At a reversal, play and a delay together do the same.
+    delay explains. At a reversal, play and a delay together do the same. Also returns by how far
+    all readings leave both, (m,), rad.
     """
     level, far = usual(error), _WINDOW // 2 + 1
     level = np.pad(level, far, 'edge')
     before, after = error - level[: -2 * far], error - level[2 * far :]
-    off = np.minimum(np.abs(before), np.abs(after)) * ~np.append(reverses, True)
+    off = np.minimum(np.abs(before), np.abs(after))
+    leaps = np.where(before * after > 0.0, np.copysign(off, before), 0.0)
+    off *= ~np.append(reverses, True)
     most = max(_SPIKE * float(np.quantile(off, 0.9)), _LEAST_SPIKE)
-    found: NDArray[np.bool_] = (off > most) & (before * after > 0.0)
+    found: NDArray[np.bool_] = (off > most) & (leaps != 0.0)
     rows = np.flatnonzero(found)
     found[rows] = off[rows] > most + motion.late_at(rows, _WINDOW)
-    return found
+    return found, leaps

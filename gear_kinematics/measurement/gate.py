@@ -31,6 +31,9 @@ _ALIKE, _SHORTEST = 16, 1e-6
 _FROZEN = math.radians(3.0)  # motion of the output by one encoder while the other stands still
 _LEAST_SHARE = 0.25  # of samples that are used; if it were less, the ratio is not understood
 _CLEAR = 4.0  # times the limit of a step: slips are clear, however short the parts between them
+_AROUND, _SAME_PASS, _NEAREST = 60, 25, 5
+"""Samples on either side at a similar output angle that are compared with a stray reading, of
+which so many around it are of its own pass; number of the nearest ones that decide."""
 _RANGE = 0.9  # share of its travel by which the rotor steps where its encoder wraps
 NO_ENCODER = 2e-6
 """rad, peak to peak, 0.4 arc seconds: no gear with an encoder at its output deviates by less."""
@@ -70,6 +73,7 @@ def gated(recording: Recording) -> Recording:
     stays = math.ceil(_STAYS * max(1.0, shown))
     kept, jumps = _followed(error, rows, steps, compared.period, stays)
     kept = kept[~steps.spikes[kept]]
+    kept = np.union1d(kept, _of_gear(steps.leaps, compared.ideal, kept))
     at, path = np.array(jumps, int), compared.path
     around = (path[a : b + 2] for a, b in both.before[rows[np.array([at - 1, at])]].T.tolist())
     if any(np.ptp(each) > _RANGE * np.ptp(path) for each in around):
@@ -182,6 +186,24 @@ def _followed(
             last = far
             reached = np.concatenate([ahead[::-1], reached])[:stays]
     return np.sort(np.concatenate(kept)), sorted(jumps)
+
+
+def _of_gear(leaps: Array, ideal: Array, kept: Array) -> Array:
+    """Find readings that are not kept, but leap, rad, as others do at the same output angle.
+
+    As at a damaged tooth, most of the nearest ones of other passes leap like them.
+    """
+    stray = np.setdiff1d(np.arange(kept[0], kept[-1] + 1), kept)
+    # A stray reading does not tell its own angle.
+    angle = np.remainder(np.interp(np.arange(len(ideal)), kept, ideal[kept]), TURN)
+    order = np.argsort(angle)
+    places = np.searchsorted(angle[order], angle[stray])[:, np.newaxis]
+    others = order[np.clip(places + np.arange(-_AROUND, _AROUND), 0, len(order) - 1)]
+    apart = np.abs(angle[others] - angle[stray, np.newaxis])
+    apart[np.abs(others - stray[:, np.newaxis]) < _SAME_PASS] = np.inf
+    nearest = np.take_along_axis(others, np.argsort(apart, axis=1)[:, :_NEAREST], axis=1)
+    left = np.abs(leaps[stray] - np.median(leaps[nearest], axis=1))
+    return np.asarray(stray[left < 0.5 * np.abs(leaps[stray])])
 
 
 def _without(both: Encoders, rotor: Array, kept: Array, stray: Array) -> Encoders:

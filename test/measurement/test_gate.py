@@ -367,6 +367,23 @@ def test_samples_that_are_lost_where_strokes_reverse_are_no_slip(gate, seed, del
     assert after is before
 
 
+@pytest.mark.parametrize(('rate', 'width'), [(50.0, 1.0), (200.0, 0.3)])
+def test_a_damaged_tooth_is_no_stray_reading(gate, config, rate, width):
+    """It shows in one to three samples of each pass, but in all passes."""
+    times = np.arange(40.0 * rate) / rate
+    ideal = ramped_strokes(math.radians(300.0), 6.0, 0.5)(times)
+    tooth = math.radians(1.0) * np.exp(-(((np.degrees(ideal) - 100.0) / width) ** 2))
+    output = with_play(ideal, 5.0 * ARC_MINUTE) + tooth
+    output += np.random.default_rng(1).normal(0.0, 3e-5, len(times))
+    before, after = gate(np.column_stack([times, -19.0 * ideal, output]))
+    assert after is before
+    output[[999, 1025]] += math.radians(0.5)
+    _, after = gate(np.column_stack([times, -19.0 * ideal, output]))
+    (fault,) = after.faults
+    assert fault.values['moments'] == pytest.approx(times[[999, 1025]])
+    assert measure(after, config).transmission.forward.value > math.radians(0.9)
+
+
 @pytest.mark.parametrize('late', [-6, 6])
 def test_a_stray_reading_is_left_out_where_strokes_reverse_at_once(gate, late):
     """At 1 kHz it is beyond the change of the error in 1 ms by a delay, but not in 10 ms."""
