@@ -386,8 +386,7 @@ ENCODERS = {
         'time,motor_state,motor_pos,output,load,load_pos', '{:.5f}'),
     'units of other quantities': lambda t, r, o: written([40.0 + np.sin(t), t, r, r, o, o, t],
         'T,t,motor [°C],motor_pos,load [N],load_pos,output [V]', '{:.5f}'),
-    'a word beside time': lambda t, r, o: written(
-        [t, r, o], 'robot_time,motor_ang,gearbox_ang'),
+    'a word beside time': plain('robot_time,motor_ang,gearbox_ang'),
     'Chinese': lambda t, r, o: written(
         [t, r * DEG, o * DEG], '时间\uff08s\uff09,电机角度\uff08°\uff09,输出角度\uff08°\uff09'),
     'Chinese of Windows': plain('时间戳,电机编码器(deg),输出轴角度(deg)', angle=DEG, code='gbk'),
