@@ -293,7 +293,7 @@ def _names(
 def _cells_above(line: str, separator: str, width: int) -> list[str]:
     """Divide a line above the numbers; names in a comment may be separated otherwise."""
     cells = cells_of(line.lstrip('#%/ '), separator)
-    if len(cells) >= width:
+    if len(cells) == width or (len(cells) > width and separator != ' '):
         return cells
     others = [cells_of(line.lstrip('#%/ '), one) for one in _SEPARATORS]
     others.append(re.split(r'\s{2,}', line.strip('#%/ \n')))

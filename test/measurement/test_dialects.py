@@ -149,6 +149,7 @@ ENCODERS = {
     'semicolons': plain('time;rotor;output', ';'),
     'spaces': plain('time  rotor output', '   '),
     'names in a comment': plain('# time, rotor, output', ' '),
+    'names of two words': plain('Time (s)   Rotor angle (rad)   Output angle (rad)', ' '),
     'UTF-8 with BOM': plain(code='utf-8-sig'),
     'UTF-16': plain(code='utf-16'),
     'UTF-16 without BOM': plain(code='utf-16-le'),
@@ -433,6 +434,8 @@ ENCODERS = {
         [moved(t, (200, 40.0), (201, 40.0), (700, 1.0)), r, o], NAMES),
 }  # fmt: skip
 RAMPS = {
+    'a name that stays': lambda t, a, q: written(
+        [t, t, a, q], 'time,name,angle,torque', ('{:.2f}', lambda _: 'Run A', '{:.6f}', '{:.6f}')),
     'N·cm': lambda t, a, q: written([t, a * DEG, q * 100], 't,Angle [°],Torque [Ncm]'),
     'kg·cm': lambda t, a, q: written([t, a * DEG, q / 0.0980665], 't,angle_deg,torque_kgcm'),
     'lb-in': lambda t, a, q: written([t, a * DEG, q / 0.112985], 't,angle_deg,load [lb-in]'),
@@ -598,6 +601,8 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
          'steps of 1 do not .* --time-column'),
         (lambda t, r, o: written([t, r, o], NAMES).translate(str.maketrans('.', ',')),
          'rows of 6 cells are below 3 names'),
+        (lambda t, r, o: written([t, r, o], 'time rotor angle output angle', mark=' '),
+         'rows of 3 cells are below 5 names'),
         (lambda t, _, o: written([t, 0.4 * np.sin(t), o], 'time,angle,torque'),
          'turns by 45.8° under torque'),
         (lambda t, _, o: written([t, 1e-3 * o, np.round(1e3 * o)], 'time,angle,torque'),
