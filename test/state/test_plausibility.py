@@ -288,6 +288,29 @@ def test_readings_that_were_held_up_are_believed_at_each_phase_of_a_motion(first
         assert judge.judge(float(angle), START + int(stamp)) is BELIEVED
 
 
+def test_a_wrong_reading_in_a_second_burst_is_out_of_reach():
+    """The driver is held up twice, for 11 ms; the rotor can turn 1.6 rad within 2.5 ms."""
+    arrivals = [START + 2_000_000 * k for k in range(100)]
+    for regular in (3, 0):
+        arrivals += [arrivals[-1] + 11_000_000 + 10_000 * k for k in range(5)]
+        arrivals += [arrivals[-1] + 2_000_000 * k for k in range(1, 1 + regular)]
+    judge = Plausibility(*LIMITS)
+    beliefs = [judge.judge(0.08 * k + 2.5 * (k == 111), stamp) for k, stamp in enumerate(arrivals)]
+    assert [k for k, each in enumerate(beliefs) if each is not BELIEVED] == [111]
+
+
+@pytest.mark.parametrize('first', range(5))
+def test_a_rotor_that_starts_while_its_driver_is_held_up_is_believed(first):
+    """At rest, it was read each 20 ms; then 8 readings come at once."""
+    n = np.arange(28)
+    times = 0.02 * (n - 20 - first).clip(0)
+    stamps = START + 20_000_000 * np.where(n < 20, n, 28) + n
+    judge = Plausibility(*LIMITS)
+    assert judge.judge(0.001, START - SECOND) is BELIEVED
+    for stamp, angle in zip(stamps, 1500.0 * times**2, strict=True):
+        assert judge.judge(float(angle), int(stamp)) is BELIEVED
+
+
 @pytest.mark.parametrize('first', range(5))
 def test_a_rotor_that_starts_within_a_burst_is_believed(first):
     """Each 0.1 s come 5 readings that were taken 20 ms apart."""
@@ -297,6 +320,16 @@ def test_a_rotor_that_starts_within_a_burst_is_believed(first):
     assert judge.judge(0.001, START - SECOND) is BELIEVED
     for stamp, angle in zip(START + 100_000_000 * (n // 5) + n, 3000.0 * times**2, strict=True):
         assert judge.judge(float(angle), int(stamp)) is BELIEVED
+
+
+def test_regular_readings_of_a_rotor_at_rest_are_no_pauses():
+    """A second driver sends right behind each of them, 40 ms apart."""
+    judge = Plausibility(*LIMITS)
+    assert judge.judge(0.001, START - SECOND) is BELIEVED
+    for stamp in range(START, START + SECOND, 40_000_000):
+        assert judge.judge(0.0, stamp) is BELIEVED
+        if stamp > START + 40_000_000:
+            assert judge.judge(3.0, stamp + 1000) is Belief.IMPLAUSIBLE
 
 
 def test_a_pause_behind_the_first_reading_hides_no_wrong_one():

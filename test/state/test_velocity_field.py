@@ -221,6 +221,17 @@ def test_velocities_of_a_slow_driver_are_no_sign_of_a_delay(rate, age):
     assert rotor.velocity_field.meaning is None
 
 
+def test_velocities_of_one_count_or_none_of_a_slow_driver_are_no_unknown_quantity():
+    count = TURN / 64.0
+
+    def fields(time):
+        now, before = (3.0 * math.sin(t + 0.3) // count * count for t in (time, time - 0.002))
+        return now, (now - before) / 0.002
+
+    rotor, _ = heard(fields, 10, 30.0)
+    assert rotor.velocity_field.in_recording is None
+
+
 @pytest.mark.parametrize(('rate', 'delay'), [(20, 0.06), (20, -0.06), (30, 0.05), (30, -0.05)])
 def test_delay_of_more_than_an_interval_of_a_slow_driver_is_named(rate, delay):
     def fields(time):
