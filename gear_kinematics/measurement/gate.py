@@ -208,17 +208,15 @@ def _of_gear(leaps: Array, ideal: Array, kept: Array) -> Array:
 
 def _without(both: Encoders, rotor: Array, kept: Array, stray: Array) -> Encoders:
     """Keep some rows, and the rotor's samples around them that are not stray themselves."""
-    measured = both.measured
+    measured, time, of_rotor = both.measured, both.seconds, both.rotor.seconds
     bad = np.zeros(len(rotor), bool)
     for row in stray.tolist():
         place = int(np.searchsorted(kept, row))
         early, late = kept[place - 1], kept[place]
-        share = (both.seconds[row] - both.seconds[early]) / max(
-            both.seconds[late] - both.seconds[early], 1e-9
-        )
+        share = (time[row] - time[early]) / max(time[late] - time[early], 1e-9)
         line = measured[early] + share * (measured[late] - measured[early])
         begin, end = both.before[early], min(both.before[late] + 1, len(rotor) - 1)
-        seconds = both.rotor.seconds[begin : end + 1]
+        seconds = of_rotor[begin : end + 1]
         path = np.interp(seconds, seconds[[0, -1]], rotor[[begin, end]])
         off = np.abs(rotor[begin : end + 1] - path)
         if off.max() > abs(math.remainder(measured[row] - line, TURN)):
@@ -235,5 +233,5 @@ def _without(both: Encoders, rotor: Array, kept: Array, stray: Array) -> Encoder
         before=places[both.before[kept]],
         share=both.share[kept],
         measured=measured[kept],
-        start=both.start + float(both.rotor.seconds[good][0]),
+        start=both.start + float(of_rotor[good][0]),
     )
