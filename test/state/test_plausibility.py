@@ -481,6 +481,18 @@ def test_a_rotor_that_stops_at_once_is_named(settings, held_up, rate):
     assert rotor.referenced != settings.single_turn
 
 
+@pytest.mark.parametrize('settings', [MULTI, SINGLE], ids=['multi-turn', 'single-turn'])
+def test_a_slow_rotor_can_stand_right_behind_a_burst(settings):
+    """A single-turn encoder passes its zero in the pause before."""
+    times = np.arange(500) / 500.0
+    angles = 5.0 * np.minimum(times, 0.5) - 2.49
+    times[247:251] = 0.5 + 1e-4 * np.arange(-3, 1)
+    if settings.single_turn:
+        angles = np.mod(angles, TURN)
+    rotor, _ = fed(settings, messages(times, angles))
+    assert complaints(rotor) == ({}, None, None)
+
+
 @pytest.mark.parametrize(('rate', 'speed', 'repeated', 'offset'), [
     (100, 100.0, 0.5, 0.0), (200, -60.0, 0.1, 0.0), (500, 300.0, 0.03, 0.0),
     (500, 300.0, 0.5, 0.0), (1000, 20.0, 0.04, 0.0), (1000, 60.0, 0.9, 0.0),
