@@ -243,7 +243,33 @@ def bounds(received: Any, recording: Recording, uneven: Any) -> Any:
     # Where stamps are uneven, the speed is not known.
     before = np.roll(period, 1)
     even = (np.minimum(period, before) > 0.5 * np.maximum(period, before)) & ~uneven
-    return np.where(even & np.roll(even, 1), np.minimum(bound, far), far)
+    bound = np.where(even & np.roll(even, 1), np.minimum(bound, far), far)
+    return np.maximum(bound, in_bursts(period, speed, noise))
+
+
+def in_bursts(period: Any, speed: Any, noise: Any) -> Any:
+    """Find the bounds of readings that come in a burst after a pause, rad; 0 of others.
+
+    They are as far apart as those before it, and their speed may have changed in all this time.
+    Of bursts that follow each other, only the limit of the speed is known. Arguments: times since
+    the reading before, s, speeds, rad/s, and noise, rad.
+    """
+    bounds, fast, hard = 0.0 * period, _DEFAULT.max_rotor_speed, _DEFAULT.max_rotor_acceleration
+    pause = since = usual = before = 0.0
+    for k in range(2, len(period)):
+        since += period[k - 1]
+        if period[k - 1] > max(2.0 * period[k], pause - since):
+            again = pause > 0.0 and since < 3.0 * pause
+            pause, since, before = period[k - 1], 0.0, speed[k - 2]
+            usual = math.nan if again else period[k - 2]
+        if since + period[k] < pause:
+            if math.isnan(usual):
+                bounds[k] = fast * 2.25 * pause + noise[k]
+                continue
+            time = usual + min(1.25 * usual, STALEST)
+            most = before + hard * (pause + since + time)
+            bounds[k] = 2.5 * hard * time * time + most * (1.25 * time - usual) + 3.25 * noise[k]
+    return bounds
 
 
 class Lines:
