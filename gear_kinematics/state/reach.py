@@ -85,14 +85,16 @@ class RotorLimits(NamedTuple):
         """The speed, rad/s, that the rotor had at least; 0 if it can stand at once."""
         if not (last[3] and former[3]):
             return 0.0
-        position, changed, step, span = last
-        way, span = step + former[2], span + former[3]
+        position, changed, step, took = last
         late = held_up.late(changed, changed)
-        if late > 0.0:  # stamps of a burst tell no speed, the one before the pause does
+        ways = [(step + former[2], took + former[3] + max(0.0, late))]
+        if late > 0.0:  # stamps of a burst tell little of the speed, the one before the pause more
             way = math.remainder(position - held_up.position, self.period)
-            span = changed - held_up.end + held_up.length
-        time = span * 1e-9 + _stale(last, former, late)
-        speed = (abs(way) - noise) / time - self.acceleration * time
+            ways.append((way, changed - held_up.end + held_up.length))
+        stale, speed = _stale(last, former, late), 0.0
+        for way, span in ways:
+            time = span * 1e-9 + stale
+            speed = max(speed, (abs(way) - noise) / time - self.acceleration * time)
         return speed if speed * abs(speed) > 2.0 * self.acceleration * noise else 0.0
 
     def reach(
