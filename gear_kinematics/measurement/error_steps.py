@@ -42,13 +42,14 @@ class IdealMotion(NamedTuple):
     """The ideal motion of the output in m samples."""
 
     ideal: Array  # (m,), rad
+    calm: Array  # (m,), rad: its running median, without stray readings
     spans: Array  # (m - 1,): times between the samples, in usual periods, at least 1
     delay: float  # usual periods by which either encoder may be late
 
     def late_at(self, rows: Array, spans: Array | int) -> Array:
         """Return the greatest change of the error by a delay around rows, within spans, rad."""
         around = _REVERSAL + math.ceil(self.delay)
-        speeds = np.pad(np.diff(usual(self.ideal)), around)
+        speeds = np.pad(np.diff(self.calm), around)
         near = np.lib.stride_tricks.sliding_window_view(speeds, 2 * around + 1)[rows]
         return np.asarray(_DELAYED * np.minimum(self.delay, spans) * np.ptp(near, axis=1))
 
@@ -75,10 +76,10 @@ class IdealMotion(NamedTuple):
         near |= directions(self.ideal, _MOST_LOST)[1:] == 0
         ways = np.where(near, np.sign(np.where(after, after, moved)), 0.0)
         # A stray reading of the rotor moves further than the rotor usually, and than it around.
-        path = np.pad(usual(self.ideal), _WINDOW, 'edge')
+        path = np.pad(self.calm, _WINDOW, 'edge')
         paces = np.abs(path[_WINDOW:] - path[:-_WINDOW]) / _WINDOW
         fastest = np.maximum(paces[: len(moved)], paces[_WINDOW + 1 :])
-        fastest = np.maximum(fastest, np.quantile(np.abs(np.diff(usual(self.ideal))), 0.98))
+        fastest = np.maximum(fastest, np.quantile(np.abs(np.diff(self.calm)), 0.98))
         # Where it turns back within a step, as where samples are lost, it has moved further.
         moved[1:-1][moved[:-2] * moved[2:] <= 0.0] = math.inf
         return 1.1 * np.minimum(np.abs(moved), self.spans * fastest), ways
@@ -101,8 +102,8 @@ def impossible_steps(error: Array, motion: IdealMotion) -> Steps | None:
     rows = np.flatnonzero(reverses & beyond)
     beyond[rows] = np.abs(steps[rows]) > limit + motion.late_at(rows, motion.spans[rows])
     slipped = _slipped(level, usually, reverses, motion)
-    late = _DELAYED * motion.delay * np.gradient(usual(motion.ideal))
-    return Steps(beyond | slipped, slipped, limit, late, *_spikes(error, reverses, motion))
+    late = _DELAYED * motion.delay * np.gradient(motion.calm)
+    return Steps(beyond | slipped, slipped, limit, late, *_spikes(error, level, reverses, motion))
 
 
 def _slipped(
@@ -145,15 +146,15 @@ def _rise(error: Array, beyond: Array, rows: NDArray[np.bool_]) -> float:
 
 
 def _spikes(
-    error: Array, reverses: NDArray[np.bool_], motion: IdealMotion
+    error: Array, level: Array, reverses: NDArray[np.bool_], motion: IdealMotion
 ) -> tuple[NDArray[np.bool_], Array]:
     """Find readings that leave the five before and the five after, however slow the motion, (m,).
 
     They leave both to the same side, unlike those in which play is crossed, and by more than a
     delay explains. At a reversal, play and a delay together do the same. Also returns by how far
-    all readings leave both, (m,), rad.
+    all readings leave both, (m,), rad. The `level` of the error is its running median, (m,), rad.
     """
-    level, far = usual(error), _WINDOW // 2 + 1
+    far = _WINDOW // 2 + 1
     level = np.pad(level, far, 'edge')
     before, after = error - level[: -2 * far], error - level[2 * far :]
     off = np.minimum(np.abs(before), np.abs(after))

@@ -66,7 +66,8 @@ def gated(recording: Recording) -> Recording:
         return replace(recording, faults=(*recording.faults, fault))
     period = _period(both.seconds)
     spans = np.maximum(np.diff(both.seconds[rows]) / period, 1.0)
-    if not (steps := impossible_steps(error, IdealMotion(compared.ideal, spans, _DELAY / period))):
+    motion = IdealMotion(compared.ideal, usual(compared.ideal), spans, _DELAY / period)
+    if not (steps := impossible_steps(error, motion)):
         return recording
     # A stray reading of the rotor shows in all rows that are interpolated from it.
     shown = 2 * samples / len(both.rotor.stamp) if both.interpolated else 1.0
