@@ -2,12 +2,6 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # mks-servo42-rs 1.0.4 (Rust): a closed-loop stepper that is 1° from its goal is read as 0.5° from it.
 #
-# By the protocol of the MKS SERVO42C, an error of 1° is answered as e0 00 b7 97, which is 183 of 65536 units a turn;
-# the crate documents it as "1° error ≈ 182 encoder units (65536/360)". Expected of to_degrees() of the parsed answer:
-# 1°. What happens: the units are divided by 360 alone, so that each error is 0.506 times as large: 90° is 45.5°. The
-# angle of the shaft and that of the encoder are right. Expected of angle_to_steps(-90.0, 16.0), whose result has no
-# sign: 800 steps for the direction that the caller gives, or an error. What happens: 0 steps, so that the motor stands
-# still.
 # By the protocol of the MKS SERVO42C, an error of 1° is sent as e0 00 b7 97, which is 183 of 65536 units a turn; the
 # crate documents it as "1° error ≈ 182 encoder units (65536/360)". Expected of to_degrees() of the parsed answer: 1°.
 # What happens: the units are divided by 360 alone, so that each error is 0.506 times as large: 90° is 45.5°. The angle

@@ -6,14 +6,10 @@
 # ErrorPositionalLimits is returned ("never a silent violation"). The joint rests at 1 rad and is to pass -1 rad at
 # +1.5 rad/s, with at most 3 rad/s, 1 rad/s² and 2 rad/s³. To reach 1.5 rad/s it needs a run of about
 # 1.5 · (1.5/1 + 1/2)/2 = 1.5 rad, so that it turns at -2.49 rad. Expected with a limit of -2 rad: the error.
-# What happens: validate_input() accepts the motion with both checks, and update() leads the joint to -2.49 rad.
-# An error comes only for limits above -1.71 rad, where the acceleration has just become constant:
-# get_position_extrema() misses each turn of the joint at a constant acceleration. It does so in ruckig,
-# too (0.19.4; its issue 215 about extrema is open), which has no such guarantee.
-# What happens: validate_input() accepts the motion with both checks, and update() leads the joint to -2.49 rad. An error
-# comes only for limits above -1.71 rad, where the acceleration has just become constant: get_position_extrema() misses
-# each turn of the joint at a constant acceleration. It does so in ruckig, too (0.19.4; its issue 215 about extrema is
-# open), which has no such guarantee.
+# What happens: validate_input() accepts the motion with both checks, and update() leads the joint to -2.49 rad. An
+# error comes only for limits above -1.71 rad, where the acceleration has just become constant:
+# get_position_extrema() misses each turn of the joint at a constant acceleration. It does so in ruckig, too (0.19.4;
+# its issue 215 about extrema is open), which has no such guarantee.
 # For us: sample the trajectory, and compare the positions with the limits yourself before a joint follows it.
 #
 # Exit code 0: still so. Needs cargo; installs the version into a temporary folder.
