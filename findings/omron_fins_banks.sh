@@ -6,7 +6,7 @@
 # the codes 60 to 68 (Omron's manual of FINS commands, W342; fins 1.0.5 for Python has the same codes). The bank ED is
 # missing in the table of the package, and EE and EF have the codes of ED and EE, for words and for bits. Expected of
 # read('EE_100'): the word 100 of this bank. What happens: that of ED, without an error, and write('EF_100', 7) changes
-# EE. No address leads to EF. read('ED_100') is an error. The banks up to EC and E10 to E18 are right.
+# EE. No address leads to EF. read('ED_100') is an error. The words of E0 to EC and of E10 to E18 are right.
 # A PLC is simulated that keeps its banks apart; it tells the banks by the codes of the manual.
 # For us: keep positions and goals in D or in the banks up to EC.
 #
