@@ -29,7 +29,7 @@ TOML
 cat > src/main.rs <<'RUST'
 use allan::{Allan, DataType};
 
-/// The deviations at tau 1, 2, 4 and 10 of 20 000 speeds, or of the angles that they sum to, with a gap at each `gap`-th.
+/// The deviations at tau 1, 2, 4 and 10 of 20 000 speeds, or of their sums, the angles, with a gap at each `gap`-th.
 fn deviations(mean: f64, gap: usize, angles: bool) -> Vec<f64> {
     let kind = if angles { DataType::Phase } else { DataType::Frequency };
     let mut allan = Allan::builder().data_type(kind).build_allan();

@@ -57,7 +57,8 @@ fn distance(g: f64, h: f64, k: f64) -> f64 {
     cube.iter().flatten().fold(0.0, |greatest: f64, value| greatest.max(value.abs()))
 }
 
-/// The greatest speed, and the last sample at which it is not within 1 % of that of a joint which starts to turn at 1 count a sample.
+/// The greatest speed, and the last sample at which it is not within 1 % of that of a joint, which starts to turn at
+/// 1 count a sample.
 fn started(g: f64, h: f64, k: f64) -> (f64, usize) {
     let mut filter = GHKFilter::new(0.0, 0.0, 0.0, g, h, k, 1.0);
     let (mut greatest, mut last): (f64, usize) = (0.0, 0);

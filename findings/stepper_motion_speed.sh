@@ -82,7 +82,8 @@ impl OutputPin for Direction {
     }
 }
 
-/// The number of steps of the last of several moves, its duration in s and its greatest speed and acceleration in °/s and °/s².
+/// The number of steps of the last of several moves, its duration in s, and its greatest speed and acceleration in °/s
+/// and °/s².
 fn measured(targets: &[f32], trajectory: Option<&str>) -> (usize, f64, f64, f64) {
     let config: SystemConfig = toml::from_str(CONFIG).unwrap();
     let bench = Bench::default();
