@@ -1,14 +1,14 @@
 #!/bin/bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# fx3u-mcprotocol 1.0.0 (Python): the limit switch X10 of an FX3U is read from X12, and -5 counts as 65531.
+# fx3u-mcprotocol 1.0.0 (Python): the limit switch X10 of an FX3U is read from X12, and X20 from X24.
 #
 # The inputs and outputs of FX3 PLCs have octal names: X7 is followed by X10. In frames they are counted through, so
 # that X10 is the device 8: the manual of the FX3U-ENET-ADP says of an output, "Y20" = 10 (hexadecimal), in chapter 7.5.
 # The package is for these PLCs alone and takes their names; expected of readBit('X10'): the input X10.
 # What happens: the name is taken as decimal, so that the device 10 is read, which is X12, and X20 is read from X24. X0
-# to X7, M and D are right. X8 and X9, which no such PLC has, are read from X10 and X11. Nothing is reported. A register
-# of -5 is read as 65531 by readReg(). A server on this machine answers here as the adapter does by the manual.
-# For us: name X and Y by their decimal numbers (X10 as X8), and take the sign of a register from bit 15.
+# to X7, M and D are right. X8 and X9, which no such PLC has, are read from X10 and X11. Nothing is reported. A server
+# on this machine answers here as the adapter does by the manual.
+# For us: name X and Y by their decimal numbers (X10 as X8).
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
 set -euo pipefail
@@ -24,7 +24,7 @@ from fx3u_mcprotocol import FX3UClient
 
 # One input alone is on at a time, by its number in frames; the flag M12 is on.
 on = {'X': set(), 'M': {12}}
-REGISTERS = {100: -5, 101: 1000}
+REGISTERS = {100: 5, 101: 1000}
 
 
 def answer(frame):
@@ -35,7 +35,7 @@ def answer(frame):
     if kind == '00':
         bits = ''.join('1' if number in on[name] else '0' for number in numbers)
         return '8000' + bits + '0' * (count % 2)
-    return '8100' + ''.join(f'{REGISTERS[number] & 0xFFFF:04X}' for number in numbers)
+    return '8100' + ''.join(f'{REGISTERS[number]:04X}' for number in numbers)
 
 
 def serve():
@@ -59,7 +59,7 @@ words = plc.readRegs('D100', 2)
 flag = plc.readBit('M12')
 plc.close()
 print('Inputs and where they are read:', read)
-print('Registers of -5 and 1000:', words, 'M12, which is on:', flag)
+print('Registers of 5 and 1000:', words, 'M12, which is on:', flag)
 assert read == {'X0': 'X0', 'X7': 'X7', 'X8': 'X10', 'X10': 'X12', 'X20': 'X24'}
-assert words == [65531, 1000] and flag
+assert words == [5, 1000] and flag
 PYTHON
