@@ -101,7 +101,7 @@ class TwinGear:
     def __post_init__(self) -> None:
         """Check the gear, and compute its dead bands."""
         faults = []
-        if math.inf in self.stiffness:
+        if not all(0.0 < each < math.inf for each in self.stiffness):
             faults.append('branch_stiffness must be greater than 0: no simulated branch is rigid')
         if not self.parameters.loads.rotor_inertia:
             faults.append('loads.rotor_inertia must be greater than 0 for a simulation')

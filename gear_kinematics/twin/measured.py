@@ -22,6 +22,7 @@ from gear_kinematics.kinematics.preload import braced
 from gear_kinematics.twin.gear import LoadingCurve, TwinGear
 
 Report = Mapping[str, Any]
+_ROUNDING = 1e-6  # share of the greatest stiffness of a middle line by which it may fall
 
 
 def measured(gear: TwinGear, reports: Iterable[Path]) -> tuple[TwinGear, list[str]]:
@@ -35,7 +36,7 @@ def measured(gear: TwinGear, reports: Iterable[Path]) -> tuple[TwinGear, list[st
     notes: list[str] = []
     for path in reports:
         try:
-            data = json.loads(path.read_bytes())
+            data = json.loads(path.read_bytes(), parse_float=_finite, parse_constant=_finite)
             if 'recordings' in data:
                 [recording] = data['recordings']
                 gear = _loaded(gear, recording, notes)
@@ -51,16 +52,25 @@ def measured(gear: TwinGear, reports: Iterable[Path]) -> tuple[TwinGear, list[st
     return gear, notes
 
 
+def _finite(text: str) -> float:
+    """Parse a number in JSON, in which Python also reads NaN, Infinity and 1e999."""
+    if not math.isfinite(number := float(text)):
+        raise ValueError(f'{text} is no number')
+    return number
+
+
 def _set(gear: TwinGear, data: Report) -> TwinGear:
     """Set the stiffnesses, and the preload or the play at the pins."""
     braced(gear.parameters.mechanism)
     # Infinity is null in JSON.
     branch_a, branch_b, shaft = (
-        math.inf if data['stiffness'][part] is None else float(data['stiffness'][part])
+        math.inf if data['stiffness'][part] is None else data['stiffness'][part]
         for part in ('branch_a', 'branch_b', 'shaft')
     )
     pins = data['setting']
     torque, turn = pins['preload'], pins['ring_turn'] - (data['phase'] or 0.0)
+    if pins['play'] < 0.0:
+        raise MechanismError(['the play is less than 0'])
     return replace(
         gear,
         parameters=replace(gear.parameters, preload=math.copysign(torque, turn)),
@@ -75,13 +85,19 @@ def _set(gear: TwinGear, data: Report) -> TwinGear:
 def _loaded(gear: TwinGear, data: Report, notes: list[str]) -> TwinGear:
     """Set the curve, or friction and stiffness at no load; note what the ramps do not show."""
     line, count = data['middle_line'], len(gear.stiffness)
-    mean_friction = float(np.mean(line['friction']))
+    figure, mean_friction = data['friction'], max(0.0, float(np.mean(line['friction'])))
+    friction = max(0.0, figure['value'] or 0.0) or mean_friction  # noise may make it negative
+    if (figure['value'] or 0.0) < -(figure.get('expanded_uncertainty') or math.inf):
+        raise MechanismError(['the friction is less than 0'])
     if not gear.preload:
         # A load winds up the locked gear by its rotor, or turns the output back.
         sign = -1 if data['measured'] else 1
         rows = zip(line['angle'], line['load'], line['friction'], strict=True)
         points = sorted((sign * angle, sign * load, friction) for angle, load, friction in rows)
         curve = LoadingCurve(*zip(*points, strict=True))
+        unloaded = (0.0, 0.0) in zip(curve.wind_up, curve.torque, strict=True)
+        if not unloaded or min(curve.stiffness) < -_ROUNDING * max(curve.stiffness):
+            raise MechanismError(['the load must grow with the angle, and be 0 at 0 rad'])
         return replace(
             gear,
             stiffness=(max(curve.stiffness) / count,) * count,
@@ -98,6 +114,5 @@ def _loaded(gear: TwinGear, data: Report, notes: list[str]) -> TwinGear:
     branch, shaft = first['value'] / count, gear.shaft_stiffness
     if gear.has_shaft:
         branch += math.hypot(branch, shaft) - shaft
-    friction = data['friction']['value'] or mean_friction
     changed = replace(gear, stiffness=(branch,) * count, friction=friction)
     return changed.preloaded(abs(gear.preload))

@@ -4,6 +4,8 @@
 import json
 import math
 from dataclasses import replace
+from functools import reduce
+from operator import getitem
 
 import pytest
 from blocked_bags import gearkin_here
@@ -173,6 +175,55 @@ def test_what_is_no_report_is_named(gear, tmp_path, content, fault):
         measured(gear, [path])
     with pytest.raises(ValueError, match='No such file'):
         measured(gear, [tmp_path / 'none.json'])
+
+
+SOUND = {
+    'friction': {'value': 0.2, 'expanded_uncertainty': 0.1},
+    'measured': False,
+    'middle_line': LINE,
+    'stiffness': [{'low': 0.0, 'high': 1.0, 'value': 3750.0}],
+}
+
+
+@pytest.mark.parametrize(('preload', 'path', 'value', 'fault'), [
+    (0.0, 'friction.value', math.nan, 'must be the JSON'),
+    (2.0, 'friction.value', -1.0, 'the friction is less than 0'),
+    (2.0, 'friction.value', '3', 'must be the JSON'),
+    (2.0, 'stiffness.0.value', 0.0, 'stiffness'),
+    (0.0, 'middle_line.friction.1', math.nan, 'must be the JSON'),
+    (0.0, 'middle_line.load.3', math.inf, 'must be the JSON'),
+    (0.0, 'middle_line.load', [0.0] * 5, 'branch_stiffness must be greater than 0'),
+    (0.0, 'middle_line.load.1', 4.0, 'the load must grow with the angle'),
+    (0.0, 'middle_line.load.2', 0.5, 'be 0 at 0 rad'),
+    (0.0, 'middle_line.angle.2', 5e-4, 'be 0 at 0 rad'),
+])  # fmt: skip
+def test_edited_figures_that_no_gear_has_are_refused(loose, tmp_path, preload, path, value, fault):
+    """Without a preload, the middle line is taken, here for a single branch."""
+    report, edited = tmp_path / 'report.json', json.loads(json.dumps(SOUND))
+    *steps, last = (int(step) if step.isdecimal() else step for step in path.split('.'))
+    reduce(getitem, steps, edited)[last] = value
+    report.write_text(json.dumps({'recordings': [edited]}), 'utf-8')
+    alone = replace(loose.parameters, branches=loose.parameters.branches[:1])
+    one = replace(loose, parameters=alone, stiffness=loose.stiffness[:1])
+    with refused(ValueError, report, fault):
+        measured(loose.preloaded(preload) if preload else one, [report])
+
+
+def test_friction_that_is_less_than_0_by_noise_is_none(loose, ramps):
+    line = LINE | {'friction': [-1e-4] * 5}
+    for gear in (loose, loose.preloaded(2.0)):
+        found, _ = measured(gear, [ramps([(0.0, 1.0, 3750.0)], friction=-1e-4, line=line)])
+        assert found.friction == 0.0
+
+
+@pytest.mark.parametrize('edited', [{'play': -1.0, 'preload': 0.0}, {'ring_turn': math.inf}])
+def test_edited_pins_are_refused(gear, pins, edited):
+    stiffness = ('--branch-stiffness', 3000, '--shaft-stiffness', 1000)
+    report = pins('--degrees', 0.1, *stiffness)
+    data = json.loads(report.read_text('utf-8'))
+    report.write_text(json.dumps(data | {'setting': data['setting'] | edited}), 'utf-8')
+    with refused(ValueError, report):
+        measured(gear, [report])
 
 
 def test_a_rigid_branch_is_named(gear, pins):
