@@ -49,10 +49,8 @@ class AngleFit:
         self.highest_error = max(self.highest_error, float(error.max()))
         with np.errstate(over='ignore', invalid='ignore'):  # garbage has no slope
             x, y = rotor_angle - self._origin[0], recorded - self._origin[1]
-            terms = np.ones((6, len(x)))
-            for row, term in zip(terms[1:], (x, y, x * x, x * y, error), strict=True):
-                row[:] = term
-            self._sums.append(_in_blocks(terms))
+            terms = np.ones_like(x), x, y, x * x, x * y, error
+            self._sums.append(np.stack([_in_blocks(term) for term in terms]))
 
     def offset(self, tolerance: float) -> float | None:
         """Return the constant offset of all errors, rad, or None if they are not constant."""
@@ -81,9 +79,10 @@ class AngleFit:
 
 
 def _in_blocks(values: Array) -> Array:
-    """Sum values, (m, n), over blocks of successive ones."""
-    starts = np.linspace(0, values.shape[1], _BLOCKS, endpoint=False).astype(int)
-    return np.add.reduceat(values, np.unique(starts), axis=1) if values.size else values
+    """Sum values, (..., n), over at most _BLOCKS blocks of successive ones."""
+    count = values.shape[-1]
+    starts = np.arange(0, count, -(-count // _BLOCKS) or 1)
+    return np.add.reduceat(values, starts, axis=-1) if count else values
 
 
 def _ratio_of_sums(above: Array, below: Array) -> Estimate | None:

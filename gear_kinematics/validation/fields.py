@@ -106,26 +106,30 @@ class FieldErrors:
         self._compared = 0
         self._squares = 0.0
 
-    def update(self, samples: FieldSamples, stamp: Array, rotor_angle: Array) -> None:
-        """Add samples of messages, with their stamps, ns, and rotor angles, rad, (n,)."""
-        error = np.abs(samples.error)
+    def update(self, samples: FieldSamples, stamp: Array, rotor_angle: Array) -> Array:
+        """Add samples of messages, with their stamps, ns, and rotor angles, rad, (n,).
+
+        Returns which of them are wrong, (n,).
+        """
+        size = error = np.abs(samples.error)
         self.absent.add(stamp[samples.one_sided])
-        finite = np.isfinite(error)
-        if not finite.all():
-            self.non_finite.add(stamp[error == np.inf])
-            error, stamp, rotor_angle = error[finite], stamp[finite], rotor_angle[finite]
-        if not len(error):
-            return
+        wrong = size > self.tolerance
+        wrong[samples.one_sided] = True
+        if not math.isfinite(size.max(initial=0.0)):
+            finite = np.isfinite(size)
+            self.non_finite.add(stamp[size == np.inf])
+            error, stamp, rotor_angle = size[finite], stamp[finite], rotor_angle[finite]
         self._compared += len(error)
         self._squares += product(error, error)
-        worst = int(np.argmax(error))
-        if error[worst] > self._worst.max_error:
+        if error.max(initial=0.0) > self._worst.max_error:
+            worst = int(np.argmax(error))
             self._worst = replace(
                 self._worst,
                 max_error=float(error[worst]),
                 worst_stamp=int(stamp[worst]),
                 worst_rotor_angle=float(rotor_angle[worst]),
             )
+        return wrong
 
     def report(self) -> FieldReport:
         """Report on everything so far."""

@@ -261,9 +261,7 @@ class OutputTopic:
         angle = rotor_angle(samples)
         wrong = np.zeros(len(samples), bool)
         for errors, field in zip(self.errors, fields, strict=True):
-            errors.update(field, samples['stamp'], angle)
-            wrong |= np.abs(field.error) > errors.tolerance
-            wrong[field.one_sided] = True
+            wrong |= errors.update(field, samples['stamp'], angle)
         if len(right := np.flatnonzero(~wrong)):
             self._latest_wrong = Occurrences()
             if not self._right:
