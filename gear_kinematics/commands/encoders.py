@@ -4,6 +4,7 @@
 import argparse
 import re
 import sys
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -25,11 +26,9 @@ _COLUMNS = {
     'output': 'angle of the output encoder',
     'time': 'time of a row (default unit: by name, or by the sampling)',
 }
-_OF_JOINTS = {
-    'motors': r'# (?:The joint .* on|a joint of) (\S+?)(?:, with .*)?\n +rotor_joint:',
-    'encoders': r'# a joint of (\S+)\n +output_encoder_joint:',
-}
-"""Topics in the comments of parameter files, by what is on them."""
+_JOINT_OF = re.compile('# (?:The joint .* on|a joint of) (\\S+?)(?:, with .*)?')
+"""The comment in parameter files on the joint in the next line, with its topic."""
+_DRIVERS = {'rotor_joint': 'motors', 'output_encoder_joint': 'encoders'}
 
 
 def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: bool = True) -> None:
@@ -115,9 +114,13 @@ def add_new_config(parser: argparse.ArgumentParser) -> None:
 
 def ask_for_one_topic(path: Path) -> None:
     """Say so if the file of an arm is from several topics, by the comments of its actuators."""
-    text = path.read_text('utf-8')
-    for kind, of_joint in _OF_JOINTS.items():
-        if len(topics := {*re.findall(of_joint, text)}) > 1:
+    topics_of: dict[str, set[str]] = {kind: set() for kind in _DRIVERS.values()}
+    for comment, line in pairwise(map(str.strip, path.read_text('utf-8').split('\n'))):
+        kind = _DRIVERS.get(line.partition(':')[0])
+        if kind and (of_joint := _JOINT_OF.fullmatch(comment)):
+            topics_of[kind].add(of_joint[1])
+    for kind, topics in topics_of.items():
+        if len(topics) > 1:
             complain(f'one topic has to have all {kind}: remap the drivers of {listed(topics)}')
 
 

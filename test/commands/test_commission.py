@@ -3,6 +3,7 @@
 
 import json
 import shlex
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from simulated_encoders import TURN, Drive, ramped_strokes, stamps
 
 from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.commands.cli import main
+from gear_kinematics.commands.encoders import ask_for_one_topic
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.arm import load_actuators
 from gear_kinematics.wire.cdr import JointStateTemplate
@@ -67,6 +69,18 @@ def test_file_is_one_that_the_node_takes(bag, tmp_path, capsys, monkeypatch):
     assert main(['commission', str(bag), '--check', 'other.yaml']) == 1
     said = capsys.readouterr().out
     assert 'other.yaml is contradicted: rotor_direction is 1, not -1' in said
+
+
+def test_a_hostile_comment_in_the_file_of_an_arm_keeps_no_program_busy(tmp_path, capsys):
+    """The first begins a topic 10,000 times; it took 8 s."""
+    path = tmp_path / 'arm.yaml'
+    comments = '# The joint a' + ' on x, with ' * 10_000, '# The joint b on /b, with the ratio 2.'
+    path.write_text(''.join(f'  {comment}\n    rotor_joint: a\n' for comment in comments), 'utf-8')
+    begin = time.process_time()
+    ask_for_one_topic(path)
+    assert time.process_time() - begin < 1.0
+    drivers = 'one topic has to have all motors: remap the drivers of /b, x\n'
+    assert capsys.readouterr().err == f'gearkin: {drivers}'
 
 
 def test_actuator_is_added_to_the_file_of_an_arm(bag, tmp_path, capsys, monkeypatch):
