@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.kinematics import Mechanism, solve, split_turns
+from gear_kinematics.kinematics import Mechanism, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.diagnosis import AngleFit, FactorFit, diagnose
@@ -80,9 +80,9 @@ class JointStateTopic(OutputTopic):
 
     def _ideal_angle(self, samples: Window) -> Array:
         """Return the ideal output angle at samples, (n,), rad."""
-        turns, angle = split_turns(samples['angle'])  # beyond a turn where the count was moved
-        turns += samples['turns']
-        output_turns, rest = self._gear.gear_ratio.output_angle(turns, angle, np)
+        output_turns, rest = self._gear.gear_ratio.output_angle(
+            samples['turns'], samples['angle'], np
+        )
         return np.asarray(TURN * output_turns + rest)
 
 
@@ -174,10 +174,9 @@ class OutputState(JointStateTopic):
             position = position._replace(expected=expected, error=error)
         for factor, field in zip(self._factors.values(), others, strict=True):
             factor.update(field.recorded, field.expected)
-        error = position.recorded - position.expected
-        usable = as_slice(np.flatnonzero(np.isfinite(error)))
+        usable = as_slice(np.flatnonzero(np.isfinite(position.error)))
         angles = rotor_angle(samples)[usable], position.recorded[usable]
-        self.fit.update(*angles, error[usable])
+        self.fit.update(*angles, position.error[usable])
         return position, *others
 
     def causes(self) -> Iterator[Finding]:
