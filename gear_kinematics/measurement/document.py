@@ -10,7 +10,6 @@ import numpy as np
 
 from gear_kinematics.measurement.answer import Limits, answer, remarks
 from gear_kinematics.measurement.figures import LOST_MOTION_SHARE, GearFigures
-from gear_kinematics.measurement.json_values import plain
 from gear_kinematics.measurement.loops import Ramps
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.measured import LOST_MOTION, Measured, cell_of
@@ -18,6 +17,7 @@ from gear_kinematics.measurement.transmission import TransmissionFigures
 from gear_kinematics.measurement.wording import ARC_MINUTES
 from gear_kinematics.report import document as doc
 from gear_kinematics.report.document import MOST_POINTS, counted, number, printable
+from gear_kinematics.report.json import estimated
 from gear_kinematics.statistics.uncertainty import COVERAGE, Estimate
 
 SCHEMA = 'gear_kinematics/lost_motion'
@@ -99,7 +99,7 @@ def _reported(report: LostMotion, limits: Limits) -> tuple[doc.Section, Mapping[
         'gear_ratio': str(report.gear_ratio),
         **(_of_gear(report.figures) if report.figures else {}),
         'measured': report.measured,
-        'transmission': plain(report.transmission),
+        'transmission': report.transmission,
         'delay_unit': ('s' if both.timed else 'rows') if both else None,
         'remarks': remarked,
     }
@@ -218,4 +218,4 @@ def _of_gear(found: GearFigures) -> dict[str, Any]:
 
 def _with_unit(estimate: Estimate | None, unit: str) -> dict[str, Any]:
     unknown = {'value': None, 'expanded_uncertainty': None}
-    return {'unit': unit, **(plain(estimate) or unknown)}
+    return {'unit': unit, **(estimated(estimate) if estimate else unknown)}

@@ -102,7 +102,7 @@ def test_a_slip_no_larger_than_the_error_is_named_with_its_moment(slip, share):
     if slip and not share:
         report = document(result, 'gear.yaml')
         text = report.sections[0].findings[0].text
-        assert report.data['moved'] == text
+        assert str(report.data['moved']) == text
         assert result.moved.values['angle'] == pytest.approx(np.radians(slip), rel=0.05)
         assert 'against the rotor at 18.04 s' in text
 

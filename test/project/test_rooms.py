@@ -102,7 +102,7 @@ ROOMS = {
     'statistics': '',
     'correction': 'kinematics parameters statistics wire',
     'state': 'correction kinematics parameters shape statistics wire',
-    'report': 'kinematics shape',
+    'report': 'kinematics shape statistics',
     'validation': 'bag correction fleet kinematics parameters report state statistics wire',
     'measurement': 'bag correction fleet kinematics parameters report state statistics wire',
     'plotting': 'bag kinematics parameters report shape state wire',

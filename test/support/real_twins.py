@@ -6,7 +6,6 @@ locked, as its friction acts on the output. Wind-ups are compared at equal torqu
 zero of an encoder is arbitrary: the mean of each difference is taken out.
 """
 
-import json
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations, pairwise
@@ -22,6 +21,7 @@ from gear_kinematics.measurement.loops import Loop, Ramps
 from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.report.json import to_json
 from gear_kinematics.twin.fast_model import FastModel
 from gear_kinematics.twin.gear import TwinGear
 from gear_kinematics.twin.measured import measured
@@ -71,7 +71,7 @@ def real_gear(
     """Make the twin of a recorded gear, by a report of its own, and find its recorded ramps."""
     config = replace(NodeParameters.load(), gear_ratio=ratio)
     found = measure(read(recording, config, Sources(on_rotor=on_rotor)), config)
-    report.write_text(json.dumps(document([found], None, Limits()).data), 'utf-8')
+    report.write_text(to_json(document([found], None, Limits())), 'utf-8')
     gear = TwinGear.of(
         NodeParameters.of(
             {'branches': ['a'], 'loads.rotor_inertia': 1e-5, 'branch_stiffness': [1e3]}

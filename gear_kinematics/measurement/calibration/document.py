@@ -2,13 +2,13 @@
 """Reports on a calibration and on its check; docs/calibration.md describes their JSON."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 
 from gear_kinematics.measurement.calibration.check import Judgement
 from gear_kinematics.measurement.calibration.fit import Fit, interval_holds
-from gear_kinematics.measurement.json_values import plain
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.wording import ARC_MINUTES, plus_minus
 from gear_kinematics.report import document as doc
@@ -57,13 +57,13 @@ def document(fit: Fit, target: str) -> doc.Document:
         'version': 1,
         'coverage': COVERAGE,
         'helps': fit.helps,
-        'moved': plain(fit.moved),
+        'moved': fit.moved,
         'gear_ratio': str(made.gear_ratio),
-        'left_out': plain(errors) | widths,
-        'terms': plain(fit.terms),
-        'not_fitted': plain(fit.refused),
+        'left_out': asdict(errors) | widths,
+        'terms': fit.terms,
+        'not_fitted': fit.refused,
         'recordings': [
-            plain(used) | {'delay': plain(delay)}
+            asdict(used) | {'delay': delay}
             for used, delay in zip(made.recordings, fit.delays, strict=True)
         ],
         'remarks': sentences,
@@ -107,7 +107,7 @@ def check_document(path: Path, half_width: float, judgements: Sequence[Judgement
         'schema': 'gear_kinematics/calibration_check',
         'version': 1,
         'calibration': str(path),
-        'recordings': plain(judgements),
+        'recordings': judgements,
     }
     return doc.Document(
         f'gearkin calibrate --check {printable(path.name)}',

@@ -9,7 +9,6 @@ import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.commissioning.analysis import Commissioning, Value
-from gear_kinematics.measurement.json_values import plain
 from gear_kinematics.measurement.sentences import Observation
 from gear_kinematics.measurement.wording import plus_minus, shown
 from gear_kinematics.parameters.arm_file import add_actuators
@@ -123,11 +122,11 @@ def document(result: Commissioning, target: str) -> doc.Document:
         'schema': 'gear_kinematics/commissioning',
         'version': 2,
         'answer': str(answer),
-        'ratio': plain(ratio and ratio.measured),
-        'candidates': plain(ratio.candidates if ratio else ()),
-        'gear_ratio': plain(result.between and (result.request.ratio or result.between)),
+        'ratio': ratio and ratio.measured,
+        'candidates': ratio.candidates if ratio else (),
+        'gear_ratio': result.between and (result.request.ratio or result.between),
         'travel': result.longest.travel,
-        'values': plain(result.values),
+        'values': result.values,
         'contradicted': [*wrong],
         'remarks': [*remarks, *result.questions],
     }
