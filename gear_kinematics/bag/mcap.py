@@ -260,7 +260,7 @@ class Mcap(Storage):
         size, crc, name_length = struct.unpack_from('<16xQII', body)
         name = body[32 : 32 + name_length].decode()
         (length,) = struct.unpack_from('<Q', body, 32 + name_length)
-        data = body[40 + name_length :][:length]
+        data = body[40 + name_length : 40 + name_length + length]
         records = data
         if name:
             if name not in CODECS:
