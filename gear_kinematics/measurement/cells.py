@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Iterable, Sequence
 from functools import cache
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -160,27 +160,6 @@ def weight(cell: str, point: str) -> float:
     return 0.5 if re.fullmatch(grouped, cell) or MOMENT.fullmatch(cell) else 0.0
 
 
-class Element(NamedTuple):
-    """An element of the arrays in the cells of a column, which are written as in JSON."""
-
-    place: int
-    namer: int  # place of the column that names the elements, if any; otherwise `place`
-    key: int | str  # its index, or its name as in sensor_msgs/JointState
-
-    def of(self, frame: Any) -> Any:
-        """Return its column, with `nan` in rows without it."""
-        import pandas as pd  # noqa: PLC0415, of an extra
-
-        rows: Iterable[Iterable[tuple[Any, str]]]
-        arrays = map(_array, frame[self.place])
-        if isinstance(self.key, str):
-            names = map(cache(_array), frame[self.namer])
-            rows = (zip(*pair, strict=False) for pair in zip(names, arrays, strict=True))
-        else:
-            rows = map(enumerate, arrays)
-        return pd.Series([dict(row).get(self.key, 'nan') for row in rows], dtype=object)
-
-
 def _array(cell: Any) -> list[str]:
     text = str(cell).strip()
     listed = text[:1] + text[-1:] == '[]' or _TUPLE.fullmatch(text)
@@ -189,31 +168,44 @@ def _array(cell: Any) -> list[str]:
     return [one.strip(' "\'') for one in parts] if inner else []
 
 
-def elements_of(names: Sequence[str], rows: Sequence[Sequence[str]]) -> dict[str, Element]:
-    """Find the elements of arrays by name; those of sensor_msgs/JointState bear their joint's."""
-    found = {}
-    for place, column in enumerate(names):
-        arrays = [array for row in rows if place < len(row) and (array := _array(row[place]))]
-        if not arrays or not all(weight(cell, '.') for array in arrays for cell in array):
-            continue
-        named_by = column.rpartition('position')[0] + 'name'
-        if column.endswith('position') and named_by in names:
-            namer = names.index(named_by)
-            for key in dict.fromkeys(key for row in rows for key in _array(row[namer])):
-                found[f'{key} {column}'] = Element(place, namer, key)
-        else:
-            many = max(map(len, arrays))
-            keys = [f'{column}[{k}]' for k in range(many)] if many > 1 else [column]
-            found |= {key: Element(place, place, k) for k, key in enumerate(keys)}
+def are_arrays(cells: Iterable[str]) -> bool:
+    """Return whether the cells of a column are arrays of numbers, of which some can be empty."""
+    arrays = [array for array in map(_array, cells) if array]
+    return bool(arrays) and all(weight(one, '.') for array in arrays for one in array)
+
+
+def elements_of(frame: Any, names: Sequence[str], places: Iterable[int]) -> dict[str, Any]:
+    """Divide columns of arrays; elements of sensor_msgs/JointState bear the name of their joint.
+
+    Args:
+        frame: the columns of the table, by their places.
+        names: names of all columns.
+        places: those of the columns with arrays.
+    """
+    import pandas as pd  # noqa: PLC0415, of an extra
+
+    found: dict[str, Any] = {}
+    for place in places:
+        name, arrays = names[place], [*map(_array, frame[place])]
+        keys: Iterable[Iterable[Any]] = map(range, map(len, arrays))
+        namer, form = name.rpartition('position')[0] + 'name', f'{name}[{{}}]'
+        if name.endswith('position') and namer in names:
+            keys, form = map(cache(_array), frame[names.index(namer)]), f'{{}} {name}'
+        elif max(map(len, arrays)) == 1:
+            form = name
+        rows = (dict(zip(*pair, strict=False)) for pair in zip(keys, arrays, strict=True))
+        columns = pd.DataFrame(rows, dtype=object).fillna('nan')
+        found |= {form.format(key): column for key, column in columns.items()}
     return found
 
 
-def key_of(names: Sequence[str], rows: Sequence[Sequence[str]]) -> tuple[str, str]:
+def key_of(names: Sequence[str], sample: Any) -> tuple[str, str]:
     """Return the column that says which series or joint a row is of, and that of its value.
 
-    The first is empty if a row has all series, the second if it has several values of a joint.
+    The first is empty if a row has all series, the second if it has several values of a joint. The
+    columns of the sample have texts, or NaN where a row is short.
     """
-    columns = [[row[place] for row in rows if place < len(row)] for place in range(len(names))]
+    columns = [sample[place].dropna().tolist() for place in sample]
     roles, lower = {meaning(name).role for name in names}, [n.lower().strip('_') for n in names]
     if 'value' in lower and not {'rotor', 'output'} <= roles:
         for place in (lower.index(name) for name in _TOPICS if name in lower):

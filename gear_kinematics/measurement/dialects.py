@@ -9,7 +9,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
-from itertools import takewhile
+from itertools import takewhile, zip_longest
 from operator import itemgetter
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 from gear_kinematics.measurement.cells import (
     MISSING,
     MOMENT,
-    Element,
+    are_arrays,
     are_divided,
     cells_of,
     checked,
@@ -141,44 +141,46 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
                 dtype=kind,
             )
 
-    sample = [cells_of(line, layout.separator) for line in lines[layout.start :][:_ROWS]]
+    rows = [cells_of(line, layout.separator) for line in lines[layout.start :][:_ROWS]]
+    columns = dict(enumerate(zip_longest(*rows)))  # None where a row is short
+    sample = pd.DataFrame(columns).reindex(columns=range(len(layout.names)))
     key, value = key_of(layout.names, sample)
     if key:
         frame = read(range(len(layout.names)), 1).set_axis(layout.names, axis=1)
         return loaded(*series_of(frame, layout.point, key, value, layout.units))
-    elements = elements_of(layout.names, sample)
-    arrays = {element.place for element in elements.values()}
+    arrays = [place for place in sample if are_arrays(sample[place].dropna())]
+    elements = elements_of(sample, layout.names, arrays)
     names = [name for k, name in enumerate(layout.names) if k not in arrays] + [*elements]
+    beside = {k for k, name in enumerate(layout.names) if name.endswith('name')} | {*arrays}
 
     def load(wanted: Sequence[str]) -> tuple[dict[str, Any], int]:
         every = 2 ** max(0, math.ceil(math.log2(size / len(head) * len(lines) / _MOST_ROWS)))
-        sources = [elements.get(name) or layout.names.index(name) for name in wanted]
-        places = {k for one in sources for k in (one[:2] if isinstance(one, Element) else [one])}
-        cells = [[row[k] if k < len(row) else '' for k in places] for row in sample]
-
-        def filled(step: int) -> list[bool]:
-            return [*map(any, zip(*cells[::step], strict=True))]
-
+        own = {name: layout.names.index(name) for name in wanted if name not in elements}
+        places = sorted({*own.values()} | (beside if len(own) < len(wanted) else set()))
+        filled = sample[places].fillna('') != ''
+        usual = filled.any().tolist()
         # Of series that take turns, other steps leave out all but one.
-        every = next((n for n in range(every, 2 * every) if filled(n) == filled(1)), every)
-        frame = read(sorted(places), every)
-        for place in filter(lambda place: may_be_divided(frame[place]), sorted(places)):
+        steps = range(every, 2 * every)
+        every = next((n for n in steps if filled[::n].any().tolist() == usual), every)
+        frame = read(places, every)
+        for place in filter(lambda place: may_be_divided(frame[place]), places):
             if are_divided(read([place], every, str)[place], layout.point):
                 raise ValueError(
                     f'{layout.names[place]} has three decimals or none, as if points divided '
                     'thousands: write the numbers without these points'
                 )
+        columns = {name: frame[place] for name, place in own.items()}
+        if len(own) < len(wanted):
+            columns |= elements_of(frame, layout.names, arrays)
         values = {}
-        for name, one in zip(wanted, sources, strict=True):
-            column = one.of(frame) if isinstance(one, Element) else frame[one]
-            column = checked(column, name, layout.names, layout.units.get(name, ''))
+        for name in wanted:
+            column = checked(columns[name], name, layout.names, layout.units.get(name, ''))
             values[name] = numbers(column, layout.point)
         return values, every
 
     first = dict(zip(layout.names, layout.row, strict=False))
-    units = layout.units | {
-        name: 'rad' for name, one in elements.items() if isinstance(one.key, str)
-    }
+    of_joints = (name for k in arrays for name in elements if name.endswith(f' {layout.names[k]}'))
+    units = layout.units | dict.fromkeys(of_joints, 'rad')
     return TableFile(names, units, layout.clocks, first, load, layout.remark)
 
 

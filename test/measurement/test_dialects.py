@@ -220,9 +220,10 @@ ENCODERS = {
     'days of a workbook': lambda t, r, o: written([46352.4 + t / 86400.0, r, o], NAMES, '{:.11f}'),
     'index of pandas': lambda t, r, o: written(
         [t, r * 1e6, o * REV * 1e3], ',rotor_urad,output_mrev', moment(' ')),
-    'tuples of bagpy': lambda t, r, o: 'Time,header.seq,name,position,velocity\n' + ''.join(
-        f'{at:.6f},7,"(\'m1\', \'out\')","({rotor:.5f}, {out:.5f})",()\n'
-        for at, rotor, out in zip(t + 1.79e9, r, o, strict=True)),
+    'tuples of bagpy, and a short row': lambda t, r, o: (
+        'Time,header.seq,name,position,velocity\n' + ''.join(
+        f'{at:.6f},7,"(\'m1\', \'out\')","({rotor:.5f}, {out:.5f})",()\n' + '1,7\n' * (k == 9)
+        for k, (at, rotor, out) in enumerate(zip(t + 1.79e9, r, o, strict=True)))),
     'arrays of numpy, and feedback': lambda t, r, o: written(
         [t, r * DEG, o * DEG], 't,MotorPosFb(deg),LoadPos/ave (deg)',
         ('{:.2f}', '[{:.5f}]', '{:.5f}')),
