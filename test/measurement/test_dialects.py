@@ -617,6 +617,13 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         (lambda t, r, o: (written([t, r, o], 'time,rotor,output\ns,rad,rad')
                           + written([t, r * DEG, o * DEG], 'time,rotor,output\ns,deg,deg')),
          'output goes on below as deg'),
+        (lambda t, r, o: written([t, r, t + 1.79e9, o], 'motor_time,motor_pos,output_time,output',
+                                 '{:.5f}'), 'times of the rotor and of the output are never'),
+        (lambda t, _, o: written([t, np.round(8 * o * REV), o], 't,shadow,Iq',
+                                 ('{:.2f}', '{:.0f}', '{:.4f}')),
+         'by --angle-column, --torque-column'),  # no current is proposed as an angle
+        (lambda t, r, o: written([t, r, 1.5 * r, o], 'time,motor1_pos,motor2_pos,output_pos',
+                                 '{:.5f}'), r'--rotor-column motor\d_pos --output-column output_'),
         (' (1764230000.000000) can0 141#A100000000000000\n', 'a log of CAN frames: decode'),
         ('date Thu Nov 26 09:12:33 2026\nbase hex\n', 'a log of CAN frames: decode'),
         ('t,angle [deg],force [N]\n0,1,2\n1,2,3\n', 'with their units, by --angle-column'),
@@ -799,6 +806,10 @@ def test_loads_take_columns_that_say_no_side_for_those_of_the_rotor(tmp_path, ge
         np.testing.assert_allclose(angle, rotor, atol=1e-5)
         np.testing.assert_allclose(torque, np.sin(time), atol=1e-5)
 
+    path = saved(tmp_path, written([rotor, np.sin(time)], 'position,effort', '{:.5f}'))
+    with pytest.raises(RecordingError, match=r'--time-column and --torque-column$'):
+        read_rotor(path, Sources(), gear.gear.gear_ratio)
+
 
 def test_rows_are_those_of_the_output_where_encoders_share_none(tmp_path, gear, reference):
     t, r, o = reference('encoders')
@@ -970,6 +981,55 @@ def test_other_formats(tmp_path, gear, reference, name):
         read(path, gear, given)
 
 
+def old_workbook(path, *_):
+    pytest.importorskip('openpyxl')  # which needs no other library to refuse it
+    path.write_bytes(bytes.fromhex('d0cf11e0a1b11ae1') + bytes(600))
+
+
+def sheets(path, *_):
+    pytest.importorskip('openpyxl')
+    pd = pytest.importorskip('pandas')
+    with pd.ExcelWriter(path) as book:
+        for sheet, values in ('Info', ['bench 3', 'x']), ('Run 1', [0, 1]), ('Run 2', [0, 1]):
+            frame = pd.DataFrame({'rotor': values, 'output': values})
+            frame.to_excel(book, sheet_name=sheet, index=False)
+
+
+def daqmx(path, _, angle, torque):
+    nptdms = pytest.importorskip('nptdms')
+    channels = [
+        nptdms.ChannelObject('Bench', name, values, properties={'NI_UnitDescription': unit})
+        for name, values, unit in (('Angle', DEG * angle, 'Deg'), ('Torque', torque, 'Volts'))
+    ]
+    with nptdms.TdmsWriter(path) as writer:
+        writer.write_segment(channels)
+
+
+def saved_mat(columns):
+    return lambda path, *data: pytest.importorskip('scipy.io').savemat(path, columns(*data))
+
+
+NO_NUMBERS = 'no columns of numbers: save the vectors of a time'
+TABLE = np.array([[0xDD000000], [2], [1], [1], [1], [1]], np.uint32)  # the reference to one
+
+
+@pytest.mark.parametrize(('name', 'write', 'cause'), [
+    ('r.xlsx', old_workbook, r'cannot be read as \.xlsx: File is not a zip'),
+    ('r.xlsx', sheets, 'sheets with numbers: Run 1, Run 2: save one as CSV'),
+    ('r.tdms', daqmx, 'Torque is in volts: convert it to one of N·m'),
+    ('r.mat', saved_mat(lambda *_: {'name': 'bench 3'}), NO_NUMBERS),
+    ('r.mat', saved_mat(lambda *_: {'T': TABLE}), NO_NUMBERS),
+    ('r.mat', saved_mat(lambda t, r, o: {'tout': t[1:], 'rotor': r, 'output': o}),
+     'columns of 1319 and 1320 rows, without times of each'),
+    ('r.ods', lambda path, *_: path.write_bytes(b'PK\x03\x04'),
+     r'bags are .mcap.* tables .csv.*\.parquet.* as \.csv\.gz, \.csv\.zst, \.csv\.zip'),
+])  # fmt: skip
+def test_other_files_are_refused_with_what_to_do(tmp_path, gear, reference, name, write, cause):
+    write(tmp_path / name, *reference('encoders'))
+    with pytest.raises(BagError if name == 'r.ods' else RecordingError, match=cause):
+        read(tmp_path / name, gear)
+
+
 def test_series_that_take_turns_are_all_read_in_part(tmp_path, gear, reference, monkeypatch):
     monkeypatch.setattr(dialects, '_MOST_ROWS', 1500)
     t, r, o = reference('encoders')
@@ -981,16 +1041,6 @@ def test_series_that_take_turns_are_all_read_in_part(tmp_path, gear, reference, 
     assert recording.remarks == (Observation.ROWS_THINNED(every=3),)
     np.testing.assert_allclose(recording.both.rotor.turned, r[::3], rtol=1e-14)
     np.testing.assert_allclose(recording.both.measured, o[1::3][:-1], rtol=1e-14)
-
-
-def test_times_of_both_sides_that_never_meet_are_refused(tmp_path, gear, reference):
-    t, r, o = reference('encoders')
-    names = 'motor_time,motor_pos,output_time,output_pos'
-    path = saved(tmp_path, written([t, r, t + 1.79e9, o], names, '{:.5f}'))
-    with pytest.raises(RecordingError, match='times of the rotor and of the output are never'):
-        read(path, gear)
-    with pytest.raises(RecordingError, match=r'--time-column and --torque-column$'):
-        read_rotor(path, Sources(), gear.gear.gear_ratio)
 
 
 @pytest.mark.parametrize('other', ['time,output_time', 'time1,time2', 'time_a,time_b'])
@@ -1022,85 +1072,12 @@ def test_rows_with_a_torque_of_their_own_are_no_filled_gaps(tmp_path, gear):
     assert len(read(path, given).encoders.rotor.stamp) == len(time)
 
 
-def test_an_old_workbook_under_a_new_name_needs_no_other_library(tmp_path, gear):
-    pytest.importorskip('openpyxl')
-    (tmp_path / 'r.xlsx').write_bytes(bytes.fromhex('d0cf11e0a1b11ae1') + bytes(600))
-    with pytest.raises(RecordingError, match=r'cannot be read as \.xlsx: File is not a zip'):
-        read(tmp_path / 'r.xlsx', gear)
-
-
-def test_units_of_daqmx_are_read(tmp_path, gear, reference):
-    nptdms = pytest.importorskip('nptdms')
-    _, angle, torque = reference('ramps')
-    channels = [
-        nptdms.ChannelObject('Bench', name, values, properties={'NI_UnitDescription': unit})
-        for name, values, unit in (('Angle', DEG * angle, 'Deg'), ('Torque', torque, 'Volts'))
-    ]
-    with nptdms.TdmsWriter(tmp_path / 'r.tdms') as writer:
-        writer.write_segment(channels)
-    with pytest.raises(RecordingError, match='Torque is in volts: convert it to one of N·m'):
-        read(tmp_path / 'r.tdms', gear)
-
-
-def test_a_file_of_matlab_without_numbers_is_refused(tmp_path, gear):
-    pytest.importorskip('scipy.io').savemat(tmp_path / 'r.mat', {'name': 'bench 3'})
-    refused = 'no columns of numbers: save the vectors of a time'
-    with pytest.raises(RecordingError, match=refused):
-        read(tmp_path / 'r.mat', gear)
-    # The reference to a table or timetable.
-    reference = np.array([[0xDD000000], [2], [1], [1], [1], [1]], np.uint32)
-    pytest.importorskip('scipy.io').savemat(tmp_path / 'r.mat', {'T': reference})
-    with pytest.raises(RecordingError, match=refused):
-        read(tmp_path / 'r.mat', gear)
-
-
 def test_an_index_without_a_name_is_proposed_for_the_times(tmp_path, gear, reference):
     t, r, o = reference('encoders')
     path = saved(tmp_path, written([t, r, o], ',rotor,output'))
     with pytest.raises(RecordingError, match=r'--time-column 1$') as caught:
         read(path, gear, Sources(needs_times=True))
     assert read(path, gear, followed(caught.value)).encoders.timed
-
-
-def test_the_sheets_of_a_workbook_that_have_numbers_are_named(tmp_path, gear):
-    pytest.importorskip('openpyxl')
-    pd = pytest.importorskip('pandas')
-    path = tmp_path / 'r.xlsx'
-    with pd.ExcelWriter(path) as book:
-        pd.DataFrame({'about': ['bench 3', 'no numbers']}).to_excel(
-            book, sheet_name='Info', index=False
-        )
-        for name in ('Run 1', 'Run 2'):
-            pd.DataFrame({'rotor': [0.0, 1.0], 'output': [0.0, 0.1]}).to_excel(
-                book, sheet_name=name
-            )
-    with pytest.raises(RecordingError, match='sheets with numbers: Run 1, Run 2: save one as CSV'):
-        read(path, gear)
-
-
-def test_what_is_neither_table_nor_bag_is_refused_with_what_can_be_read(tmp_path, gear):
-    (tmp_path / 'r.ods').write_bytes(b'PK\x03\x04')
-    kinds = r'bags are .mcap.* tables .csv.*\.parquet.* as \.csv\.gz, \.csv\.zst, \.csv\.zip'
-    with pytest.raises(BagError, match=kinds):
-        read(tmp_path / 'r.ods', gear)
-
-
-def test_no_current_is_proposed_as_an_angle(tmp_path, gear, reference):
-    time, angle, torque = reference('ramps')
-    columns = [time, np.round(angle * REV * 8192), torque]
-    path = saved(tmp_path, written(columns, 't,shadow,Iq', ('{:.2f}', '{:.0f}', '{:.4f}')))
-    with pytest.raises(RecordingError, match='by --angle-column, --torque-column'):
-        read(path, gear)
-
-
-def test_the_advice_gives_the_output_the_column_that_is_named_after_it(tmp_path, gear, reference):
-    time, rotor, output = reference('encoders')
-    content = written([time, rotor, 1.5 * rotor, output], 'time,motor1_pos,motor2_pos,output_pos',
-                      '{:.5f}')  # fmt: skip
-    with pytest.raises(
-        RecordingError, match=r'--rotor-column motor\d_pos --output-column output_'
-    ):
-        read(saved(tmp_path, content), gear)
 
 
 def test_temperatures_are_no_times(tmp_path, gear, reference):
@@ -1118,16 +1095,6 @@ def test_durations_are_no_times(tmp_path, gear, reference):
     for duration in (t - t + 0.04, 0.04 + 1e-3 * np.sin(t), -t, t + math.nan, t % 3.0):
         content = written([duration, r, o], 'loop_time,rotor,output', 3 * ['{:.5f}'])
         assert not read(saved(tmp_path, content), gear).encoders.timed
-
-
-def test_columns_of_different_lengths_are_refused(tmp_path, gear, reference):
-    io = pytest.importorskip('scipy.io')
-    time, rotor, output = reference('encoders')
-    io.savemat(tmp_path / 'r.mat', {'tout': time[1:], 'rotor': rotor, 'output': output})
-    with pytest.raises(
-        RecordingError, match='columns of 1319 and 1320 rows, without times of each'
-    ):
-        read(tmp_path / 'r.mat', gear)
 
 
 def test_a_sample_that_is_missing_at_a_reversal_is_no_slip(tmp_path, gear, reference):
