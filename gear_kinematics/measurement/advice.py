@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gear_kinematics.measurement.columns import ColumnsError, Sources
+from gear_kinematics.measurement.columns import ColumnsError, Sources, option
 from gear_kinematics.measurement.dialects import TableFile
 from gear_kinematics.measurement.names import (
     ANGLE_UNITS,
@@ -68,7 +68,7 @@ def advice(
         text += f' among the columns {listed}; name them with their units'
     for example in examples:
         if complete := _completed(example, sources, read):
-            words = [word for field in complete for word in (_option(field), complete[field])]
+            words = [word for field in complete for word in (option(field), complete[field])]
             assumed = [
                 value.rpartition('[')[2].rstrip(']')
                 for value in complete.values()
@@ -80,7 +80,7 @@ def advice(
             return f'{text}, for example: {command} {shlex.join(words)}'
     if error.example or '--' in str(error):
         return str(error)
-    return f'{text}, by {", ".join(map(_option, ("angle", "torque", "rotor", "output")))}'
+    return f'{text}, by {", ".join(map(option, ("angle", "torque", "rotor", "output")))}'
 
 
 def rising(table: TableFile) -> dict[str, str]:
@@ -90,12 +90,6 @@ def rising(table: TableFile) -> dict[str, str]:
         if values.dtype.kind in 'iufM' and len(values) > 1 and np.all(values[1:] > values[:-1]):
             return {'time': name}
     return {}
-
-
-def _option(field: str) -> str:
-    """Return the option for a field of `Sources`."""
-    name = {'unit': 'angle-unit'}.get(field, field.replace('_', '-'))
-    return f'--{name}' if '-' in name else f'--{name}-column'
 
 
 def _completed(

@@ -2,7 +2,6 @@
 """The times in a table: their unit, and the rows that are in order."""
 
 import math
-import shlex
 from bisect import bisect_right
 from collections.abc import Iterator
 from itertools import pairwise
@@ -69,12 +68,8 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
     if (len(likely) != 1 and role == 'rotor') or (
         _is_temps(clock) and times[0] > _LATE_ROWS * step
     ):
-        such = f'{clock.name} [ms]'
-        raise ColumnsError(
-            f'the times in {clock.name}: steps of {step:.6g} do not tell their unit: give it, '
-            f'as in --time-column {shlex.quote(such)}',
-            time=such,
-        )
+        cause = f'the times in {clock.name}: steps of {step:.6g} do not tell their unit'
+        raise ColumnsError(cause, 'it', time=f'{clock.name} [ms]')
     unit = likely[0] if likely else 's'
     return clock._replace(unit=unit, scale=TIME_UNITS[unit])
 
@@ -137,12 +132,8 @@ def stamps(
         seconds = times * round(factor) if exact else np.where(readable, times, 0.0) * factor
         stamp = np.round(seconds).astype(np.int64)
     if np.mean(~readable) > _UNREADABLE:
-        such = f'{clock.name} [ns]'
-        raise ColumnsError(
-            f'the times in {clock.name}: no numbers nor ISO 8601, or too large: give their unit, '
-            f'as in --time-column {shlex.quote(such)}',
-            time=such,
-        )
+        cause = f'the times in {clock.name}: no numbers nor ISO 8601, or too large'
+        raise ColumnsError(cause, 'their unit', time=f'{clock.name} [ns]')
     if lost := np.count_nonzero(~readable):
         remarks.append(Observation.NO_TIMES(rows=lost, column=clock.name))
     rows, stamp = rows[readable], stamp[readable]

@@ -68,10 +68,19 @@ class Column(NamedTuple):
 class ColumnsError(ValueError):
     """Columns or units are unknown, which further `Sources` would name."""
 
-    def __init__(self, text: str, **example: str) -> None:
-        """Give an example of the fields of `Sources` that are missing, if there is one."""
+    def __init__(self, text: str, give: str = '', **example: str) -> None:
+        """Say the cause, and what to `give`, by an example of the missing fields of `Sources`."""
+        for field, value in example.items() if give else ():
+            one = f'as in {option(field)} {shlex.quote(value)}'
+            text += f': give {give} {one if field in ROLES else f"with {option(field)}"}'
         super().__init__(text)
         self.example = example
+
+
+def option(field: str) -> str:
+    """Return the option for a field of `Sources`."""
+    name = {'unit': 'angle-unit'}.get(field, field.replace('_', '-'))
+    return f'--{name}' if '-' in name else f'--{name}-column'
 
 
 def find_columns(
@@ -178,20 +187,15 @@ def _column(role: str, name: str, unit: str, given: Sources, common: str) -> Col
         letter = role in ANGULAR and unit == says.unknown  # as of pos_a
         if (unit in FOREIGN and not letter) or any(unit in others for others in ROLES.values()):
             raise ValueError(f'{name} is in {unit}: convert it to one of {known}')
-        raise ColumnsError(
-            f'{name}: the unit {unit} is not known; known: {known}; give it, as in '
-            f'--{role}-column {shlex.quote(such)}',
-            **{role: such},
-        )
+        cause = f'{name}: the unit {unit} is not known; known: {known}'
+        raise ColumnsError(cause, 'it', **{role: such})
     scale = units.get(unit, 1.0)
     if scale is None:
         encoder = 'output' if role == 'output' else 'rotor'
         counts = getattr(given, f'{encoder}_counts')
         if counts is None and not given.as_recorded:
-            raise ColumnsError(
-                f'{name} has counts: give those per turn with --{encoder}-counts',
-                **{f'{encoder}_counts': _COUNTS},
-            )
+            example = {f'{encoder}_counts': _COUNTS}
+            raise ColumnsError(f'{name} has counts', 'those per turn', **example)
         scale = TURN / counts if counts else 1.0
         unit = f'{counts} counts a turn' if counts else 'counts'
     on_output = role == 'output' or (says.on_output and role != 'rotor')

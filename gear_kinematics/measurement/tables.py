@@ -1,7 +1,6 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Tables as recordings: the rows that are used, their units and times."""
 
-import shlex
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
@@ -281,12 +280,9 @@ class _Samples:
             timed = stamp if self.timed else None
             if found := against(column, values, timed, steps.get(role), self._remark):
                 cause, unit = found
-                such = f'{column.name} [{unit}]'
-                if role != 'torque' and not column.borrowed:
-                    how, example = 'with --angle-unit', {'unit': unit}
-                else:
-                    how, example = f'as in --{role}-column {shlex.quote(such)}', {role: such}
-                raise ColumnsError(f'{column.name} {cause}: give its unit {how}', **example)
+                of_all = role != 'torque' and not column.borrowed
+                example = {'unit': unit} if of_all else {role: f'{column.name} [{unit}]'}
+                raise ColumnsError(f'{column.name} {cause}', 'its unit', **example)
         return steps
 
     def locked(self, period: float) -> Loading:
@@ -326,10 +322,7 @@ class _Samples:
         if not (self.found['rotor'].unit or self.found['output'].unit):
             turned = self.unwrapped('rotor', period) if self._sources.as_recorded else rotor
             if differ_as_degrees(both.at_measured(turned), both.measured):
-                names = (self.found[role].name for role in ('output', 'rotor'))
-                raise ColumnsError(
-                    f'{" differs from ".join(names)} by more than gears do in rad, as in degrees: '
-                    'give the unit with --angle-unit',
-                    unit='deg',
-                )
+                names = ' differs from '.join(self.found[r].name for r in ('output', 'rotor'))
+                cause = f'{names} by more than gears do in rad, as in degrees'
+                raise ColumnsError(cause, 'the unit', unit='deg')
         return both

@@ -630,7 +630,7 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         (lambda t, r, o: written([t, r, o], 'time,force_N,angle_rad'),
          'with their units, by --angle-column'),
         ('time,angle_grad,torque\n0,1,2\n',
-         "known; known: rad, .*counts; give it, as in --angle-column 'angle_grad .rad.'"),
+         "known; known: rad, .*counts: give it as in --angle-column 'angle_grad .rad.'"),
         ('time,angle,torque\ns,mil,Nm\n0,1,2\n', 'the unit mil is not known'),
         ('rotor,output\n1.5,20\n359.5,30.5\n', 'rotor has turns of 360'),
         ('Data1,torque\n0,2\n', 'Data1 does not say that it is an angle: .* --angle-unit'),
