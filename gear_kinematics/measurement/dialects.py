@@ -249,17 +249,8 @@ def _names(
     labelled = (row[1:] for row in rows[:-1] if re.search('(?i)unit|einheit', ''.join(row[:1])))
     labels = [known_units(row, FOREIGN) for row in labelled]  # Tektronix has one of each axis
     label = max(labels, key=lambda label: len([*filter(None, label)]), default=[])
-    alike = [row[:width] for row in rows if row[2:width] and len({*row[:width:2]}) == 1]
-    pairs = {row[0].lower(): row[1::2] for row in alike}
-    for key, names in pairs.items():
-        if len({*names}) < len(names) or (key not in _CLOCKS and meaning(key).role != 'time'):
-            continue
-        unit = _CLOCKS.get(key, meaning(key).unit)
-        unit = 'filetime' if key == 'name' and _FILETIME.fullmatch(begin[0]) else unit
-        clocks = {name: f'time of {name}' for name in names}
-        units = known_units(pairs.get('unit') or pairs.get('') or label[::2])
-        columns = [one for name in names for one in (clocks[name], name)]
-        return columns, _named(names, units) | dict.fromkeys(clocks.values(), unit), clocks
+    if found := _with_times([row[:width] for row in rows if len(row) >= numbers], label, begin[0]):
+        return found
     several = [len([*filter(None, row)]) >= min(width, 2) for row in rows]  # no rate, of catman
     long = [k for k, row in enumerate(rows) if len(row) >= numbers and several[k]]
     fitting = [k for k in long if not known_units(rows[k])]
@@ -290,6 +281,40 @@ def _names(
         raise ValueError(f'rows of {width} cells are below {len(names)} names: {", ".join(names)}')
     names = [*names[:width], *[''] * (width - len(names))]
     return names, _named(names, units), {}
+
+
+def _with_times(
+    rows: Sequence[Sequence[str]], label: Sequence[str], first: str
+) -> tuple[list[str], dict[str, str], dict[str, str]] | None:
+    """Find names, units and clocks of channels behind times of their own, which some may share.
+
+    The first cell of a row of names, such as Name, is repeated at each column of times. In files
+    of TwinCAT Scope, in which all channels may share their times, it need not be.
+
+    Args:
+        rows: lines above the numbers.
+        label: units of all columns but the first.
+        first: the first time.
+    """
+    scope = any(row[0].lower().startswith('sampletime') for row in rows)
+    for row in filter(itemgetter(slice(2, None)), rows):
+        key, times = row[0].lower(), [k for k, cell in enumerate(row) if cell == row[0]]
+        channels = {k: name for k, name in enumerate(row) if name != row[0]}
+        known = key in _CLOCKS or meaning(key).role == 'time'
+        apart = len({*channels.values()}) == len(channels)
+        if not (known and apart and (times[1:] or (scope and key == 'name'))):
+            continue
+        unit = _CLOCKS.get(key, meaning(key).unit)
+        unit = 'filetime' if key == 'name' and _FILETIME.fullmatch(first) else unit
+        names = [channels.get(k, f'time of {[*row, ""][k + 1]}') for k in range(len(row))]
+        clocks = {name: names[max(t for t in times if t < k)] for k, name in channels.items()}
+        below = (one for one in rows if one[0].lower() in {'unit', ''})
+        alike = (one for one in below if all(one[t : t + 1] == one[:1] for t in times))
+        cells = ([''.join(one[k : k + 1]) for k in channels] for one in (*alike, ['', *label]))
+        units = next(filter(None, map(known_units, cells)), [])
+        of_channels = _named([*channels.values()], units)
+        return names, of_channels | dict.fromkeys(clocks.values(), unit), clocks
+    return None
 
 
 def _cells_above(line: str, separator: str, width: int) -> list[str]:

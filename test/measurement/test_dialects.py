@@ -247,6 +247,15 @@ ENCODERS = {
         'Name,Scope\nFile,a.csv\n\nName,Motor.Pos,Name,Output.Pos\nSymbolComment,,SymbolComment,'
         '\nSampleTime[ms],40,SampleTime[ms],40\nUnit,° (Degree),Unit,° (Degree)\n',
         4 * ['{:.4f}']) + 'EOF\n',
+    'TwinCAT, whose channels share their times': lambda t, r, o: written(
+        [t * 1e3, t, r * DEG, t * 1e3, o * DEG],
+        'Name,Scope\nFile,a.csv\n\nName,Mode,Motor.Pos,Name,Output.Pos\nData-Type,INT16,REAL64,'
+        'Data-Type,REAL64\nSampleTime[ms],40,40,SampleTime[ms],40\nUnit,(None),° (Degree),Unit,'
+        '° (Degree)\nUnit Offset,0,0,Unit Offset,0\n', 5 * ['{:.4f}']),
+    'TwinCAT, whose channels all have the same times': lambda t, r, o: written(
+        [t * 1e3, r * DEG, o * DEG],
+        'Name\tScope\nFile\ta.csv\n\nName\tMotor.Pos\tOutput.Pos\nSampleTime[ms]\t40\t40\nUnit\t'
+        '° (Degree)\t° (Degree)\nUnit Offset\t0\t0\n', 3 * ['{:.4f}'], '\t'),
     'wraps at 180°': lambda t, r, o: written(
         [t, (r * DEG + 180.0) % 360.0 - 180.0, (o * DEG) % 360.0], WITH_DEG.replace(';', ',')),
     'wraps at one turn': lambda t, r, o: written(
