@@ -23,6 +23,7 @@ from gear_kinematics.state.motion import (
 )
 from gear_kinematics.state.reach import (
     FLOOR,
+    HELD_UP_AT_FIRST,
     REGULAR,
     STALEST,
     HeldUp,
@@ -270,7 +271,7 @@ class Plausibility:
     def _restart(self, position: float, stamp: int) -> None:
         self.reset()
         self._last, self._stamp = (position, stamp, 0.0, 0), stamp
-        self._held_up = HeldUp(stamp, STALEST_NS)
+        self._held_up = HeldUp(stamp, HELD_UP_AT_FIRST)
 
     def _doubt(self, position: float, stamp: int) -> Belief:
         """Note a reading that is out of reach, and see whether it agrees with those before."""

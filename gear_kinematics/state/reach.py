@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 from gear_kinematics.kinematics.rotor_turns import TURN
 
 STALEST = 0.01  # s; a reading is so much, or an interval, older than its stamp says, at most
+HELD_UP_AT_FIRST = 50_000_000  # ns: a pause that there may have been before a first reading
 FLOOR = 0.05  # rad: noise of any encoder, and what two successive steps may always differ by
 REGULAR = 1.0 / 3.0  # share of the usual time by which one may vary in `RotorLimits.even_step`
 _ROUNDING = 1e-6  # of a step of single precision, by a conversion of units in double precision
@@ -50,7 +51,7 @@ class HeldUp(NamedTuple):
             return self
         if since - length < 2 * self.length:  # the stamps of the burst before tell no speed
             usual = max(former[3], self.usual)
-            return HeldUp(end, length, usual if usual > _CLOSE else 0)
+            return HeldUp(end, length, usual if self.usual or usual > _CLOSE else 0)
         speed = abs(former[2]) / former[3] * 1e9 if former[3] else math.inf
         return HeldUp(end, length, former[3], speed, former[0])
 
@@ -86,7 +87,7 @@ class RotorLimits(NamedTuple):
         if not (last[3] and former[3]):
             return 0.0
         position, changed, step, took = last
-        late = held_up.late(changed, changed)
+        late = held_up.late(changed - took, changed)
         ways = [(step + former[2], took + former[3] + max(0.0, late))]
         if late > 0.0:  # stamps of a burst tell little of the speed, the one before the pause more
             way = math.remainder(position - held_up.position, self.period)
@@ -117,7 +118,9 @@ class RotorLimits(NamedTuple):
             elapsed = (stamp - until + max(0.0, held_up.late(until, stamp))) * 1e-9
             fast = self.acceleration * min(held, 2.0 * elapsed)
             slow = -fast
-        elif span:
+        elif not span:
+            stale = max(stale, 1e-9 * held_up.late(changed, stamp))
+        else:
             late = held_up.late(changed, stamp)
             stale = _stale(last, former, late)
             before = held_up.late(changed - span, changed)

@@ -288,15 +288,16 @@ def test_readings_that_were_held_up_are_believed_at_each_phase_of_a_motion(first
         assert judge.judge(float(angle), START + int(stamp)) is BELIEVED
 
 
-def test_a_wrong_reading_in_a_second_burst_is_out_of_reach():
+@pytest.mark.parametrize('period', [2_000_000, 500_000])
+def test_a_wrong_reading_in_a_second_burst_is_out_of_reach(period):
     """The driver is held up twice, for 11 ms; the rotor can turn 1.6 rad within 2.5 ms."""
-    arrivals = [START + 2_000_000 * k for k in range(100)]
+    arrivals = [START + period * k for k in range(400)]
     for regular in (3, 0):
         arrivals += [arrivals[-1] + 11_000_000 + 10_000 * k for k in range(5)]
-        arrivals += [arrivals[-1] + 2_000_000 * k for k in range(1, 1 + regular)]
+        arrivals += [arrivals[-1] + period * k for k in range(1, 1 + regular)]
     judge = Plausibility(*LIMITS)
-    beliefs = [judge.judge(0.08 * k + 2.5 * (k == 111), stamp) for k, stamp in enumerate(arrivals)]
-    assert [k for k, each in enumerate(beliefs) if each is not BELIEVED] == [111]
+    beliefs = [judge.judge(0.08 * k + 2.5 * (k == 411), stamp) for k, stamp in enumerate(arrivals)]
+    assert [k for k, each in enumerate(beliefs) if each is not BELIEVED] == [411]
 
 
 @pytest.mark.parametrize('first', range(5))
@@ -320,6 +321,28 @@ def test_a_rotor_that_starts_within_a_burst_is_believed(first):
     assert judge.judge(0.001, START - SECOND) is BELIEVED
     for stamp, angle in zip(START + 100_000_000 * (n // 5) + n, 3000.0 * times**2, strict=True):
         assert judge.judge(float(angle), int(stamp)) is BELIEVED
+
+
+@pytest.mark.parametrize(('period', 'count', 'apart'), [
+    (0.001, 256, 60_000), (0.001, 16, 60_000), (0.02, 3, 400_000), (0.04, 3, 100_000),
+])  # fmt: skip
+def test_a_driver_that_always_sends_in_bursts_is_believed_from_the_first_reading_on(
+    period, count, apart
+):
+    """As one that reads 4096 bytes from a port at a time."""
+    judge, n = Plausibility(*LIMITS), np.arange(4 * count)
+    stamps = START + round(period * count * SECOND) * (n // count) + apart * (n % count)
+    angles = np.round(599.97 * period * n, 3)
+    for stamp, angle in zip(stamps.tolist(), angles.tolist(), strict=True):
+        assert judge.judge(angle, stamp) is BELIEVED
+
+
+@pytest.mark.parametrize('rate', [500, 1000])
+def test_an_encoder_that_is_stuck_soon_after_the_start_is_named(rate):
+    times = np.arange(rate) / rate
+    rotor, _ = fed(MULTI, messages(times, np.round(299.97 * np.minimum(times, 0.03), 3)))
+    assert rotor.rejected['implausible'] == 2
+    assert rotor.plausibility.seen_acceleration > LIMITS[1]
 
 
 def test_regular_readings_of_a_rotor_at_rest_are_no_pauses():
