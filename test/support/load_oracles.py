@@ -194,19 +194,19 @@ def _times(factor, vector) -> tuple:
 
 
 def inverse_dynamics(
-    tree, numbers: Numbers, motion: Derivatives, rotor: tuple, torques: list[float], masses: Masses
+    pin, numbers: Numbers, motion: Derivatives, rotor: tuple, torques: list[float], masses: Masses
 ) -> ExpectedLoads:
-    """Find the loads by a tree of `PinocchioTree` or `MujocoTree`.
+    """Find the loads by Pinocchio.
 
     Args:
-        tree: makes one of numbers and masses.
+        pin: its module.
         numbers: of the mechanism.
         motion: of it, by the oracle.
         rotor: its angle, velocity and acceleration.
         torques: of each branch on the shaft, N·m.
         masses: for the pressure angle.
     """
-    tree, count = tree(numbers, masses), len(torques)
+    tree, count = PinocchioTree(pin, numbers, masses), len(torques)
     tree.move(*_joints(motion, rotor))
     output = float(motion.value.output_angle)
     arm = np.array([np.cos(output), np.sin(output)])  # x of the output shaft: across its slot
@@ -321,58 +321,3 @@ class PinocchioTree:
     def _order(self) -> list[int]:
         """All satellites, then all couplings."""
         return [*range(2, self._model.njoints, 2), *range(3, self._model.njoints, 2)]
-
-
-class MujocoTree:
-    """Rotor, satellites and couplings in MuJoCo; each needs a mass and an inertia."""
-
-    def __init__(self, mujoco, numbers: Numbers, masses: Masses) -> None:
-        self._mujoco = mujoco
-        e, branches = numbers.eccentricity, []
-        for phase, axial in numbers.branches:
-            cam = f'{-e * np.sin(phase)!s} {e * np.cos(phase)!s} {axial!s}'
-            coupling = f'<body><joint type="slide" axis="1 0 0"/>{_inertial(*masses[2:4])}</body>'
-            branches.append(
-                f'<body pos="{cam}"><joint type="hinge" axis="0 0 1"/>'
-                f'{_inertial(*masses[:2])}{coupling}</body>'
-            )
-        rotor = _inertial(1.0, masses.rotor_inertia)
-        self._model = mujoco.MjModel.from_xml_string(
-            '<mujoco><compiler angle="radian"/><option gravity="0 0 0"/><worldbody><body>'
-            f'<joint type="hinge" axis="0 0 1"/>{rotor}{"".join(branches)}'
-            '</body></worldbody></mujoco>'
-        )
-        self._data = mujoco.MjData(self._model)
-
-    def move(self, q, v, a) -> None:
-        data = self._data
-        data.qpos[:], data.qvel[:], data.qacc[:] = q, v, a
-        self._mujoco.mj_inverse(self._model, data)
-
-    def torques(self, at_rings, at_arms) -> np.ndarray:
-        """Give what the motors of the joints would have to give."""
-        data, applied = self._data, np.zeros(self._model.nv)
-        for body, (force, torque) in zip(self._order(), [*at_rings, *at_arms], strict=True):
-            pair = np.array([*force, 0.0]), np.array([0.0, 0.0, torque])
-            self._mujoco.mj_applyFT(self._model, data, *pair, data.xpos[body], body, applied)
-        return data.qfrc_inverse - applied
-
-    def joints(self, at_rings, at_arms) -> tuple[list[Wrench], list[Wrench]]:
-        """Give what cams do to satellites, and satellites to couplings."""
-        data, found = self._data, []
-        for body, (force, torque) in zip(self._order(), [*at_rings, *at_arms], strict=True):
-            data.xfrc_applied[body] = [*force, 0.0, 0.0, 0.0, torque]
-        self._mujoco.mj_rnePostConstraint(self._model, data)
-        for body in self._order():
-            *_, torque, fx, fy, _ = data.cfrc_int[body]
-            lever = data.xpos[body] - data.subtree_com[1]  # that torque is about the latter
-            found.append((np.array([fx, fy]), torque - _cross(lever, (fx, fy))))
-        return found[: len(at_rings)], found[len(at_rings) :]
-
-    def _order(self) -> list[int]:
-        """All satellites, then all couplings."""
-        return [*range(2, self._model.nbody, 2), *range(3, self._model.nbody, 2)]
-
-
-def _inertial(mass: float, inertia: float) -> str:
-    return f'<inertial pos="0 0 0" mass="{mass!s}" diaginertia="{" ".join([str(inertia)] * 3)}"/>'
