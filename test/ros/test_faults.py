@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from driver import MILLISECOND, drive, rotor_position
-from expected_outputs import is_right
+from expected_outputs import assert_output
 from live import (
     DEADLINE,
     PATIENT,
@@ -56,7 +56,8 @@ def assert_answered(received, sent, *, joined_late=False, left_early=False) -> N
         if left_early:
             due = due[: len(messages)]
         assert [stamp_of(message) for message in messages] == due
-        assert all(is_right(name, m, rotor_position(stamp_of(m))) for m in messages)
+        for message in messages:
+            assert_output(name, message, rotor_position(stamp_of(message)))
 
 
 # Driving and listening.

@@ -15,7 +15,7 @@ import yaml
 from blocked_bags import wait_until
 from calibrations import AMPLITUDE, single_order
 from diagnostic_msgs.msg import DiagnosticArray
-from expected_outputs import Settings, all_right
+from expected_outputs import Settings, assert_outputs
 from geometry_msgs.msg import PoseArray
 from live import DEADLINE, SECOND, STATES, rotor_bytes
 from rclpy.exceptions import ParameterException
@@ -162,7 +162,7 @@ def test_parameters_set_together_take_effect_with_the_next_message_or_not_at_all
         outputs = [
             deserialize_message(data, TYPES[topic]) for topic, data in published if topic in TYPES
         ]
-        assert all_right(outputs, position, settings)
+        assert_outputs(outputs, position, settings)
     assert len(seen) > 12  # of the 24 that there are
 
 

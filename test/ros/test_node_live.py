@@ -14,7 +14,7 @@ import pytest
 import rosbag2_recorder
 import yaml
 from blocked_bags import finished, gearkin_here
-from expected_outputs import Settings, all_right
+from expected_outputs import Settings, assert_outputs
 from live import DEADLINE, PATIENT, SECOND, START, live_node, parameter, rotor_state, stamp_of
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
@@ -135,7 +135,7 @@ def test_node_of_another_mechanism_with_other_names(start, tmp_path):
     output = live.peer.answer(rotor_state(START, ['m7'], [7.5]))
     numbers = oracle.Numbers(61, 58, 0.002, tuple(branches.values()))
     settings = Settings(-1, 0.0, 'shoulder', 'arm_')
-    assert all_right(output, 7.5, settings, numbers=numbers, branch_names=tuple(branches))
+    assert_outputs(output, 7.5, settings, numbers=numbers, branch_names=tuple(branches))
     assert live.peer.status()[0] == OK
     line = live.lines('INFO')[0]
     assert 'gear ratio -58/3' in line.text
@@ -154,14 +154,14 @@ def test_every_valid_input_has_one_output_with_its_stamp(shared):
     for messages in zip(*outputs, strict=True):
         assert [stamp_of(message) for message in messages] == stamps
     for number in (*range(8), 151, 299):
-        assert all_right(outputs[number], positions[number])
+        assert_outputs(outputs[number], positions[number])
 
 
 def test_rejected_input_has_no_output_and_is_a_warning_in_the_next_report(shared):
     """`test/state/test_faults.py` has all causes."""
     peer, began = shared.peer, time.time_ns()
     bad, good = rotor_state(START), rotor_state(peer.stamp(), position=[1.5])
-    assert all_right(peer.answer(bad, good), 1.5)
+    assert_outputs(peer.answer(bad, good), 1.5)
     level, text, values = peer.status(lambda s: s.level == b'\1', 'a warning', since=began)
     assert (level, text) == (WARN, 'rejected: position missing 1')
     assert values['rejected: position missing'] == '1'
@@ -283,7 +283,7 @@ def test_best_effort_driver_is_heard_and_so_is_a_reliable_one_beside_it(start):
         output = [messages[-1] for messages in list(peer.received.values())[:3] if messages]
         return output if len(output) == 3 else None
 
-    assert all_right(peer.wait_until(outputs, 'outputs'), 1.5)
+    assert_outputs(peer.wait_until(outputs, 'outputs'), 1.5)
     peer.connect()
     said = '2 drivers; losses unknown'
     assert peer.status(lambda s: s.message == said, said)[0] == WARN
