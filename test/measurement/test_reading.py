@@ -129,33 +129,6 @@ def test_times_of_rows_are_read_if_there_are_any(tmp_path, config, name, values)
     assert recording.columns[0].endswith(f'] from {name}')
 
 
-@pytest.mark.parametrize(
-    ('time', 'cause'),
-    [
-        (lambda rows: 0.0 * rows, 'they stand still'),
-        (lambda rows: rows, 'steps of 1 do not tell their unit: .* --time-column .T .ms'),
-        (lambda rows: 1e18 + rows, r'steps of \d+ do not tell their unit'),
-        (lambda rows: [f'{row:.0f}. Nov' for row in rows], 'no numbers nor ISO 8601'),
-    ],
-)
-def test_times_that_cannot_be_read_are_an_error(tmp_path, config, time, cause):
-    rows = np.arange(500.0)
-    angle = 1e-4 * rows
-    path = write_csv(tmp_path / 'r.csv', rotor=angle, output=angle, T=time(rows))
-    with pytest.raises(RecordingError, match=f'the times in T: {cause}'):
-        read(path, config)
-
-
-@pytest.mark.parametrize('units', [(1.0, 1e3), (1e3, 1.0), (1.0, 1e6), (1e9, 1.0)])
-def test_times_of_both_encoders_in_different_units_are_refused(tmp_path, config, units):
-    time, angle = np.arange(400) * 0.01, np.linspace(0.0, 1.0, 400)
-    columns = {'motor_time': units[0] * time, 'motor_rad': -19.0 * angle}
-    columns |= {'output_time': units[1] * time, 'output_rad': angle}
-    path = write_csv(tmp_path / 'both.csv', **columns)
-    with pytest.raises(RecordingError, match='as in another unit: convert one of them'):
-        read(path, config)
-
-
 def test_times_that_go_back_end_the_recording_there(tmp_path, config):
     """Interpolated over them, angles were greater than any that was recorded."""
     ideal = 0.1 * np.sin(np.arange(8000) / 300.0)
