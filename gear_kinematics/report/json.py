@@ -46,6 +46,8 @@ def _strict(value: Any) -> Any:
             return None
         case float() | int() | None:
             return value
+        case np.generic():
+            return _strict(value.item())
         case Estimate():
             return _strict(estimated(value))
     text: Any = type(value).__str__

@@ -3,15 +3,20 @@
 
 import copy
 import json
+import math
 import re
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
+from fractions import Fraction
 from pathlib import Path
 
 import jsonschema
+import numpy as np
 import pytest
 import report_samples as samples
 
 from gear_kinematics.report import json as strict_json
+from gear_kinematics.report.document import Document
+from gear_kinematics.statistics.uncertainty import Estimate
 from gear_kinematics.validation.document import document
 from gear_kinematics.validation.findings import findings
 from gear_kinematics.validation.report import BagReport
@@ -94,6 +99,21 @@ def test_numbers_that_are_none_are_null():
     assert not position['passed']
     assert bag['rotor']['rate'] is None
     assert bag['rotor']['max_speed'] is None
+
+
+def test_results_are_written_without_their_arrays():
+    @dataclass
+    class Result:
+        ratio: Fraction
+        values: np.ndarray
+        angle: Estimate
+        count: np.int64
+
+    result = Result(Fraction(-58, 3), np.zeros(3), Estimate(2.0, 0.5, math.inf, 9), np.int64(3))
+    written = loads(strict_json.to_json(Document('gearkin', (), {'found': (result,)})))
+    angle = {'value': 2.0, 'standard_uncertainty': 0.5, 'degrees_of_freedom': None}
+    angle |= {'expanded_uncertainty': pytest.approx(0.98, abs=1e-3), 'repeats': 9}
+    assert written['found'] == [{'ratio': '-58/3', 'angle': angle, 'count': 3}]
 
 
 def test_example_of_the_documentation_follows_the_schema(strict):
