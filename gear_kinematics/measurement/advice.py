@@ -36,13 +36,15 @@ _NO_ANGLE = re.compile(
 )
 """Words in names of columns that are not proposed as angles."""
 _LIKELY = re.compile(
-    r'(?i)pos|\bq|_q|ang|enc|theta|winkel|rotation|(rad|deg|rev|inc|cnt|counts)\b'
+    r'(?i)pos|\bq|_q|ang(?!e)|enc(?!y)|theta|winkel|rotation|(rad|deg|rev|inc|cnt|counts)\b'
 )
 """Words in names of columns that are proposed first."""
+_NO_NAME = re.compile(r'(?i)(.*\[|(data|ch|channel|column|signal|var)[ _]?)?\d+\]?')
+"""Names of columns without a name of their own, as of elements of a matrix."""
 _WORD = re.compile(r'(?i)(?!nan|null|none|inf)[^\W\d]')  # in columns of states or names
 _TORQUE = re.compile(
     rf'(?i)^(?!.*({_WANTED})).*'
-    r'(torq|effort|moment|tau|load|n[·.* -]?m\b|^[tm][xyz]$)'
+    r'(torq|effort|moment(?!um)|tau|load|n[·.* -]?m\b|^[tm][xyz]$)'
 )
 """Words in names of columns that are proposed as torques."""
 
@@ -121,11 +123,13 @@ def _examples(table: TableFile) -> Iterator[Mapping[str, str]]:
         and not _WORD.match(table.first.get(name, ''))
     ]
     units = {name: usual_unit(table.units.get(name, '')) or meaning(name).unit for name in names}
-    known, others = {'', *ANGLE_UNITS}, {*FOREIGN, *TORQUE_UNITS, *TIME_UNITS}
+    others = {*FOREIGN, *TORQUE_UNITS, *TIME_UNITS}
     angles = [
         name
         for name in filterfalse(_NO_ANGLE.search, names)
-        if units[name] in known or (units[name] not in others and _LIKELY.search(name))
+        if units[name] in ANGLE_UNITS
+        or (units[name] not in others and '/' not in units[name] and _LIKELY.search(name))
+        or _NO_NAME.fullmatch(name)
     ]
     torques = [name for name in names if _TORQUE.search(name) or units[name] in TORQUE_UNITS]
     likely = [*filter(_LIKELY.search, angles)]

@@ -41,8 +41,16 @@ _WRAPPED = re.compile(r'(?<![^,;\t\n])"[^"\n]*(\n[^"\n]*){1,3}"(?=[,;\t\n])')
 _PADDED = re.compile(r'(?<=[,;|\t]) +(?=")')  # which would hide quotation marks
 _TYPES = re.compile(r'(?i)[iuf]\d+|(float|double|u?int)\d*|(type|interp|blockpath|portindex): *.+')
 """Cells of rows that give types, as INCA and Simulink write them."""
-# Beginnings of CAN bus logs of candump, PCAN-View and CANoe.
-_FRAMES = re.compile(r'\s*\(\d+\.\d+\)\s+\w+\s+[0-9A-F]+#|;\$FILEVERSION|date \w{3} \w{3} \d')
+_FRAMES = (
+    r'\s*(\(\d+\.\d+\)\s+)?(\w+\s+)?[\dA-F]{3,8}(#|\s+\[\d+\]\s+[\dA-F]{2}\b)'
+    r'|;\$FILEVERSION|date \w{3} \w{3} \d'
+)
+"""Beginnings of CAN bus logs of candump, PCAN-View and CANoe."""
+_NO_TABLES = {
+    _FRAMES: 'a log of CAN frames: decode their signals to columns, as cantools does',
+    '# Created by Octave': 'a text of Octave: save the variables with the option -v7, as a .mat',
+}
+"""Beginnings of texts that are no tables, and what to do."""
 _CODESYS = '[key]; [value]'  # begins a trace of CODESYS, whose variables are below each other
 _NO_NAMES = re.compile(r'(?i)[-+|:=\s]*|sep=.*\s*')  # lines without names, as of psql
 _CLOCKS = {'name': 'ms', 'x_value': 's', 'x': ''}
@@ -186,8 +194,9 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
 
 def _layout(lines: Sequence[str]) -> _Layout:
     """Find separator, decimal point, names and units; ValueError without numbers or names."""
-    if _FRAMES.match(''.join(lines[:1])):
-        raise ValueError('a log of CAN frames: decode their signals to columns, as cantools does')
+    for begin, cause in _NO_TABLES.items():
+        if re.match(begin, ''.join(lines[:1])):
+            raise ValueError(cause)
     filled = [k for k, line in enumerate(lines) if line.strip() and not line.startswith(_COMMENT)]
     last = [lines[k] for k in filled[-_ROWS:]]
     last = last[len(last) // 2 :]

@@ -642,6 +642,10 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
                                  '{:.5f}'), r'--rotor-column motor\d_pos --output-column output_'),
         (' (1764230000.000000) can0 141#A100000000000000\n', 'a log of CAN frames: decode'),
         ('date Thu Nov 26 09:12:33 2026\nbase hex\n', 'a log of CAN frames: decode'),
+        ('  can0  00000141   [8]  A1 00 00 00 00 00 00 00\n', 'a log of CAN frames: decode'),
+        (' (1764230000.000000)  can0  141   [2]  A1 00\n', 'a log of CAN frames: decode'),
+        ('# Created by Octave 9.2.0, Thu Nov 26\n# name: rotor\n# type: matrix\n 0\n 1\n 2\n',
+         'a text of Octave: save the variables with the option -v7'),
         ('t,angle [deg],force [N]\n0,1,2\n1,2,3\n', 'with their units, by --angle-column'),
         (lambda t, r, o: written([t, r, o], 'time,force_N,angle_rad'),
          'with their units, by --angle-column'),
@@ -1094,6 +1098,19 @@ def test_an_index_without_a_name_is_proposed_for_the_times(tmp_path, gear, refer
     with pytest.raises(RecordingError, match=r'--time-column 1$') as caught:
         read(path, gear, Sources(needs_times=True))
     assert read(path, gear, followed(caught.value)).encoders.timed
+
+
+@pytest.mark.parametrize('names', ['t,pressure_2,pressure_1', 't,Range,Exchange'])
+def test_only_columns_that_may_be_angles_are_proposed(tmp_path, gear, reference, names):
+    with pytest.raises(RecordingError, match='by --angle-column, --torque-column'):
+        read(saved(tmp_path, written(reference('encoders'), names)), gear)
+
+
+@pytest.mark.parametrize('pair', ['actual_q_0,momentum_0', 'Efficiency (kgf/W),Torque (N·m)'])
+def test_a_momentum_is_no_torque_and_an_efficiency_no_angle(tmp_path, gear, reference, pair):
+    path = saved(tmp_path, written(reference('ramps'), f'time,{pair}', '{:.6f}'))
+    with pytest.raises(RecordingError, match='by --angle-column, --torque-column'):
+        read(path, gear)
 
 
 def test_temperatures_are_no_times(tmp_path, gear, reference):
