@@ -218,8 +218,10 @@ def _find_topic(
         topic for topic in of_type if base_name(topic) not in TOPICS
     ]
     if not candidates:
-        there = {t + _NOT_CDR * (t in bag.not_cdr): kind for t, kind in bag.topics.items()}
-        raise missing_topic(bag.path, there, name, TOPICS[name].type, suggest=False)
+        wanted_type = TOPICS[name].type
+        unread = {t for t in bag.not_cdr if bag.topics[t] == wanted_type}
+        there = {t + _NOT_CDR * (t in unread): kind for t, kind in bag.topics.items()}
+        raise missing_topic(bag.path, there, name, wanted_type, suggest=False)
     candidates = [t for t in candidates if t.rpartition('/')[0] == namespace] or candidates
     joints: dict[str, list[str]] = {}
     if len(candidates) > 1 and name == ROTOR_STATE:

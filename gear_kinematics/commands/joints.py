@@ -13,6 +13,8 @@ from gear_kinematics.report.document import printable
 from gear_kinematics.wire.nearest import among, listed, nearest
 from gear_kinematics.wire.topics import OUTPUT_ENCODER, ROTOR_STATE, TOPICS, base_name
 
+_NO_JOINTS = f'There is none on topics of type {TOPICS[ROTOR_STATE].type}.'
+
 
 def can_ask() -> bool:
     """Return whether a person is at a terminal."""
@@ -53,7 +55,7 @@ def choose_joint(
         remedy = '; '.join(f'{listed([j.joint for j in on])} on {topic}' for topic, on in there)
         option = {'rotor': '--joint', 'output': '--encoder-joint'}[role]
         remedy = f'Repeat with {option}, and its topic if needed: {printable(remedy)}{hint}'
-        raise ValueError(f'{question} {remedy if names else "There is none."}')
+        raise ValueError(f'{question} {remedy if names else _NO_JOINTS}')
     for number, (topic, joint) in enumerate(found, 1):
         print(f'{number:3}  {printable(joint)} on {topic}')
     answer = ask(f'Number of the joint of the {role}{hint}: ')

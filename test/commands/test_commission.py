@@ -200,7 +200,7 @@ ENCODER = 'which joint is the output? Repeat with --encoder-joint, and its topic
     ({'a': ['m', 'o'], 'b': ['p']}, '--rotor-topic a', ROTOR + 'm, o on /a'),
     ({'a': ['m'], 'b': ['o'], 'c': ['p']}, '--joint m', ENCODER + 'o on /b; p on /c'),
     ({'a': ['m']}, '--joint n', "no joint 'n'. " + ROTOR.partition('? ')[2] + 'm on /a'),
-    ({'rotor_state': ['m']}, '', 'which joint is the output? There is none.'),
+    ({'rotor_state': ['m']}, '', 'There is none on topics of type sensor_msgs/msg/JointState.'),
 ])  # fmt: skip
 def test_topics_and_joints_that_are_missing_or_several_are_named(
     topics, options, said, positions, tmp_path
