@@ -14,7 +14,7 @@ import numpy as np
 from gear_kinematics.measurement.names import known_units, meaning, usual_unit
 
 MOMENT = re.compile(
-    r'(\d+ days? |\d{1,4}[-./](\d\d?|[a-z]{3})[-./]\d{2,4}[T ] ?)?'
+    r'(\d+ days? |\d{1,4}[-./ ](\d\d?|[a-z]{3})[-./ ]\d{2,4}[T ] ?)?'
     r'\d?\d:\d\d(:\d\d([.,]\d+)?|[.,]\d+)\s?'
     r'(Z|UTC|[AP]M|[+-]\d\d:?\d\d)?',
     re.ASCII | re.IGNORECASE,
@@ -116,7 +116,7 @@ def _moments(text: Any) -> Any:
         plain = of_day.str.replace(r'^\d+:\d+[.].*', r'0:\g<0>', regex=True)
         moments = pd.Timestamp(0) + pd.to_timedelta(plain, errors='coerce') + later
     if not moments.notna().any():  # other dates
-        date = r'\d\d?[./-](\d\d?|[A-Za-z]{3})[./-](\d{4}|(?<=[./])\d\d) +\d\d?:\d\d'
+        date = r'\d\d?[ ./-](\d\d?|[A-Za-z]{3})[ ./-](\d{4}|(?<=[./])\d\d) +\d\d?:\d\d'
         date = rf'\d{{4}}[./-]\d\d?[./-]\d\d?[ T]+\d\d?:\d\d|{date}'  # with AM or PM
         dates = text.where(text.str.match(date))
         dates = dates.str.replace(r'([./])(\d\d)(?= )', r'\g<1>20\2', regex=True)

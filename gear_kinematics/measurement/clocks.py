@@ -19,10 +19,10 @@ from gear_kinematics.wire.cdr import SECOND
 _DATES = 978_307_200.0, 4_102_444_800.0  # s since 1970: the years 2001 and 2100
 _LEAST_STEP, _MOST_STEP = {'s': 1e-6, 'ms': 5e-5, 'us': 5e-5, 'ns': 5e-5}, 1.0
 """Likely intervals between samples, s: least for times in a unit, and greatest."""
-_EXCEL = 25_569
-"""Days between the epoch of workbooks and 1970."""
-_FILETIME = 116_444_736_000_000_000
-"""Times of Windows, in 100 ns, in 1970."""
+_TICKS = 621_355_968_000_000_000, 116_444_736_000_000_000, 0
+"""Times of .NET, since the year 1, and of Windows, since 1601, in 1970; of a count; in 100 ns."""
+_EPOCHS = [('days', 25_569), *(('100ns', ticks) for ticks in _TICKS[:2])]
+"""Units of dates of workbooks, .NET and Windows; these dates in 1970."""
 _UNREADABLE = 0.01  # greatest share of times that cannot be read
 _RISING = 0.5  # least share of all steps forward that remains at the end of doubtful times
 _LATE_ROWS = 25  # most successive rows out of order; more show a clock that was set back
@@ -60,11 +60,13 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
     likely = [unit for unit, (size, _) in spans.items() if _LEAST_STEP[unit] <= size <= _MOST_STEP]
     if len(likely) > 1:
         likely = [unit for unit in likely if speed <= FASTEST * TIME_UNITS[unit]]
-    workbook = _DATES[0] < (times[0] - _EXCEL) * _DAY / SECOND < _DATES[1]
-    if workbook and _LEAST_STEP['s'] <= step * _DAY / SECOND <= _MOST_STEP:
-        likely = ['days']
-    elif common := [unit for unit in dated if unit in likely]:
-        likely = common
+    others = [
+        unit
+        for unit, epoch in _EPOCHS
+        if _DATES[0] < (times[0] - epoch) * TIME_UNITS[unit] < _DATES[1]
+        and _LEAST_STEP['s'] <= step * TIME_UNITS[unit] <= _MOST_STEP
+    ]
+    likely = others or [unit for unit in dated if unit in likely] or likely
     if (len(likely) != 1 and role == 'rotor') or (
         _is_temps(clock) and times[0] > _LATE_ROWS * step
     ):
@@ -120,8 +122,8 @@ def stamps(
     if clock is None or times is None:
         return np.arange(len(rows)) * SECOND, rows
     times = times[rows]
-    if clock.unit == 'filetime':
-        times = times - _FILETIME
+    if clock.unit == '100ns':
+        times = times - next(epoch for epoch in _TICKS if epoch <= np.nanmax(times) or not epoch)
     if times.dtype.kind == 'M':
         readable = ~np.isnat(times)
         stamp = times.astype('datetime64[ns]').astype(np.int64)

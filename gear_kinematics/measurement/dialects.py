@@ -194,8 +194,8 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
 
 def _layout(lines: Sequence[str]) -> _Layout:
     """Find separator, decimal point, names and units; ValueError without numbers or names."""
-    for begin, cause in _NO_TABLES.items():
-        if re.match(begin, ''.join(lines[:1])):
+    for pattern, cause in _NO_TABLES.items():
+        if re.match(pattern, ''.join(lines[:1])):
             raise ValueError(cause)
     filled = [k for k, line in enumerate(lines) if line.strip() and not line.startswith(_COMMENT)]
     last = [lines[k] for k in filled[-_ROWS:]]
@@ -314,7 +314,7 @@ def _with_times(
         if not (known and apart and (times[1:] or (scope and key == 'name'))):
             continue
         unit = _CLOCKS.get(key, meaning(key).unit)
-        unit = 'filetime' if key == 'name' and _FILETIME.fullmatch(first) else unit
+        unit = '100ns' if key == 'name' and _FILETIME.fullmatch(first) else unit
         names = [channels.get(k, f'time of {[*row, ""][k + 1]}') for k in range(len(row))]
         clocks = {name: names[max(t for t in times if t < k)] for k, name in channels.items()}
         below = (one for one in rows if one[0].lower() in {'unit', ''})

@@ -80,7 +80,7 @@ _SIZES: Mapping[str, Mapping[str, Any]] = {
         'minutes minute': 60.0,
         'hours hour': 3600.0,
         'days day': 86_400.0,
-        'filetime': 1e-7,  # of Windows, as of TwinCAT
+        '100ns filetime': 1e-7,  # ticks of Windows and .NET
     },
 }
 """Sizes of units in rad, N·m or s; the first spelling of each is the usual one."""

@@ -27,7 +27,7 @@ from gear_kinematics.measurement.dialects import TableFile
 from gear_kinematics.measurement.encoder_range import signed, unwrapped
 from gear_kinematics.measurement.encoder_step import Step, find_step
 from gear_kinematics.measurement.formats import open_table
-from gear_kinematics.measurement.names import meaning
+from gear_kinematics.measurement.names import TIME_UNITS, meaning
 from gear_kinematics.measurement.recording import (
     Array,
     Encoders,
@@ -226,9 +226,6 @@ class _Samples:
                 for one in (times, usual)
             ]
             if times != usual and (named or alike == [True, False]):
-                units = {table.units.get(one) or meaning(one).unit for one in (times, usual)}
-                if len(units) > 1:
-                    raise ValueError(f'{times} and {usual} are not in the same unit')
                 found[role] = times
             elif len({*own.values()}) > 1 and _are_apart(raw[usual], raw[times]):
                 raise ColumnsError(
@@ -236,6 +233,13 @@ class _Samples:
                     'both with --time-column, or name the columns motor_time and output_time',
                     time=usual,
                 )
+        for times in {*found.values()}:
+            own_unit, unit = (table.units.get(k) or meaning(k).unit for k in (times, usual))
+            if own_unit != unit:
+                if not {own_unit, unit} <= TIME_UNITS.keys():
+                    cause = 'are not in the same unit: give both units in the names'
+                    raise ValueError(f'{times} and {usual} {cause}')
+                raw[times] = raw[times] * (TIME_UNITS[own_unit] / TIME_UNITS[unit])
         return found
 
     def _sampled(

@@ -421,6 +421,16 @@ ENCODERS = {
     'days of pandas': plain(',rotor,output', time=lambda v: f'0 days 00:00:{v:09.6f}'),
     'times of each side': lambda t, r, o: written(
         [t[:-1], r[:-1], t[1:], o[1:]], 'motor_time,motor_pos,output_time,output_pos', '{:.5f}'),
+    'times of each side in units of their own': lambda t, r, o: written(
+        [t[:-1] * 1e3, r[:-1], t[1:], o[1:]], 'motor_time_ms,motor_pos,load_time_s,load_pos',
+        '{:.5f}'),
+    'ticks of .NET': lambda t, r, o: written(
+        [np.round(t * 1e7).astype(int) + 639_157_824_000_000_000, r, o], NAMES, '{}'),
+    'ticks of Windows': lambda t, r, o: written(
+        [np.round(t * 1e7).astype(int) + 134_090_000_000_000_000, r, o], NAMES, '{}'),
+    'ticks of 100 ns': lambda t, r, o: written(
+        [np.round(t * 1e7).astype(int), r, o], 'Time [100ns],rotor,output', '{}'),
+    'dates with spaces': plain(time=clock('%d Nov %Y %H:%M:%S.%f')),
     'a row from the future of one side': lambda t, r, o: written(
         [moved(t, (200, 40.0)), r, t, o], 'motor_time,motor_pos,output_time,output_pos', '{:.5f}'),
     'a repeated time': lambda t, r, o: written(
@@ -641,6 +651,8 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         (lambda t, r, o: written([t, r, 1.5 * r, o], 'time,motor1_pos,motor2_pos,output_pos',
                                  '{:.5f}'), r'--rotor-column motor\d_pos --output-column output_'),
         (' (1764230000.000000) can0 141#A100000000000000\n', 'a log of CAN frames: decode'),
+        (lambda t, r, o: written([t, r, t, o], 'motor_time,motor_pos,output_time_ms,output_pos'),
+         'are not in the same unit: give both units in the names'),
         ('date Thu Nov 26 09:12:33 2026\nbase hex\n', 'a log of CAN frames: decode'),
         ('  can0  00000141   [8]  A1 00 00 00 00 00 00 00\n', 'a log of CAN frames: decode'),
         (' (1764230000.000000)  can0  141   [2]  A1 00\n', 'a log of CAN frames: decode'),
