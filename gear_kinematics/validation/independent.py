@@ -63,10 +63,14 @@ class Independent:
     def __init__(self, task: Task, topics: Topics, joint_states: str = '') -> None:
         """Prepare for a recording; where the task is strict, outputs of another zero are wrong.
 
+        An absolute encoder at the output can change the count once, and after gaps again.
+
         `joint_states` is the topic of the joints of the mechanism, if recorded.
         """
         self._parameters = parameters = task.parameters
-        self._topics, self._joint_states, self._strict = topics, joint_states, task.strict
+        self._topics, self._joint_states = topics, joint_states
+        self._strict = task.strict and not parameters.absolute
+        self._referable = parameters.absolute  # whether that encoder may yet give the count
         self._ratio, self._direction = parameters.gear.gear_ratio, parameters.rotor_direction
         self._joint = parameters.output_name if parameters.actuator else ''  # the only one
         units = _UNITS | {'slide velocity of joints': 'rad/s'}  # with the tolerance of velocities
@@ -152,13 +156,15 @@ class Independent:
             elapsed, turned = stamp - self._last[0], position - self._last[1]
             position = self._last[1] + math.remainder(turned, period)
             if abs(elapsed) * 1e-9 * parameters.max_rotor_speed >= 0.5 * period:
-                self._offset = None
+                self._offset, self._referable = None, parameters.absolute
         self._last = stamp, position
         angle = self._direction * (position - parameters.rotor_zero)
+        missing = output[1] * float(self._ratio) - angle
+        known = self._limits['position'] * abs(float(self._ratio))
+        if self._referable and self._offset is not None and abs(missing - self._offset) > known:
+            self._offset, self._referable = None, False
         if self._offset is None:
-            missing = output[1] * float(self._ratio) - angle
             whole = period * round(missing / period) if period else 0.0
-            known = self._limits['position'] * abs(float(self._ratio))
             self._offset = whole if self._strict or abs(missing - whole) <= known else missing
             self._taken += self._offset != 0.0
         return angle + self._offset

@@ -27,13 +27,11 @@ from gear_kinematics.fleet.processes import Work
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.arm import load_actuators
-from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.arm import ArmValidator
 from gear_kinematics.validation.causes import FindingCause
-from gear_kinematics.validation.independent import Independent
 from gear_kinematics.validation.report import BagReport, Finding, unusable
 from gear_kinematics.validation.task import Task
-from gear_kinematics.validation.validator import Validator, agrees
+from gear_kinematics.validation.validator import Validator
 from gear_kinematics.wire.cdr import MalformedMessageError, messages_lost
 from gear_kinematics.wire.topics import (
     BODY_POSES,
@@ -117,19 +115,11 @@ def _judged(task: Task, bag: Bag, progress: ReportProgress | None) -> BagReport:
     arm = ArmValidator(validators) if task.actuators else None
     known = {topic for each in validators for topic in each.topics}
     judged = sorted(known.difference(each.unjudged for each in validators))
-    batches: Iterable[MessagesByTopic] = bag.by_topic(judged, progress)
-    proofs = [
-        Independent(v.task, v.given, v.further.get(JOINT_STATES, '')) if task.independent else None
-        for v in validators
-    ]
-    for proof in filter(None, proofs):
-        batches = _seen(proof, batches)
-    damage = _feed(arm or validators[0], batches)
+    damage = _feed(arm or validators[0], bag.by_topic(judged, progress))
     lost = _recorded_losses(bag)
     reports = arm.reports(damage, lost) if arm else [validators[0].report(damage, lost)]
     reports = [
-        _explained(with_proof(report, proof), each, bag, topics)
-        for report, proof, each in zip(reports, proofs, tasks, strict=True)
+        _explained(report, each, bag, topics) for report, each in zip(reports, tasks, strict=True)
     ]
     report = arm.report(task, reports) if arm else reports[0]
     report = replace(report, findings=(*taken, *report.findings))
@@ -207,12 +197,9 @@ def _played(
     topics = Topics() if isinstance(task.parameters.gear, Mechanism) else Topics(poses='')
     strict = replace(task, strict=True)  # nothing is lost by a recorder here
     validator = Validator(strict, topics, further, encoder=encoder and f'/{OUTPUT_ENCODER}')
-    proof = Independent(task, Topics()) if task.independent else None
-    batches: Iterable[MessagesByTopic] = (
-        MessagesByTopic(validator.topics, batch) for batch in in_batches(messages, _BATCH)
-    )
-    damage = _feed(validator, _seen(proof, batches) if proof else batches)
-    report = with_proof(validator.report(damage), proof)
+    batches = in_batches(messages, _BATCH)
+    damage = _feed(validator, (MessagesByTopic(validator.topics, batch) for batch in batches))
+    report = validator.report(damage)
     return replace(report, findings=(*taken, *report.findings))
 
 
@@ -224,12 +211,20 @@ def _explained(report: BagReport, task: Task, bag: Bag, topics: Topics) -> BagRe
     begin = [*islice(bag.by_topic(topics), 1)]
     for other in joints_on(bag, [topics.rotor])[topics.rotor]:
         of_other = replace(task, parameters=replace(task.parameters, rotor_joint=other))
-        if other != joint and agrees(of_other, topics, begin):
+        if other != joint and _agrees(replace(of_other, independent=False), topics, begin):
             cause = FindingCause.OTHER_ROTOR if actuator else FindingCause.OTHER_JOINT
             values = {'joint': joint, 'other': other, 'actuator': actuator}
             found = Finding(cause, values=values, explains=True)
             return replace(report, findings=(found, *report.findings))
     return report
+
+
+def _agrees(task: Task, topics: Topics, batches: Iterable[MessagesByTopic]) -> bool:
+    """Return whether the outputs in batches agree with a task."""
+    validator = Validator(task, topics)
+    validator.feed(batches)
+    judged = validator.report().topics
+    return bool(judged) and judged[0].compared > 0 and not judged[0].wrong
 
 
 def _losses(lost: Counter[str], topics: Iterable[str]) -> Iterator[Finding]:
@@ -263,27 +258,6 @@ def _recorded_losses(bag: Bag) -> Counter[str]:
         for _, _, data in bag.messages(events) if events else ():
             lost += messages_lost(data)
     return lost
-
-
-def _seen(proof: Independent, batches: Iterable[MessagesByTopic]) -> Iterator[MessagesByTopic]:
-    """Pass messages on after an independent comparison has taken them."""
-    for batch in batches:
-        proof.take(batch)
-        yield batch
-
-
-def with_proof(report: BagReport, proof: Independent | None) -> BagReport:
-    """Add what an independent comparison has found."""
-    if not proof or report.verdict == Verdict.UNUSABLE:
-        return report
-    found = proof.report()
-    finding = Finding(
-        FindingCause.INDEPENDENT,
-        stamp=found.first_wrong,
-        values={'independent': found},
-        fails=not found.passed,
-    )
-    return replace(report, independent=found).adding(finding)
 
 
 def _lost(task: Task, cause: str) -> BagReport:

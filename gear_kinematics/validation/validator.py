@@ -25,6 +25,7 @@ from gear_kinematics.validation.corrected_topics import CORRECTED, Unbroken, why
 from gear_kinematics.validation.count_changes import CountChanges, first_number
 from gear_kinematics.validation.encoder_errors import EncoderErrors
 from gear_kinematics.validation.fields import Array, Window
+from gear_kinematics.validation.independent import Independent, IndependentReport
 from gear_kinematics.validation.load_topics import LoadTopic
 from gear_kinematics.validation.matching import SAMPLES, WINDOW, Expectation, OutputTopic
 from gear_kinematics.validation.output_topics import BodyPoses, MechanismStates, OutputState
@@ -113,6 +114,8 @@ class Validator:
             self._groups.append((Completeness(topics.rotor, missing, strict=task.strict), of))
         for output in self.outputs:
             output.shared = bool(parameters.actuator)
+        joint_states = further.get(JOINT_STATES, '')
+        self._proof = Independent(task, topics, joint_states) if task.independent else None
         if self._loads:
             columns.append(('acceleration', np.float64))
         self._window = Window({name: np.zeros(0, kind) for name, kind in columns})
@@ -158,7 +161,8 @@ class Validator:
         elif error is None and not any(topic.messages for topic in topics):
             error = self.output.why_none(recorded=self.given.output in self._begun)
         checked = [finding for check in input_health.CHECKS for finding in check(rotor)]
-        findings = *self._found(), *checked
+        proof = self._proof.report() if self._proof and error is None else None
+        findings = *self._found(proof), *checked
         passed = not any(finding.fails for finding in findings) and all(t.passed for t in topics)
         if not passed:
             known = _DOUBTS if any(t.wrong or t.faults for t in topics) else _DOUBTS | _OF_COUNTS
@@ -176,6 +180,7 @@ class Validator:
             rotor=rotor,
             topics=topics,
             findings=findings,
+            independent=proof,
             series=tuple(found for found in series if found),
             mechanism=self._gear if isinstance(self._gear, Mechanism) else None,
             module=self._parameters.module,
@@ -194,6 +199,8 @@ class Validator:
     @np.errstate(all='ignore')
     def take(self, batch: MessagesByTopic) -> None:
         """Process messages on the topics, and perhaps on others."""
+        if self._proof:
+            self._proof.take(batch)
         if self._prefix_open and any(messages.data for messages in batch.values()):
             self._find_prefix(batch)
         for topic in self.topics:
@@ -317,9 +324,8 @@ class Validator:
                         self._findings.append(taken)
                     return
 
-    def _found(self) -> Iterator[Finding]:
+    def _found(self, proof: IndependentReport | None) -> Iterator[Finding]:
         """Yield what the outputs are compared with, what explains their faults, and the rest."""
-        rotor = self.given.rotor
         if self.unjudged:
             yield Finding(FindingCause.POSES_UNJUDGED, values={'poses': self.unjudged})
         elif isinstance(self._gear, Mechanism) and self.outputs == [self.output]:
@@ -333,17 +339,12 @@ class Validator:
         for output in self.outputs:
             yield from output.causes()
         if self._state.input.mostly_rejected and self._state.input.missing_joint:
-            values = {'topic': rotor, 'detail': self._state.input.missing_joint}
+            values = {'topic': self.given.rotor, 'detail': self._state.input.missing_joint}
             yield Finding(FindingCause.JOINT_MISSING, values=values, explains=True)
         for group, _ in self._groups:
             yield from group.causes()
         if not self._corrector and self._begun.keys() & set(self._corrected):
             yield Finding(FindingCause.CORRECTION_UNJUDGED, values={'why': self._why_unjudged})
-
-
-def agrees(task: Task, topics: Topics, batches: Iterable[MessagesByTopic]) -> bool:
-    """Return whether the outputs in batches agree with a task."""
-    validator = Validator(task, topics)
-    validator.feed(batches)
-    judged = validator.report().topics
-    return bool(judged) and judged[0].compared > 0 and not judged[0].wrong
+        if proof:
+            cause, of = FindingCause.INDEPENDENT, {'independent': proof}
+            yield Finding(cause, '', proof.first_wrong, values=of, fails=not proof.passed)

@@ -114,8 +114,9 @@ def test_the_turn_of_the_recorded_encoder_passes(config, start, strict):
     messages = recorded(config, start=start)
     report = judge(messages, config, strict=strict)
     assert (report.verdict, texts(report)) == (Verdict.PASS, [AGREES])
+    assert judge(messages, config, strict=strict, independent=True).passed
     # So does a recording that begins later, whose outputs were referenced before.
-    report = judge(part(messages, 1.0), config)
+    report = judge(part(messages, 1.0), config, strict=strict, independent=True)
     assert report.verdict == Verdict.PASS
     assert AGREES in texts(report)
     # Without the parameter, the change has no reason.
@@ -194,6 +195,10 @@ def test_what_the_recorded_encoder_contradicts_fails(config, make, begin, faults
     assert report.verdict == Verdict.FAIL
     failing = [found for found in report.findings if found.fails]
     assert [f.values.get('disagreement') or sentence(f) for f in failing] == faults
+
+
+def test_a_second_jump_differs_independently():
+    assert not judge(spliced(SINGLE), SINGLE, independent=True).independent.passed
 
 
 @pytest.mark.parametrize('seed', range(8))
