@@ -18,11 +18,9 @@ from validating import field_of, texts, topic_of
 
 from gear_kinematics.bag import Message
 from gear_kinematics.correction.calibration_file import Calibration, Order
-from gear_kinematics.kinematics import matrix_method
 from gear_kinematics.kinematics.loads import Bodies
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
-from gear_kinematics.validation import output_topics
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.findings import explain
 from gear_kinematics.wire.cdr import SECOND
@@ -95,15 +93,6 @@ def test_what_the_node_publishes_passes(kind, name, samples):
         # Some messages of the faulty driver have no velocity either.
         least = kind.judged * min(found.messages, field_of(report, OUTPUT, 'velocity').compared)
         assert min(field.compared for field in found.fields) >= least > 600
-
-
-@pytest.mark.parametrize('name', ['servo_point_to_point', 'driver_faults'])
-def test_mechanism_agrees_with_the_matrix_method(name, monkeypatch):
-    monkeypatch.setattr(output_topics, 'solve', matrix_method.solve)
-    kind = KINDS['mechanism']
-    report = kind.validate(kind.recorded(read_bag(BAGS / name)))
-    assert report.verdict == Verdict.PASS, report.findings
-    assert topic_of(report, STATES).compared > 1000
 
 
 def off(by: float):
