@@ -2,7 +2,6 @@
 """The node as a process of its own, with a driver, listeners and clients over DDS."""
 
 import os
-import random
 import signal
 import sys
 import time
@@ -11,17 +10,12 @@ from contextlib import ExitStack
 
 import oracle
 import pytest
-import rosbag2_recorder
 import yaml
-from blocked_bags import finished, gearkin_here
+from blocked_bags import finished
 from expected_outputs import Settings, assert_outputs
 from live import DEADLINE, PATIENT, SECOND, START, live_node, parameter, rotor_state, stamp_of
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
-
-from gear_kinematics.bag.writing import BagWriter
-from gear_kinematics.wire.topics import JOINT_STATE, POSE_ARRAY
 
 pytestmark = pytest.mark.live
 
@@ -190,44 +184,6 @@ def test_diagnostics_are_published_once_a_second(shared):
     peer.wait_until(steady, 'three reports in two seconds')
     assert stamps[0] < stamps[1] < stamps[2]
     assert before < stamps[2] < peer.node.get_clock().now().nanoseconds
-
-
-# A recording.
-
-
-def test_the_recording_that_the_readme_makes_is_proven(start, tmp_path):
-    """Beside a driver with other names, homed at run time, and validated without any option."""
-    names = {'rotor_state': 'motor/joint_states'}
-    renamed = ['-r', 'rotor_state:=motor/joint_states', '-p', 'rotor_joint:=m1', *PATIENT]
-    peer = start(*renamed, connect=False, **names).peer
-    peer.connect(joint='m1')
-    peer.answer(rotor_state(peer.stamp(), ['m1'], [12.3]))
-    assert peer.home().success
-    traffic = []
-    for first in range(0, 2000, 200):
-        sent = [
-            rotor_state(peer.stamp(), ['m1'], [12.3 + 0.05 * (first + k)], [50.0])
-            for k in range(200)
-        ]
-        peer.send(*sent)
-        for rotor, (output, poses, _) in zip(sent, peer.outputs(200), strict=True):
-            states = {'/motor/joint_states': rotor, '/output_state': output, '/body_poses': poses}
-            traffic += [
-                rosbag2_recorder.Message(topic, stamp_of(rotor), serialize_message(message))
-                for topic, message in states.items()
-            ]
-    begin, end = traffic[0].received, traffic[-1].received
-    with BagWriter(tmp_path / 'monday') as writer:
-        for topic, kind in zip(states, (JOINT_STATE, JOINT_STATE, POSE_ARRAY), strict=True):
-            writer.add_topic(topic, kind)
-        rng = random.Random(1)  # noqa: S311, of faults, not of secrets
-        writer.write_all(rosbag2_recorder.record(traffic, rng, begin=begin, end=end, late=0.03))
-    done = gearkin_here('validate', 'monday', cwd=tmp_path)
-    assert (done.returncode, done.stderr) == (0, '')
-    assert 'm1, the only joint on /motor/joint_states, is taken' in done.stdout
-    moved = f'output angles are moved by {12.3 / 19.0:.12g} rad, as by another rotor_zero'
-    assert moved in done.stdout
-    assert gearkin_here('validate', 'monday', '--strict', cwd=tmp_path).returncode == 1
 
 
 # Quality of service.
