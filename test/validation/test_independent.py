@@ -1,7 +1,6 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The comparison by code that the node does not run finds what the usual one cannot."""
 
-import json
 import math
 from dataclasses import replace
 
@@ -11,7 +10,6 @@ from live import rotor_bytes
 from node_loop import answered
 from shipped_bags import BAGS, OUTPUT, POSES, ROTOR, read_bag
 
-from gear_kinematics.commands.cli import main
 from gear_kinematics.kinematics import GearRatio, RotorPosition, RotorTurns
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
@@ -124,11 +122,3 @@ def test_stamps_that_come_again_in_a_restarted_simulation_have_their_own_inputs(
     assert report.passed
     assert report.independent.passed
     assert report.independent.compared == len(messages) - len(states)
-
-
-def test_the_option_adds_to_the_json(capsys):
-    bag = str(BAGS / 'servo_point_to_point')
-    assert main(['validate', bag, '--independent', '--json', '-']) == 0
-    [found] = json.loads(capsys.readouterr().out)['bags']
-    assert found['independent']['compared'] == 6000
-    assert found['independent']['passed'] is True
