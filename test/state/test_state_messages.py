@@ -105,17 +105,6 @@ def test_only_selected_topics_are_encoded(actuator, topics):
     assert list(messages.encode(sample, topics)) == [(topic, every[topic]) for topic in topics]
 
 
-def test_names_and_frames_carry_the_prefix(actuator):
-    names = {'output_joint': 'left/shoulder', 'frame_prefix': 'left/'}
-    state, poses, joints = encode(actuator, sample_at(0.0), names)
-    assert list(state.name) == ['left/shoulder']
-    assert poses.header.frame_id == 'left/stator'
-    assert list(joints.name) == [
-        'left/rotor', 'left/satellite_a', 'left/satellite_b', 'left/oldham_a', 'left/oldham_b',
-        'left/shoulder',
-    ]  # fmt: skip
-
-
 @pytest.mark.parametrize('stamp', [0, 1, STAMP, -1, 2**31 * 10**9 - 1])
 def test_every_message_has_the_stamp_of_the_sample(actuator, stamp):
     for message in encode(actuator, sample_at(0.0)._replace(stamp=stamp)):
