@@ -206,12 +206,6 @@ def test_outputs_of_another_node_are_not_those_of_the_one_that_is_named():
     assert find_topics(bag_with('/rotor_state /shaft'), namespace='/left').output == '/shaft'
 
 
-def test_which_encoder_is_meant_is_asked():
-    bag = bag_with('/b/output_encoder /a/output_encoder')
-    with pytest.raises(BagError, match='which topic is output_encoder'):
-        find_encoder_topic(bag, '/rotor_state')
-
-
 def test_joints_are_looked_up_once(tmp_path):
     """In the whole recording, as no message is on one of the topics."""
     messages = [('/motor', 1, rotor_bytes(1, ['m1'], [0.0]))]
