@@ -27,6 +27,7 @@ from gear_kinematics.measurement.cells import (
     numbers,
     weight,
 )
+from gear_kinematics.measurement.channel_times import interval_of, named, with_times
 from gear_kinematics.measurement.names import FOREIGN, known_units, meaning
 from gear_kinematics.measurement.series import series_of
 from gear_kinematics.measurement.texts import BLOCK, Rows, encoding_of
@@ -53,9 +54,6 @@ _NO_TABLES = {
 """Beginnings of texts that are no tables, and what to do."""
 _CODESYS = '[key]; [value]'  # begins a trace of CODESYS, whose variables are below each other
 _NO_NAMES = re.compile(r'(?i)[-+|:=\s]*|sep=.*\s*')  # lines without names, as of psql
-_CLOCKS = {'name': 'ms', 'x_value': 's', 'x': ''}
-"""Words before channels with their own times, and the units of these."""
-_FILETIME = re.compile(r'\d{18}')  # times of Windows, since 1601
 
 
 class TableFile(NamedTuple):
@@ -96,6 +94,7 @@ class _Layout(NamedTuple):
     units: dict[str, str]
     clocks: dict[str, str]
     remark: str = ''
+    interval: float = 0.0  # s, of samples without times
 
 
 def open_text(path: Path, content: bytes | None = None) -> TableFile:
@@ -182,7 +181,11 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
             columns |= elements_of(frame, layout.names, arrays)
         values = {}
         for name in wanted:
-            column = checked(columns[name], name, layout.names, layout.units.get(name, ''))
+            column = columns[name]
+            if layout.interval and own.get(name) == 0:  # no times but below names that are repeated
+                steps = every * (column.isna().cumsum() - 1)
+                column = (layout.interval * steps).where(column.isna())
+            column = checked(column, name, layout.names, layout.units.get(name, ''))
             values[name] = numbers(column, layout.point)
         return values, every
 
@@ -234,7 +237,10 @@ def _layout(lines: Sequence[str]) -> _Layout:
     else:
         found = _joint_state(row) or ([str(k + 1) for k in range(len(row))], {}, {})
     titles = (line for line in above if len(cells_of(line.lstrip('#%/ '), separator)) < len(row))
-    return _Layout(separator, point, start, row, *found, ' '.join(titles))
+    interval = 0.0 if row[0] else interval_of([cells_of(line, separator) for line in above])
+    if interval:
+        found[1][found[0][0]] = 's'
+    return _Layout(separator, point, start, row, *found, ' '.join(titles), interval)
 
 
 def _score(lines: Sequence[str], separator: str, point: str) -> float:
@@ -258,7 +264,7 @@ def _names(
     labelled = (row[1:] for row in rows[:-1] if re.search('(?i)unit|einheit', ''.join(row[:1])))
     labels = [known_units(row, FOREIGN) for row in labelled]  # Tektronix has one of each axis
     label = max(labels, key=lambda label: len([*filter(None, label)]), default=[])
-    if found := _with_times([row[:width] for row in rows if len(row) >= numbers], label, begin[0]):
+    if found := with_times([row[:width] for row in rows if len(row) >= numbers], label, begin[0]):
         return found
     several = [len([*filter(None, row)]) >= min(width, 2) for row in rows]  # no rate, of catman
     long = [k for k, row in enumerate(rows) if len(row) >= numbers and several[k]]
@@ -287,43 +293,10 @@ def _names(
     if len(names) == numbers - 1 and [*begin] == [*'123']:  # the row names of R
         names = ['', *names]
     if len(names) < numbers or (separator == ' ' and len(names) > width):
-        raise ValueError(f'rows of {width} cells are below {len(names)} names: {", ".join(names)}')
+        cause = f'rows of {width} cells are below {len(names)} names: {", ".join(names)}'
+        raise ValueError(f'{cause}: write a name for each cell, and decimal points')
     names = [*names[:width], *[''] * (width - len(names))]
-    return names, _named(names, units), {}
-
-
-def _with_times(
-    rows: Sequence[Sequence[str]], label: Sequence[str], first: str
-) -> tuple[list[str], dict[str, str], dict[str, str]] | None:
-    """Find names, units and clocks of channels behind times of their own, which some may share.
-
-    The first cell of a row of names, such as Name, is repeated at each column of times. In files
-    of TwinCAT Scope, in which all channels may share their times, it need not be.
-
-    Args:
-        rows: lines above the numbers.
-        label: units of all columns but the first.
-        first: the first time.
-    """
-    scope = any(row[0].lower().startswith('sampletime') for row in rows)
-    for row in filter(itemgetter(slice(2, None)), rows):
-        key, times = row[0].lower(), [k for k, cell in enumerate(row) if cell == row[0]]
-        channels = {k: name for k, name in enumerate(row) if name != row[0]}
-        known = key in _CLOCKS or meaning(key).role == 'time'
-        apart = len({*channels.values()}) == len(channels)
-        if not (known and apart and (times[1:] or (scope and key == 'name'))):
-            continue
-        unit = _CLOCKS.get(key, meaning(key).unit)
-        unit = '100ns' if key == 'name' and _FILETIME.fullmatch(first) else unit
-        names = [channels.get(k, f'time of {[*row, ""][k + 1]}') for k in range(len(row))]
-        clocks = {name: names[max(t for t in times if t < k)] for k, name in channels.items()}
-        below = (one for one in rows if one[0].lower() in {'unit', ''})
-        alike = (one for one in below if all(one[t : t + 1] == one[:1] for t in times))
-        cells = ([''.join(one[k : k + 1]) for k in channels] for one in (*alike, ['', *label]))
-        units = next(filter(None, map(known_units, cells)), [])
-        of_channels = _named([*channels.values()], units)
-        return names, of_channels | dict.fromkeys(clocks.values(), unit), clocks
-    return None
+    return names, named(names, units), {}
 
 
 def _cells_above(line: str, separator: str, width: int) -> list[str]:
@@ -334,10 +307,6 @@ def _cells_above(line: str, separator: str, width: int) -> list[str]:
     others = [cells_of(line.lstrip('#%/ '), one) for one in _SEPARATORS]
     others.append(re.split(r'\s{2,}', line.strip('#%/ \n')))
     return next((other for other in others if len(other) == width), cells)
-
-
-def _named(names: Sequence[str], units: Sequence[str]) -> dict[str, str]:
-    return {name: unit for name, unit in zip(names, units, strict=False) if unit}
 
 
 def _joint_state(row: Sequence[str]) -> tuple[list[str], dict[str, str], dict[str, str]] | None:

@@ -3,10 +3,10 @@
 
 A table becomes a recording in steps, each in a module of its own: `open_table` here chooses the
 reader; `texts` decodes a text, in which `dialects` finds names, units and numbers, whose `cells`
-are numbers, times or arrays, and `series` divides those with a row for each value; `names` has the
-words and units in names, by which `columns` chooses, or `advice` proposes columns; `clocks` gives
-the rows their times; `assumed_units` doubts units that are not given; and `tables` decides which
-rows are used.
+are numbers, times or arrays; `channel_times` finds times that belong to some channels, and
+`series` divides texts with a row for each value; `names` has the words and units in names, by
+which `columns` chooses, or `advice` proposes columns; `clocks` gives the rows their times;
+`assumed_units` doubts units that are not given; and `tables` decides which rows are used.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping

@@ -274,6 +274,11 @@ ENCODERS = {
     'LabVIEW, without times': lambda t, r, o: written(
         [0 * t, r, o], 'X_Value\tMotor angle [rad]\tOutput angle [rad]\tComment',
         (lambda _: '', '{:.5f}', '{:.5f}'), '\t'),
+    'LabVIEW, with an interval in place of times, in two segments': lambda t, r, o: ''.join(
+        written([at, rotor, out], '\nSamples\t660\t660\nX_Dimension\tTime\tTime\nX0\t0.0\t0.0\n'
+                'Delta_X\t0.040\t0.040\n***End***\nX_Value\tMotor angle\tOutput angle\tComment',
+                (lambda _: '', '{:.5f}', '{:.5f}'), '\t')
+        for at, rotor, out in zip(*(np.split(one, 2) for one in (t, r, o)), strict=True)),
     'names behind a word, as their units are': plain(
         'Units;ms;deg;deg\ntime;rotor;output', ';', angle=DEG, unit=1e3),
     'units above names': plain('ms,deg,deg\ntime,rotor,output', angle=DEG, unit=1e3),
@@ -627,7 +632,7 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
            'motor_time,motor_rad,output_time,output_rad', '{:.5f}'), 'as in another unit: convert')
           for a, b in [(1.0, 1e3), (1e3, 1.0), (1.0, 1e6), (1e9, 1.0)]),
         (lambda t, r, o: written([t, r, o], NAMES).translate(str.maketrans('.', ',')),
-         'rows of 6 cells are below 3 names'),
+         'rows of 6 cells are below 3 names: .*: write a name for each cell, and decimal points'),
         (lambda t, r, o: written([t, r, o], 'time rotor angle output angle', mark=' '),
          'rows of 3 cells are below 5 names'),
         (lambda t, _, o: written([t, 0.4 * np.sin(t), o], 'time,angle,torque'),
