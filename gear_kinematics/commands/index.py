@@ -55,15 +55,7 @@ def _data(pins: Pins, zk: int) -> dict[str, Any]:
         'positions': vernier.distinct_positions(zk),
         'step': vernier.step(zk),
         'wanted': {'ring_turn': pins.ring_turn, 'phase': pins.phase},
-        'positions_around': [
-            {
-                'steps': choice.steps,
-                'ring_turn': choice.ring_turn,
-                'error': choice.error,
-                'settings': [*map(pinning.to_json, choice.settings)],
-            }
-            for choice in pins.choices
-        ],
+        'positions_around': [choice._asdict() for choice in pins.choices],
     }
 
 

@@ -4,15 +4,14 @@
 import argparse
 import math
 from collections.abc import Iterator
-from dataclasses import asdict
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from gear_kinematics.commands import arguments
 from gear_kinematics.kinematics import Mechanism, vernier
 from gear_kinematics.kinematics.preload import ring_phase
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.kinematics.vernier import Choice, PinSetting
+from gear_kinematics.kinematics.vernier import Choice
 from gear_kinematics.shape.angles import arc, arc_seconds
 
 SENSES = (
@@ -80,9 +79,3 @@ def at_setting(options: argparse.Namespace, mechanism: Mechanism) -> Pins:
     setting = vernier.pin_setting(mechanism.ring_teeth, *options.setting)
     turn = vernier.angle_between(_ZERO, setting.turn)
     return pins._replace(ring_turn=turn, choices=[Choice(0, (setting,), turn, 0.0)])
-
-
-def to_json(setting: PinSetting) -> dict[str, Any]:
-    """Return tooth and holes of a setting, and its turns as exact fractions."""
-    given = asdict(setting)
-    return given | {name: str(given[name]) for name in ('turn', 'body_turn')}

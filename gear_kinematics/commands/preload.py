@@ -4,6 +4,7 @@
 import argparse
 import math
 from collections.abc import Iterator
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -154,7 +155,7 @@ def _data(answer: _Answer) -> dict[str, Any]:
         'phase': pins.phase,
         **_figures(pins.ring_turn, answer.preload),
         'setting': {
-            **pinning.to_json(pins.nearest.settings[0]),
+            **asdict(pins.nearest.settings[0]),
             **_figures(pins.nearest.ring_turn, answer.pinned),
         },
     }

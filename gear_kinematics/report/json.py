@@ -34,7 +34,7 @@ def estimated(estimate: Estimate) -> dict[str, Any]:
 def _strict(value: Any) -> Any:
     """Express a value in JSON, which has no NaN, infinities and lone surrogates.
 
-    A dataclass becomes an object, without its arrays. What has a text of its own, such as a
+    A dataclass becomes an object, without its arrays. What else has a text of its own, such as a
     fraction or a sentence, becomes that text.
     """
     match value:
@@ -50,10 +50,10 @@ def _strict(value: Any) -> Any:
             return _strict(value.item())
         case Estimate():
             return _strict(estimated(value))
-    text: Any = type(value).__str__
-    if text is not object.__str__:
-        return _strict(text(value))
     if is_dataclass(value):
         members = {field.name: getattr(value, field.name) for field in fields(value)}
         return _strict({k: v for k, v in members.items() if not isinstance(v, np.ndarray)})
+    text: Any = type(value).__str__
+    if text is not object.__str__:
+        return _strict(text(value))
     return [_strict(item) for item in value]
