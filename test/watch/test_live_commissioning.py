@@ -81,22 +81,6 @@ def test_advice_and_bar_follow_what_is_known(monkeypatch, degrees, ratio, advice
     assert shown.entries[0] == Entry('heard', '8000 messages', turned)
 
 
-def test_parameters_are_those_of_the_gear(monkeypatch):
-    live = hear(monkeypatch, 90.0, '121')
-    values = {v.name: v.value for v in live.result().values if v.value is not None}
-    zero = values.pop('rotor_zero')
-    assert values == {
-        'rotor_joint': 'm',
-        'output_encoder_joint': 'o',
-        'gear_ratio': '121',
-        'rotor_direction': -1,
-        'output_encoder_direction': 1,
-        'rotor_encoder': 'multi_turn',
-        'output_encoder_zero': 0.0,
-    }
-    assert abs(zero) < 121 * 1e-4  # both start at 0, within the play
-
-
 def shown_of(monkeypatch, times, rotor, output):
     """Give what is shown of angles, rad, at times, s, that come all at once."""
     monkeypatch.setattr(commissioning, '_PAUSE', 0.0)
