@@ -82,7 +82,9 @@ class Independent:
         self._bodies = {topic: list[_Waiting]() for topic in (topics.poses, joint_states)}
         self._motions: dict[str, _Known] = {topic: defaultdict(list) for topic in self._bodies}
         """Angles and velocities of the rotor, rad and rad/s, that bodies lack."""
-        self._last: tuple[int, float] | None = None  # stamp and position of the last output
+        self._stamp: int | None = None  # ns, of the last input
+        self._time = 0  # ns: the sum of the steps of the stamps, which grows if they fall, too
+        self._last: tuple[int, float] | None = None  # time and position of the last output
         self._offset: float | None = None  # rad, from positions to rotor angles
         self._given = self._compared = self._taken = 0
 
@@ -98,7 +100,9 @@ class Independent:
                 if topic == self._topics.rotor:
                     state = message.joint(self._parameters.rotor_joint)
                     if abs(state[1]) <= _LARGEST:  # NaN is not
-                        self._inputs[message.stamp].append((received, state))
+                        before, self._stamp = self._stamp, message.stamp
+                        self._time += abs(message.stamp - (before or message.stamp))
+                        self._inputs[message.stamp].append((received, (self._time, *state[1:])))
                 elif topic == self._topics.output:
                     self._outputs.append((*at, message.joint(self._joint)))
                 elif topic == self._topics.poses:
@@ -151,13 +155,13 @@ class Independent:
 
     def _angle(self, given: State, output: State) -> float:
         """Return the rotor angle of an input, whose turns or zero may come from the output."""
-        parameters, stamp, position = self._parameters, given[0], given[1]
+        parameters, time, position = self._parameters, given[0], given[1]
         if (period := parameters.rotor_period) and self._last:
-            elapsed, turned = stamp - self._last[0], position - self._last[1]
+            elapsed, turned = time - self._last[0], position - self._last[1]
             position = self._last[1] + math.remainder(turned, period)
-            if abs(elapsed) * 1e-9 * parameters.max_rotor_speed >= 0.5 * period:
+            if elapsed * 1e-9 * parameters.max_rotor_speed >= 0.5 * period:
                 self._offset, self._referable = None, parameters.absolute
-        self._last = stamp, position
+        self._last = time, position
         angle = self._direction * (position - parameters.rotor_zero)
         missing = output[1] * float(self._ratio) - angle
         known = self._limits['position'] * abs(float(self._ratio))
