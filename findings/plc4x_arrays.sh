@@ -6,7 +6,8 @@
 # the drive for all three, and gives the first alone with the code OK; so does DWORD[2], and coil:1:BOOL[11] gives one
 # flag of eleven, so that a fault in another is not seen. The 16 flags of a register, holding-register:4:BOOL[16], are
 # given from its highest bit on, but holding-register:4:BOOL is its lowest bit: of a register of 1 the first flag of the
-# array is false, and the single flag true. Arrays of INT and UINT and the like are right. A drive is simulated.
+# array is false, and the single flag true. Arrays of INT and UINT and the like are right. A drive is simulated. The
+# coils are issue 2060 of apache/plc4x, open since 2025-04-25.
 # For us: read words as UINT and UDINT, and each coil by its own address.
 #
 # Exit code 0: still so. Needs a JDK and mvn; installs the versions into a temporary folder.
