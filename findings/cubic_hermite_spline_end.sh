@@ -4,9 +4,9 @@
 #
 # A joint moves from 0 to 2 rad at a constant speed of 1 rad/s, with the knots 0 s and 2 s. Expected as its
 # derivative: 1 rad/s, as the difference of two positions has it. What happens: 2 rad/s, as it is not divided by the
-# time of the part. Without knots, a path of three points has its time from 0 to 1, and the derivative
-# is 1 where the positions have 2. At 1, the end of the path, its position and its derivative are NaN, as the last point
-# is taken as a part without length; with knots, the end is right.
+# time of the part. Without knots, a path of three points has its time from 0 to 1, and the derivative is 1 where the
+# positions have 2. At 1, the end of the path, its position and its derivative are NaN, as the last point is taken as
+# a part without length; with knots, the end is right.
 # For us: give knots, and divide the derivative by the distance between the two knots around it.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
