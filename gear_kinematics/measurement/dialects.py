@@ -182,7 +182,7 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
         values = {}
         for name in wanted:
             column = columns[name]
-            if layout.interval and own.get(name) == 0:  # no times but below names that are repeated
+            if layout.interval and own.get(name) == 0:  # times only below repeated names
                 steps = every * (column.isna().cumsum() - 1)
                 column = (layout.interval * steps).where(column.isna())
             column = checked(column, name, layout.names, layout.units.get(name, ''))
