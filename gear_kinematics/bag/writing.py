@@ -5,7 +5,7 @@ import secrets
 import shutil
 import struct
 from collections.abc import Iterable, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from io import BytesIO
 from pathlib import Path
 from types import TracebackType
@@ -78,6 +78,11 @@ class _McapFile(McapWriter):
         super().close_chunk()
 
 
+def _remove_if_empty(folder: Path) -> None:
+    with suppress(OSError):
+        folder.rmdir()
+
+
 class BagWriter:
     """Writes a rosbag2 folder, version 9; the same messages always give the same bytes.
 
@@ -109,10 +114,11 @@ class BagWriter:
             # rosbags names the file after its folder; rosbag2 finds only numbered files when it
             # reindexes a bag.
             folder = self.path.parent / f'.{self.path.name}.{secrets.token_hex(4)}'
-            # Registered before the folder exists, so that no interruption leaves it behind.
+            # Registered before the folders exist, so that no interruption leaves them behind.
+            for parent in reversed([each for each in folder.parents if not each.exists()]):
+                stack.callback(_remove_if_empty, parent)
+                parent.mkdir(exist_ok=True)
             stack.callback(shutil.rmtree, folder, ignore_errors=True)
-            if not self.path.parent.exists():
-                self.path.parent.mkdir(parents=True)
             folder.mkdir(mode=0o700)
             self._partial = folder / f'{self.path.name}_0'
             self._writer = Writer(self._partial, version=9, storage_plugin=self._storage)

@@ -66,16 +66,17 @@ def test_a_copy_of_a_copy_has_the_same_bytes(recorded, tmp_path, storage, compre
 
 
 @WRITTEN
+@pytest.mark.parametrize('name', ['bag', 'new/folder/bag'])
 @pytest.mark.parametrize('error', [ValueError, KeyboardInterrupt])
-def test_an_interruption_leaves_nothing(recorded, tmp_path, storage, compression, error):
+def test_an_interruption_leaves_nothing(recorded, tmp_path, storage, compression, error, name):
     def interrupted():
         yield from recorded[:5]
-        assert not (tmp_path / 'bag').exists()
+        assert not (tmp_path / name).exists()
         assert len(list(tmp_path.iterdir())) == 1
         raise error
 
     with pytest.raises(error):
-        write_bag(tmp_path / 'bag', interrupted(), storage=storage, compression=compression)
+        write_bag(tmp_path / name, interrupted(), storage=storage, compression=compression)
     assert not list(tmp_path.iterdir())
 
 
