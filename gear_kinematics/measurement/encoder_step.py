@@ -72,7 +72,7 @@ def find_step(readings: Array) -> Step:
     coarser = math.ceil(math.log2(max(1.0, np.ptp(levels) / finest)))
     best, nearest, tried = 0.0, _FITS / _BETTER, {0.0}
     for resolution in finest * 2.0 ** np.arange(coarser, -1, -1):
-        divisor = _common_divisor(levels, resolution)
+        divisor = common_divisor(levels, resolution)
         if divisor in tried:
             continue
         tried.add(divisor)
@@ -105,7 +105,7 @@ def _recording_resolution(levels: Array) -> float:
     return float(max(found))
 
 
-def _common_divisor(levels: Array, resolution: float) -> float:
+def common_divisor(levels: Array, resolution: float) -> float:
     """Return the greatest common divisor of the gaps, by Euclid's algorithm; 0 if none."""
     between = np.diff(levels)
     gaps, step = between[between > 0.5 * resolution], 0.0

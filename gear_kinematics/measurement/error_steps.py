@@ -24,6 +24,7 @@ _LIKELY, _TRIED = 4.0, 8
 _MOST_OF, _DOUBTFUL = 0.6, 0.8  # shares of a slip that stay; the latter if it may be a delay
 _LEAST_SLIP = math.radians(0.08)
 _PLACE = math.radians(2.0)  # width of the bins of output angles at which errors are compared
+_READINGS = 1.5  # times the step between readings: the error steps by one, and by noise
 _MOST_FAULTS = 0.02  # of the steps: more show a unit or a range that is not understood
 
 
@@ -85,12 +86,17 @@ class IdealMotion(NamedTuple):
         return 1.1 * np.minimum(np.abs(moved), self.spans * fastest), ways
 
 
-def impossible_steps(error: Array, motion: IdealMotion) -> Steps | None:
-    """Find the steps of the error, (m,), rad, that no gear makes; None if there are too many."""
+def impossible_steps(error: Array, motion: IdealMotion, reading: float = 0.0) -> Steps | None:
+    """Find the steps of the error, (m,), rad, that no gear makes; None if there are too many.
+
+    A `reading` is the step between readings of the error, rad: it shows in few samples where the
+    shafts turn by nearly whole steps in each period.
+    """
+    least = _READINGS * reading
     level = usual(error)
     calm, steps = np.diff(level), np.diff(error)
     usually = float(np.quantile(np.abs(calm), 0.98))
-    limit = max(_STEPS * usually, _LEAST_STEP)
+    limit = max(_STEPS * usually, _LEAST_STEP, least)
     lag, ways = motion.lost()
     lost, lags = (((each := -own * ways) > 0.0) & (each <= lag) for own in (calm, steps))
     if np.mean((np.abs(calm) > limit) & ~lost) > _MOST_FAULTS:
@@ -101,30 +107,32 @@ def impossible_steps(error: Array, motion: IdealMotion) -> Steps | None:
     reverses, _ = motion.reversals(_REVERSAL + math.ceil(motion.delay))
     rows = np.flatnonzero(reverses & beyond)
     beyond[rows] = np.abs(steps[rows]) > limit + motion.late_at(rows, motion.spans[rows])
-    slipped = _slipped(level, usually, reverses, motion)
+    slipped = _slipped(level, max(_LIKELY * usually, _LEAST_SLIP, least), reverses, motion)
     late = _DELAYED * motion.delay * np.gradient(motion.calm)
-    return Steps(beyond | slipped, slipped, limit, late, *_spikes(error, level, reverses, motion))
+    return Steps(
+        beyond | slipped, slipped, limit, late, *_spikes(error, level, least, reverses, motion)
+    )
 
 
 def _slipped(
-    error: Array, usually: float, reverses: NDArray[np.bool_], motion: IdealMotion
+    error: Array, least: float, reverses: NDArray[np.bool_], motion: IdealMotion
 ) -> NDArray[np.bool_]:
     """Find steps of the error after which it differs at all angles, in both directions, (m - 1,).
 
-    The error, without stray readings, is (m,), rad; `usually` is the 98 % quantile of the steps,
-    rad; `reverses`, (m - 1,), says which are close to a reversal.
+    The error, without stray readings, is (m,), rad; slips are more than `least`, rad; `reverses`,
+    (m - 1,), says which steps are close to a reversal.
     """
     steps, ideal = np.diff(error), motion.ideal
     found = np.zeros(len(steps), bool)
-    likely = np.flatnonzero(np.abs(steps) > max(_LIKELY * usually, _LEAST_SLIP))
+    likely = np.flatnonzero(np.abs(steps) > least)
     if not len(likely):
         return found
     likely = likely[np.argsort(-np.abs(steps[likely]))][:_TRIED]
     late = np.abs(steps[likely]) <= motion.late_at(likely, motion.spans[likely])
-    needed, least = 1 + (reverses[likely] | late), np.where(late, _DOUBTFUL, _MOST_OF)
+    needed, kept = 1 + (reverses[likely] | late), np.where(late, _DOUBTFUL, _MOST_OF)
     way = directions(ideal, _PLACE)
     place = np.round(ideal / _PLACE) + 1j * way
-    for row, ways, share in zip(likely.tolist(), needed, least, strict=True):
+    for row, ways, share in zip(likely.tolist(), needed, kept, strict=True):
         shifts = shifted(place, error, slice(0, row + 1), slice(row + 1, len(error)))
         shares = shifts / steps[row]
         if not len(shares) and way[row] == way[row + 1] != 0:
@@ -146,7 +154,7 @@ def _rise(error: Array, beyond: Array, rows: NDArray[np.bool_]) -> float:
 
 
 def _spikes(
-    error: Array, level: Array, reverses: NDArray[np.bool_], motion: IdealMotion
+    error: Array, level: Array, least: float, reverses: NDArray[np.bool_], motion: IdealMotion
 ) -> tuple[NDArray[np.bool_], Array]:
     """Find readings that leave the five before and the five after, however slow the motion, (m,).
 
@@ -160,7 +168,7 @@ def _spikes(
     off = np.minimum(np.abs(before), np.abs(after))
     leaps = np.where(before * after > 0.0, np.copysign(off, before), 0.0)
     off *= ~np.append(reverses, True)
-    most = max(_SPIKE * float(np.quantile(off, 0.9)), _LEAST_SPIKE)
+    most = max(_SPIKE * float(np.quantile(off, 0.9)), _LEAST_SPIKE, least)
     found: NDArray[np.bool_] = (off > most) & (leaps != 0.0)
     rows = np.flatnonzero(found)
     found[rows] = off[rows] > most + motion.late_at(rows, _WINDOW)

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.measurement.encoder_step import common_divisor
 from gear_kinematics.measurement.error_steps import IdealMotion, Steps, impossible_steps
 from gear_kinematics.measurement.ramp_gate import jumped, left_out, longest, usual
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RotorMotion
@@ -24,6 +25,7 @@ from gear_kinematics.report.document import number
 
 _FEWEST = 50  # samples
 _LEAST_TRAVEL = math.radians(3.0)  # of the output, from which on the ratio shows
+_LEAST_READING = 1e-5  # rad, of a step of an encoder that matters
 _STAYS = 4  # samples in a row that are no stray reading
 _DELAY = 0.01  # s, by which either encoder may be late, so that its speed changes later
 _ALIKE, _SHORTEST = 16, 1e-6
@@ -66,8 +68,15 @@ def gated(recording: Recording) -> Recording:
         return replace(recording, faults=(*recording.faults, fault))
     period = _period(both.seconds)
     spans = np.maximum(np.diff(both.seconds[rows]) / period, 1.0)
-    motion = IdealMotion(compared.ideal, usual(compared.ideal), spans, _DELAY / period)
-    if not (steps := impossible_steps(error, motion)):
+    # Where its speed changes, the interpolated rotor is off as if late by a quarter of its period.
+    delay = _DELAY + 0.25 * both.interpolated
+    motion = IdealMotion(compared.ideal, usual(compared.ideal), spans, delay / period)
+    steps = impossible_steps(error, motion)
+    if steps and (steps.impossible.any() or steps.spikes.any()):
+        # Unlike `output_step`, this is known in an even motion, too.
+        reading = common_divisor(np.unique(both.measured), _LEAST_READING)
+        steps = impossible_steps(error, motion, reading)
+    if not steps:
         return recording
     # A stray reading of the rotor shows in all rows that are interpolated from it.
     shown = 2 * samples / len(both.rotor.stamp) if both.interpolated else 1.0

@@ -384,6 +384,40 @@ def test_a_damaged_tooth_is_no_stray_reading(gate, config, rate, width):
     assert measure(after, config).transmission.forward.value > math.radians(0.9)
 
 
+@pytest.mark.parametrize('slip', [0, 3])
+@pytest.mark.parametrize(('bits', 'wholes'), [(8, 3.003), (10, 1.001), (12, 5.005), (12, 2.002)])
+def test_the_steps_of_an_encoder_are_no_faults_where_few_samples_show_them(
+    gate, bits, wholes, slip
+):
+    """The output turns by nearly whole steps in each sample: its reading seldom goes one more."""
+    step = TURN / 2**bits
+    drive = Drive(play=ARC_MINUTE, errors={1.0: 5.0 * ARC_MINUTE}, output_step=step)
+    strokes = even_strokes(1000 * wholes * step, 10.0)
+    time, rotor, output = drive.readings(strokes, 20.0, 100.0)
+    output[700:] += slip * step
+    before, after = gate(np.column_stack([time, rotor, output]))
+    if slip:
+        assert after.faults[0].what is Observation.JUMPED
+        assert after.faults[0].values['moment'] == pytest.approx(7.0, abs=0.02)
+    else:
+        assert after is before
+
+
+def test_a_rotor_that_is_interpolated_where_it_speeds_up_shows_no_jump(tmp_path):
+    """In slow messages of two drivers, it is off by a quarter of its period there, and more."""
+    random = np.random.default_rng(29)
+    ends = np.cumsum(random.uniform(0.1, 1.5, 40))
+    path = np.cumsum(random.uniform(-1.0, 1.0, 40) * (np.arange(40) % 2))
+    rotor, output = np.arange(0.0, ends[-1], 0.05), np.arange(0.013, ends[-1], 0.05)
+    rotor[random.random(len(rotor)) >= 0.9] = math.nan
+    columns = {'rotor_time_s': rotor, 'rotor_rad': -19.0 * np.interp(rotor, ends, path)}
+    noise = random.normal(0.0, 1e-5, len(output))
+    columns |= {'output_time_s': output, 'output_rad': np.interp(output, ends, path) + noise}
+    write_csv(tmp_path / 'both.csv', **columns)
+    after = gated(read_table(tmp_path / 'both.csv', Sources(), RATIO))
+    assert {fault.what for fault in after.faults} <= {Observation.STRAY}
+
+
 @pytest.mark.parametrize('late', [-6, 6])
 def test_a_stray_reading_is_left_out_where_strokes_reverse_at_once(gate, late):
     """At 1 kHz it is beyond the change of the error in 1 ms by a delay, but not in 10 ms."""
