@@ -18,6 +18,7 @@ from gear_kinematics.commands.pins import Pins
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.preload import Preload, Stiffness, braced
+from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.loads.recorded import LoadTask, read_loads
 from gear_kinematics.report.document import Document, Layout, Section, Table
 from gear_kinematics.shape.angles import arc
@@ -105,6 +106,9 @@ def _answer(options: argparse.Namespace) -> _Answer:
     branches, backlash = options.branch_stiffness, options.backlash
     if len(branches) > 2:  # noqa: PLR2004, A and B
         raise ValueError(f'--branch-stiffness takes one value or two, not {len(branches)}')
+    if backlash >= (pitch := TURN / pair.satellite_teeth):
+        limit = f'less than a tooth pitch, {pitch:.3g} rad at the output'
+        raise ValueError(f'--backlash must be {limit}, not {backlash:g}')
     stiffness = Stiffness(branches[0], branches[-1], options.shaft_stiffness)
     if options.setting:
         pins = pinning.at_setting(options, pair)

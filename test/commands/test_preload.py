@@ -185,6 +185,10 @@ TURN = ('preload', '--degrees', '1')
         ([*TURN, '--branch-stiffness', '1'], 'are required: --shaft-stiffness'),
         ([*TURN, *SOFT, '--branch-stiffness', '1', '1', '1'], 'one value or two, not 3'),
         ([*TURN, *SOFT, '--backlash', '-1'], 'backlash must be finite and not negative'),
+        (
+            [*TURN, *SOFT, '--backlash', '0.1'],
+            '--backlash must be less than a tooth pitch, 0.0827 rad',
+        ),
         ([*TURN, *SOFT, '--plot', 'plot.xyz'], 'plot.xyz: the suffix'),
         (['preload', '--wanted-preload', '1e9', *SOFT], 'at most a whole turn'),
     ],
