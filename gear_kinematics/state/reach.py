@@ -36,12 +36,12 @@ class HeldUp(NamedTuple):
     def late(self, last: int, stamp: int) -> float:
         """Return by how much the time between two readings may exceed that of their stamps, ns.
 
-        In a burst it is the usual time, if that is known. A burst lasts no longer than the pause
-        before it.
+        In a burst it is the usual time, if that is known, and that by which any reading may be
+        older, as where one is lost. A burst lasts no longer than the pause before it.
         """
         left, since = float(self.length - (last - self.end)), stamp - last
         usual = self.usual or (left if since < _CLOSE else 0.0)
-        return min(left, 1.25 * usual) - since
+        return min(left, usual + min(1.25 * usual, 1e9 * STALEST)) - since
 
     def before(self, span: int, last: Reading, former: Reading) -> 'HeldUp':
         """Take the time until a reading, ns, after two others, and return the pause before it."""
