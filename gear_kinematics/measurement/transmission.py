@@ -13,6 +13,7 @@ from gear_kinematics.measurement.recording import Array, Encoders, RecordingErro
 from gear_kinematics.measurement.two_encoders import STEP, EncoderFit, directions
 from gear_kinematics.statistics.uncertainty import Component, Estimate, resolution
 
+_CROSSED = 1.2  # times the lost motion: travel after a reversal in which it is certainly crossed
 _MIN_SHARE = 0.5  # share of the longest run from which on other runs count as its repeats
 
 
@@ -75,7 +76,8 @@ def transmission_figures(
 ) -> TransmissionFigures:
     """Compute the figures of a recording; a clear delay is removed first.
 
-    A new direction counts from a `travel` of the output, rad, after the reversal.
+    A new direction counts from a `travel` of the output, rad, after the reversal, or later where
+    more than that is lost on reversals.
     """
     both = Component(math.sqrt(2.0) * resolution(encoders.error_step(ratio).size))
     motion = _Motion(encoders, ratio, travel)
@@ -90,6 +92,11 @@ def transmission_figures(
                 off = abs(lost_motion.value - difference.value) / math.sqrt(3.0)
                 lost_motion = fit.lost_motion(both, Component(off), delay=True)
             lost_motion = replace(lost_motion, repeats=pairs)
+    lost = lost_motion or difference
+    if lost and travel < lost.value < math.inf:
+        further = transmission_figures(encoders, ratio, _CROSSED * lost.value)
+        if further.reversals:
+            return further
     if delay and delay.clear:
         # The error is proportional to the delay only while the speed hardly changes within it.
         motion = _Motion(encoders.earlier(delay.value), ratio, travel)
