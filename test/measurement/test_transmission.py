@@ -114,7 +114,7 @@ def test_twist_is_measured_with_both_encoders(tmp_path, config):
 
 @pytest.mark.parametrize('play', [45.0, 90.0])
 def test_lost_motion_of_more_than_a_travel_of_one_degree_is_the_play(tmp_path, config, play):
-    """Of 90', 86.4 ± 1.0' were found, as a third of it was left to cross where counting began."""
+    """With 90', 86.4 ± 1.0' were found, as a third was left to cross where counting began."""
     drive = Drive(play=play * ARC_MINUTE, errors={1.0: 2.0 * ARC_MINUTE}, noise=2e-5)
     time, rotor, output = drive.readings(sine_strokes(math.radians(150.0), 4.0), 40.0, 100.0)
     path = tmp_path / 'both.csv'
