@@ -39,8 +39,8 @@ _LIKELY = re.compile(
     r'(?i)pos|\bq|_q|ang(?!e)|enc(?!y)|theta|winkel|rotation|(rad|deg|rev|inc|cnt|counts)\b'
 )
 """Words in names of columns that are proposed first."""
-_NO_NAME = re.compile(r'(?i)(.*\[|(data|ch|channel|column|signal|var)[ _]?)?\d+\]?')
-"""Names of columns without a name of their own, as of elements of a matrix."""
+_NO_NAME = re.compile(r'(?i)(.*\[|(data|ch|channel|column|signal|var|axis|joint|j)[ _]?)?\d+\]?')
+"""Names of columns that only count them, or elements of a matrix, or joints."""
 _WORD = re.compile(r'(?i)(?!nan|null|none|inf)[^\W\d]')  # in columns of states or names
 _TORQUE = re.compile(
     rf'(?i)^(?!.*({_WANTED})).*'

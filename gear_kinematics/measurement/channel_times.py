@@ -5,6 +5,7 @@ import re
 from collections.abc import Sequence
 from operator import itemgetter
 
+from gear_kinematics.measurement.cells import weight
 from gear_kinematics.measurement.names import known_units, meaning
 
 _CLOCKS = {'name': 'ms', 'x_value': 's', 'x': ''}
@@ -49,13 +50,14 @@ def with_times(
 def interval_of(rows: Sequence[Sequence[str]]) -> float:
     """Return the interval of the samples, s, that lines of LabVIEW give where it saved no times.
 
-    It is 0 if there is none, or if that of the channels differs.
+    It is 0 if there is none above 0, or if that of the channels differs.
     """
     cells = {row[0]: {*filter(None, row[1:])} for row in rows if row}
     intervals = cells.get('Delta_X', set())
     if cells.get('X_Dimension') != {'Time'} or len(intervals) != 1:
         return 0.0
-    return float(intervals.pop().replace(',', '.'))
+    interval = intervals.pop().replace(',', '.')
+    return float(interval) if weight(interval, '.') and float(interval) > 0.0 else 0.0
 
 
 def named(names: Sequence[str], units: Sequence[str]) -> dict[str, str]:

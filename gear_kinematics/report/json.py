@@ -46,8 +46,8 @@ def _strict(value: Any) -> Any:
             return None
         case float() | int() | None:
             return value
-        case np.generic():
-            return _strict(value.item())
+        case np.generic() | np.ndarray():
+            return _strict(value.tolist())
         case Estimate():
             return _strict(estimated(value))
     if is_dataclass(value):

@@ -655,6 +655,18 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
          'by --angle-column, --torque-column'),  # no current is proposed as an angle
         (lambda t, r, o: written([t, r, 1.5 * r, o], 'time,motor1_pos,motor2_pos,output_pos',
                                  '{:.5f}'), r'--rotor-column motor\d_pos --output-column output_'),
+        *((lambda t, r, o, name=name: written([t, r, o], f'time,{name}1,{name}2', '{:.5f}'),
+           f'--rotor-column {name}1 --output-column {name}2') for name in ('axis', 'J')),
+        (lambda t, r, o: ''.join(
+            written([t[:99], r[:99], o[:99]],
+                    f'X_Dimension\tTime\tTime\nDelta_X\t{interval}\t{interval}\n***End***\n'
+                    'X_Value\tMotor angle\tOutput angle\tComment',
+                    (lambda _: '', '{:.5f}', '{:.5f}'), '\t') for interval in ('0.04', '0.02')),
+         'intervals of its segments differ'),
+        (lambda t, r, o: 'time,position\n' + ''.join(
+            f'{at:.2f},"[{rotor:.5f}{f", {out:.5f}" if at > 45.0 else ""}]"\n'
+            for at, rotor, out in zip(t, r, o, strict=True)),
+         'neither an angle and a torque nor a rotor and an output'),
         (' (1764230000.000000) can0 141#A100000000000000\n', 'a log of CAN frames: decode'),
         (lambda t, r, o: written([t, r, t, o], 'motor_time,motor_pos,output_time_ms,output_pos'),
          'are not in the same unit: give both units in the names'),

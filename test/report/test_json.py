@@ -110,10 +110,13 @@ def test_results_are_written_without_their_arrays():
         count: np.int64
 
     result = Result(Fraction(-58, 3), np.zeros(3), Estimate(2.0, 0.5, math.inf, 9), np.int64(3))
-    written = loads(strict_json.to_json(Document('gearkin', (), {'found': (result,)})))
+    written = loads(
+        strict_json.to_json(Document('gearkin', (), {'found': (result,), 'pins': np.arange(2)}))
+    )
     angle = {'value': 2.0, 'standard_uncertainty': 0.5, 'degrees_of_freedom': None}
     angle |= {'expanded_uncertainty': pytest.approx(0.98, abs=1e-3), 'repeats': 9}
     assert written['found'] == [{'ratio': '-58/3', 'angle': angle, 'count': 3}]
+    assert written['pins'] == [0, 1]
 
 
 def test_example_of_the_documentation_follows_the_schema(strict):
