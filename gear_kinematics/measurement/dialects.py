@@ -179,13 +179,14 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
                     'thousands: write the numbers without these points'
                 )
         columns = {name: frame[place] for name, place in own.items()}
-        if len(own) < len(wanted):
-            columns |= elements_of(frame, layout.names, arrays)
+        if divided := [name for name in wanted if name in elements]:
+            # Below the sample, an array may have more elements than one, or none of a joint.
+            found = elements_of(frame, layout.names, arrays)
+            nothing = pd.Series('nan', frame.index)
+            columns |= {k: found.get(k, found.get(f'{k}[0]', nothing)) for k in divided}
         values = {}
         for name in wanted:
-            # Below the sample, an array may have more elements than one, or none of a joint.
-            nothing = pd.Series('nan', frame.index)
-            column = columns.get(name, columns.get(f'{name}[0]', nothing))
+            column = columns[name]
             if layout.interval and own.get(name) == 0:  # times only below repeated names
                 others = frame[1][column == 'Delta_X'].astype(str).str.replace(',', '.')
                 if any(float(other) != layout.interval for other in others):
