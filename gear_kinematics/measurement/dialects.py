@@ -224,11 +224,11 @@ def _layout(lines: Sequence[str]) -> _Layout:
     shares = [numbers_in(cells[k] for cells in known if k < len(cells)) for k in range(width)]
     least = 1.0 if 1.0 in shares else 0.5  # words among numbers, such as states, are no names
     numeric = [k for k, share in enumerate(shares) if share >= least]
-    whole = {
-        place: numbers_in(cells[k] for k in numeric if k < len(cells)) == 1.0
-        for place, cells in rows.items()
-    }
-    begins = (k for k in range(len(filled)) if all(map(whole.get, filled[k : k + _BEGIN])))
+
+    def is_whole(place: int) -> bool:
+        return numbers_in(rows[place][k] for k in numeric if k < len(rows[place])) == 1.0
+
+    begins = (k for k in range(len(filled)) if all(map(is_whole, filled[k : k + _BEGIN])))
     if not numeric or (first := next(begins, None)) is None:
         raise ValueError(
             'no rows of numbers: write it as a CSV with a row of names and numbers without units'
