@@ -48,7 +48,7 @@ def choose_joint(
         return found[0]
     if not (found and can_ask()):
         names = [joint.joint for joint in joints]
-        question = f'which joint is the {role}?'
+        question = _no_topic(joints, given.topic) or f'which joint is the {role}?'
         if given.joint and given.joint not in names:
             question = f'no joint {given.joint!r}{nearest(given.joint, names) or "."}'
         there = groupby(found or joints, key=attrgetter('topic'))
@@ -82,7 +82,19 @@ def joints_of_arm(
         return found
     there = listed(topics or {joint.topic for joint in joints}) or 'none with joints'
     remedy = f'Repeat with --topic, or remap all drivers to one: {there}'
-    raise ValueError(f'which topic has the joints of the arm? {remedy}')
+    question = _no_topic(joints, topic) or 'which topic has the joints of the arm?'
+    raise ValueError(f'{question} {remedy}')
+
+
+def _no_topic(joints: Sequence[Channel], topic: str) -> str:
+    """Say that a given topic has no joints, with the nearest one that has; '' if it has some."""
+    topic, topics = _full(topic), {joint.topic for joint in joints}
+    known = not topic or topic in topics
+    return '' if known else f'no joint on {topic}{nearest(topic, sorted(topics)) or "."}'
+
+
+def _full(topic: str) -> str:
+    return topic and f'/{topic.removeprefix("/")}'
 
 
 def _candidates(joints: Sequence[Channel], given: Channel, base: str) -> list[Channel]:
@@ -90,7 +102,7 @@ def _candidates(joints: Sequence[Channel], given: Channel, base: str) -> list[Ch
 
     Other topics of this package count only if something is given.
     """
-    topic = given.topic and f'/{given.topic.removeprefix("/")}'
+    topic = _full(given.topic)
     found = [j for j in joints if topic in {'', j.topic} and given.joint in {'', j.joint}]
     usual = [joint for joint in found if base_name(joint.topic) == base]
     others = [joint for joint in found if base_name(joint.topic) not in TOPICS]

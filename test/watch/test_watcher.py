@@ -627,10 +627,12 @@ def listening(monkeypatch, tmp_path):
 JOINTS = 'Repeat with --joint, and its topic if needed: brake, m1 on /motor/joint_states'
 JOINTS += '; gearkin init --arm sets up all'
 ROTOR = f'which joint is the rotor? {JOINTS}'
+MEANT = 'did you mean `/motor/joint_states`?'
 RATIO = '--ratio wrist 1=-19 or --teeth 80/76; if it is no motor, name the motors by --joint'
 RATIOS = '--arm', '--ratio'
 SHOULDER = 'did you mean `shoulder`? there are: 2, shoulder, wrist 1'
 REMAP = 'Repeat with --topic, or remap all drivers to one: '
+TOPICS = '/arm/motors, /left/output_state'
 ARM = (
     DriverTopic('/arm/motors', ('shoulder', 'wrist 1', '2'), 250.0),
     DriverTopic('/left/output_state', ('shoulder',), 250.0),
@@ -645,8 +647,8 @@ ALIKE = DriverTopic('/b', ('m.2', 'm_2'), 9.0)
         ([], [], 'is the driver running, with the same ROS_DOMAIN_ID?'),
         (DRIVERS, [], ROTOR),
         (DRIVERS, ['--joint', 'm11'], f"no joint 'm11'; did you mean `m1`? {JOINTS}"),
-        (DRIVERS, ['--topic', 'motor/joint_state'], ROTOR),
-        (DRIVERS, ['--topic', '/odd'], ROTOR),
+        (DRIVERS, ['--topic', 'motor/joint_state'], f'on /motor/joint_state; {MEANT} {JOINTS}'),
+        (DRIVERS, ['--topic', '/odd'], f'no joint on /odd. {JOINTS}'),
         (DRIVERS, ['--joint', 'm1', 'brake'], '--joint takes several joints only with --arm'),
         (DRIVERS, ['--joint', 'm1'], 'gear? Give it, such as --ratio -19 or --teeth 80/76'),
         (ARM, [*RATIOS, 'shoulder=-3'], f'of wrist 1? Give it, such as {RATIO}'),
@@ -656,6 +658,7 @@ ALIKE = DriverTopic('/b', ('m.2', 'm_2'), 9.0)
         (ARM, ['--arm', '--joint', 'sholder'], f"no joint 'sholder'; {SHOULDER}"),
         (DRIVERS[1:], [*RATIOS, '3'], f'of the arm? {REMAP}none with joints'),
         ([DRIVERS[0], OTHER], [*RATIOS, '3'], f'{REMAP}/b, /motor/joint_states'),
+        (ARM, [*RATIOS, '3', '--topic', '/arm'], f'did you mean `/arm/motors`? {REMAP}{TOPICS}'),
         ([ALIKE], [*RATIOS, '3'], 'nearly the same name: add each with --actuator'),
     ],
 )
