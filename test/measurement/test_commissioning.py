@@ -24,6 +24,7 @@ from gear_kinematics.measurement.commissioning.analysis import (
 from gear_kinematics.measurement.commissioning.document import actuator_file, document
 from gear_kinematics.measurement.encoder_range import find_range
 from gear_kinematics.measurement.encoder_step import Step
+from gear_kinematics.measurement.gate import gated
 from gear_kinematics.measurement.recording import Recording, RecordingError
 from gear_kinematics.measurement.sentences import Observation
 from gear_kinematics.parameters import NodeParameters
@@ -206,6 +207,14 @@ def test_several_recordings_tell_the_ratio_by_the_longest_and_the_zero_by_the_la
     command = [line for line in lines if '--ros-args' in line]
     assert len(command) == 1  # to be copied
     assert max(len(line) for line in lines if line not in command) <= 110
+
+
+def test_a_stray_reading_does_not_hide_how_far_to_turn():
+    times, rotor, output = readings(profile=ramped_strokes(1.5, 10.0, 1.0))
+    result = commissioned(gated(recorded(rotor, output + 0.1 * (times == times[1800]), times)))
+    (stray,) = result.longest.recording.faults
+    assert (stray.what, result.between) == (Observation.STRAY, None)
+    assert '; turn the output by 390° or more, or give' in str(result.answer)
 
 
 def test_less_than_a_rotor_turn_leaves_the_kind_open():

@@ -128,7 +128,7 @@ def commission(recordings: Sequence[Recording], request: Request) -> Commissioni
             notes.append(late(delay=delay))
         else:
             values.append(Value('delay', None, Observation.DELAY_OR_HYSTERESIS()))
-    elif ratio and ratio.advice and not longest.recording.faults:
+    elif ratio and ratio.advice and not longest.spoilt:
         seen = Observation.RATIO_SO_FAR(measured=ratio.measured, advice=ratio.advice)
         values.append(Value('ratio', None, seen))
     if speed > known.max_rotor_speed:
@@ -143,7 +143,7 @@ def _decided(
     longest: Joint, given: GearRatio | None
 ) -> tuple[RatioEstimate | None, GearRatio | None, Observed]:
     """Return the ratio between the encoders, the exact one, and why it is that or undetermined."""
-    encoders, faults = longest.encoders, longest.recording.faults
+    encoders = longest.encoders
     try:
         ratio = estimate_ratio(
             longest.turned, encoders.measured, encoders.seconds, encoders.interpolated
@@ -153,7 +153,7 @@ def _decided(
     seen = {'measured': ratio.measured, 'degrees': math.degrees(longest.travel)}
     if not (exact := given or ratio.taken):
         candidates, advice = [*ratio.candidates], ratio.advice
-        advice = Observation.RECORD_ANEW() if faults else advice
+        advice = Observation.RECORD_ANEW() if longest.spoilt else advice
         return ratio, None, Observation.OPEN_RATIO(**seen, candidates=candidates, advice=advice)
     for between in (exact, -exact):
         if ratio.fits(between):

@@ -10,6 +10,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN, split_turns
 from gear_kinematics.measurement.encoder_range import count_wraps, find_range, other_unit
 from gear_kinematics.measurement.gate import gated
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RecordingError
+from gear_kinematics.measurement.sentences import Observation
 from gear_kinematics.wire.cdr import SECOND
 
 _NEAR = 0.1  # s, greatest distance of the sample from the moment that the user names
@@ -62,6 +63,11 @@ class Joint:
     def travel(self) -> float:
         """Travel of the output, rad."""
         return float(np.ptp(self.encoders.measured))
+
+    @property
+    def spoilt(self) -> bool:
+        """Whether the recording has other faults than single readings, which are left out."""
+        return any(fault.what is not Observation.STRAY for fault in self.recording.faults)
 
     def row_at(self, moment: float | Literal['START', 'END']) -> int:
         """Find the sample at START, END or a time, s; RecordingError if none is near."""
