@@ -163,7 +163,7 @@ def shared_names(actuators: Mapping[str, NodeParameters]) -> list[str]:
 def unknown_parameters(
     names: Iterable[str], branches: Mapping[str, Iterable[str]], others: Iterable[str] = ()
 ) -> list[str]:
-    """List a fault for names that no node has with these branches, then all known names."""
+    """List a fault for names that no node has with these branches; all known ones if none is near."""
     every = dict.fromkeys(branch for each in branches.values() for branch in each)
     known = [*PARAMETERS, *branch_parameters(every), *others]
     own = [
@@ -172,7 +172,7 @@ def unknown_parameters(
         for name in (*PARAMETERS, *branch_parameters(each), *others)
         if actuator and name not in COMMON
     ]
-    faults, all_known = [], dict.fromkeys([*known, *own])
+    faults, all_known, lost = [], dict.fromkeys([*known, *own]), False
     unknown = [n for n in names if n not in all_known and not _EVERY_NODE.fullmatch(n)]
     for name in unknown[:_SHOWN]:
         group, _, key = name.rpartition('.')
@@ -191,9 +191,10 @@ def unknown_parameters(
             unlisted = rest in known and not nearest(first, branches)
             hint = f'; `{first}` is not in `actuators`' if unlisted else nearest(name, all_known)
         faults.append(f'unknown parameter `{name}`{hint}')
+        lost |= not hint
     if more := len(unknown[_SHOWN:]):
         faults.append(f'and {more} more')
-    if faults:
+    if lost:
         single = f', and for each actuator such as `{own[0]}`' if own else ''
         faults.append(f'there are: {", ".join(known)}{single}')
     return faults

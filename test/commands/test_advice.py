@@ -131,7 +131,7 @@ def test_the_joint_chooses_among_topics(tmp_path, capsys):
         ('plot scheme a --degres', '--degres; did you mean `--degrees`? there are: --actuator'),
         ('plot scheme -o a.png', ' --torque; without an option: figure, FILE; see gearkin plot'),
         ('replay a b', 'unrecognized arguments: b; see gearkin replay --help'),
-        ('urdf --config my.yaml', 'did you mean `module`?; there are: ring_teeth, '),
+        ('urdf --config my.yaml', 'unknown parameter `modul`; did you mean `module`?'),
         ('urdf --config two.yaml --node /lift/x', 'only of /left/x, /right/x; did '),
         ('plot scheme a.png --joint m', '--joint needs --bag'),
     ],

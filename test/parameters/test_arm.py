@@ -90,7 +90,7 @@ FAULTS = [
     ({'elbow.output_joint': 'shoulder_rotor'}, "two actuators have a joint 'shoulder_rotor'"),
     ({'rotor_joint': ''}, 'shoulder.rotor_joint and elbow.rotor_joint must name one of'),
     (
-        {'sholder.gear_ratio': '5', 'elbow.rotor_jiont': 'm'},
+        {'sholder.gear_ratio': '5', 'elbow.rotor_jiont': 'm', 'nothing_like_it': 1},
         '`sholder.gear_ratio`; did you mean `shoulder.gear_ratio`?',
         '`elbow.rotor_jiont`; did you mean `elbow.rotor_joint`?',
         'and for each actuator such as `shoulder.ring_teeth`',

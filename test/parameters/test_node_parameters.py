@@ -191,10 +191,11 @@ def test_value_on_the_bound_is_taken(tmp_path, name, value):
         ('nothing_like_it', ''),
     ],
 )
-def test_unknown_parameter_is_refused_with_the_nearest_name(tmp_path, name, hint):
+def test_unknown_parameter_is_refused_with_the_nearest_name_or_all(tmp_path, name, hint):
     text = fault(tmp_path, **{name: 1.0})
-    assert f': unknown parameter `{name}`{hint}; there are: ring_teeth, ' in text
-    assert text.endswith(', a.cam_phase, a.axial_position, b.cam_phase, b.axial_position')
+    _, _, said = text.partition(f': unknown parameter `{name}`')
+    every = said.startswith('; there are: ring_teeth, ') and said.endswith(', b.axial_position')
+    assert said == hint if hint else every
 
 
 @pytest.mark.parametrize(
