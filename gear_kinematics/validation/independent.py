@@ -21,19 +21,23 @@ from gear_kinematics.bag import MessagesByTopic
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.kinematics import Mechanism, matrix_method
 from gear_kinematics.validation.independent_bodies import ERRORS_OF, own_joints
-from gear_kinematics.validation.independent_message import IndependentMessage, State
+from gear_kinematics.validation.independent_message import (
+    AGAIN,
+    IndependentMessage,
+    Known,
+    State,
+    Waiting,
+    paired,
+)
 from gear_kinematics.validation.task import Task
 
 _KEPT = 20_000  # inputs, outputs, poses and joints that wait for each other
-_AGAIN = 1_000_000_000  # ns after which a stamp that comes again is of another start of the driver
+_UNKNOWN = 10**18  # ns, longer than any gap
 _LARGEST = math.tau * 2**51  # rad; no output answers a greater position
 _UNITS = {'position': 'rad', 'velocity': 'rad/s', 'effort': 'N·m'}
 _UNITS |= {'position of bodies': 'm', 'orientation of bodies': 'rad'}
 _UNITS |= {'position of joints': 'rad', 'slide of joints': 'm'}
 _UNITS |= {'velocity of joints': 'rad/s', 'slide velocity of joints': 'm/s'}
-
-_Waiting = tuple[int, int, Any]  # stamp and time of reception, ns, and the content of a message
-_Known = dict[int, list[tuple[int, Any]]]  # by stamp, in order: time of reception, ns, and content
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +55,7 @@ class IndependentReport:
     def text(self) -> str:
         """The result in one sentence."""
         if not self.compared:
-            return 'independently, nothing could be compared'
+            return 'independently, nothing could be compared: no output has the stamp of an input'
         worst = ', '.join(f'{name} {e:.2g} {_UNITS[name]}' for name, e in self.errors.items())
         verdict = 'agree with' if self.passed else 'differ from'
         return f'{self.compared} outputs {verdict} the matrix method; largest errors: {worst}'
@@ -63,13 +67,14 @@ class Independent:
     def __init__(self, task: Task, topics: Topics, joint_states: str = '') -> None:
         """Prepare for a recording; where the task is strict, outputs of another zero are wrong.
 
-        An absolute encoder at the output can change the count once, and after gaps again.
+        An absolute encoder at the output can change the count once, and after gaps again: that of
+        an encoder that repeats by whole periods, and another one to any zero.
 
         `joint_states` is the topic of the joints of the mechanism, if recorded.
         """
         self._parameters = parameters = task.parameters
         self._topics, self._joint_states = topics, joint_states
-        self._strict = task.strict and not parameters.absolute
+        self._any_zero = not task.strict or (parameters.absolute and not parameters.rotor_period)
         self._referable = parameters.absolute  # whether that encoder may yet give the count
         self._ratio, self._direction = parameters.gear.gear_ratio, parameters.rotor_direction
         self._joint = parameters.output_name if parameters.actuator else ''  # the only one
@@ -77,13 +82,13 @@ class Independent:
         self._limits = {name: task.tolerances.of(unit) for name, unit in units.items()}
         self._errors: dict[str, float] = {}
         self._wrong: list[int] = []
-        self._inputs: _Known = defaultdict(list)  # states
-        self._outputs = list[_Waiting]()  # states
-        self._bodies = {topic: list[_Waiting]() for topic in (topics.poses, joint_states)}
-        self._motions: dict[str, _Known] = {topic: defaultdict(list) for topic in self._bodies}
+        self._inputs: Known = defaultdict(list)  # states
+        self._outputs = list[Waiting]()  # states
+        self._bodies = {topic: list[Waiting]() for topic in (topics.poses, joint_states)}
+        self._motions: dict[str, Known] = {topic: defaultdict(list) for topic in self._bodies}
         """Angles and velocities of the rotor, rad and rad/s, that bodies lack."""
-        self._stamp: int | None = None  # ns, of the last input
-        self._time = 0  # ns: the sum of the steps of the stamps, which grows if they fall, too
+        self._stamp = self._latest = 0  # ns, of the last input, and the latest by the same clock
+        self._time = 0  # ns, by the stamps, also while they rise again after they were set back
         self._last: tuple[int, float] | None = None  # time and position of the last output
         self._offset: float | None = None  # rad, from positions to rotor angles
         self._given = self._compared = self._taken = 0
@@ -99,9 +104,9 @@ class Independent:
                 at = message.stamp, received
                 if topic == self._topics.rotor:
                     state = message.joint(self._parameters.rotor_joint)
-                    if abs(state[1]) <= _LARGEST:  # NaN is not
-                        before, self._stamp = self._stamp, message.stamp
-                        self._time += abs(message.stamp - (before or message.stamp))
+                    # NaN is not; outputs of inputs without a stamp have the time of the node.
+                    if message.stamp and abs(state[1]) <= _LARGEST:
+                        self._go_on(message.stamp)
                         self._inputs[message.stamp].append((received, (self._time, *state[1:])))
                 elif topic == self._topics.output:
                     self._outputs.append((*at, message.joint(self._joint)))
@@ -126,7 +131,7 @@ class Independent:
 
     def _compare(self) -> None:
         """Compare the outputs, poses and joints whose inputs have arrived."""
-        pairs = _paired(self._outputs, self._inputs)
+        pairs = paired(self._outputs, self._inputs)
         angles = [self._angle(given, output) for *_, output, given in pairs]
         stamps = [stamp for stamp, *_ in pairs]
         both = np.reshape([(output[1:], given[1:]) for *_, output, given in pairs], (-1, 2, 3))
@@ -146,30 +151,43 @@ class Independent:
             withheld = np.isnan(recorded[:, k]) & (k > 0)
             self._note(name, stamps, np.where(withheld, 0.0, np.abs(recorded[:, k] - expected[k])))
         for topic, waiting in self._bodies.items():
-            found = _paired(waiting, self._motions[topic])
+            found = paired(waiting, self._motions[topic])
             if isinstance(gear, Mechanism) and found:
                 of, _, given_bodies, moved = zip(*found, strict=True)
                 errors_of = ERRORS_OF['poses' if topic == self._topics.poses else 'joints']
                 for name, errors in errors_of(gear, np.transpose(moved), given_bodies).items():
                     self._note(name, of, errors)
 
+    def _go_on(self, stamp: int) -> None:
+        """Take the time until the next input, which is not known where a clock began anew."""
+        if stamp < self._latest - AGAIN:
+            self._time, self._latest = self._time + _UNKNOWN, stamp
+        self._time += max(0, stamp - (self._stamp if stamp < self._latest else self._latest))
+        self._stamp, self._latest = stamp, max(stamp, self._latest)
+
     def _angle(self, given: State, output: State) -> float:
         """Return the rotor angle of an input, whose turns or zero may come from the output."""
         parameters, time, position = self._parameters, given[0], given[1]
-        if (period := parameters.rotor_period) and self._last:
-            elapsed, turned = time - self._last[0], position - self._last[1]
-            position = self._last[1] + math.remainder(turned, period)
-            if elapsed * 1e-9 * parameters.max_rotor_speed >= 0.5 * period:
-                self._offset, self._referable = None, parameters.absolute
+        period, absolute = parameters.rotor_period, parameters.absolute
+        if self._last:
+            elapsed, turned = (time - self._last[0]) * 1e-9, position - self._last[1]
+            if period:
+                position = self._last[1] + math.remainder(turned, period)
+                if elapsed * parameters.max_rotor_speed >= 0.5 * period:
+                    self._offset, self._referable = None, absolute
+            elif elapsed > parameters.longest_silence:
+                self._referable = absolute
         self._last = time, position
         angle = self._direction * (position - parameters.rotor_zero)
         missing = output[1] * float(self._ratio) - angle
         known = self._limits['position'] * abs(float(self._ratio))
-        if self._referable and self._offset is not None and abs(missing - self._offset) > known:
-            self._offset, self._referable = None, False
-        if self._offset is None:
-            whole = period * round(missing / period) if period else 0.0
-            self._offset = whole if self._strict or abs(missing - whole) <= known else missing
+        referred = self._offset is not None and abs(missing - self._offset) > known
+        if self._offset is None or (referred and self._referable):
+            self._referable &= not referred
+            before = self._offset or 0.0
+            whole = before + (period * round((missing - before) / period) if period else 0.0)
+            exact = abs(missing - whole) <= known or not self._any_zero or (referred and period)
+            self._offset = whole if exact else missing
             self._taken += self._offset != 0.0
         return angle + self._offset
 
@@ -178,22 +196,3 @@ class Independent:
         self._errors[name] = float(errors.max(initial=self._errors.get(name, 0.0)))
         self._wrong += np.array(stamps)[errors > self._limits[name]].tolist()[:1]
         self._compared += len(stamps) * (name.startswith('position'))
-
-
-def _paired(waiting: list[_Waiting], known: _Known) -> list[tuple[int, int, Any, Any]]:
-    """Add what is known of their stamps to what waits, in order; others go on waiting."""
-    pairs, left = [], []
-    for each in waiting:
-        stamp, received, _ = each
-        rows = known.get(stamp, [])
-        while len(rows) > 1:  # the first may be from before a restart, and without an answer
-            (before, _), (after, _) = rows[:2]
-            if after - before <= _AGAIN or received - before < after - received:
-                break
-            rows.pop(0)
-        if rows:
-            pairs.append((*each, rows.pop(0)[1]))
-        else:
-            left.append(each)
-    waiting[:] = left
-    return pairs

@@ -1,11 +1,15 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Decodes serialised messages for the independent comparison, by `struct`."""
+"""Decodes serialised messages for the independent comparison, by `struct`, and pairs them."""
 
 import math
 import struct
 from typing import Any
 
+AGAIN = 1_000_000_000  # ns after which a stamp that comes again is of another start of the driver
+
 State = tuple[int, float, float, float]  # stamp, ns, position, velocity, effort; NaN for absent
+Waiting = tuple[int, int, Any]  # stamp and time of reception, ns, and the content of a message
+Known = dict[int, list[tuple[int, Any]]]  # by stamp, in order: time of reception, ns, and content
 
 
 class IndependentMessage:
@@ -45,3 +49,22 @@ class IndependentMessage:
         position, *others = (a[index] if index < len(a) else math.nan for a in arrays)
         velocity, effort = (value if math.isfinite(value) else math.nan for value in others)
         return self.stamp, position, velocity, effort
+
+
+def paired(waiting: list[Waiting], known: Known) -> list[tuple[int, int, Any, Any]]:
+    """Add what is known of their stamps to what waits, in order; others go on waiting."""
+    pairs, left = [], []
+    for each in waiting:
+        stamp, received, _ = each
+        rows = known.get(stamp, [])
+        while len(rows) > 1:  # the first may be from before a restart, and without an answer
+            (before, _), (after, _) = rows[:2]
+            if after - before <= AGAIN or received - before < after - received:
+                break
+            rows.pop(0)
+        if rows:
+            pairs.append((*each, rows.pop(0)[1]))
+        else:
+            left.append(each)
+    waiting[:] = left
+    return pairs

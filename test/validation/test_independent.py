@@ -10,11 +10,12 @@ from live import rotor_bytes
 from node_loop import answered
 from shipped_bags import BAGS, OUTPUT, POSES, ROTOR, read_bag
 
-from gear_kinematics.kinematics import GearRatio, RotorPosition, RotorTurns
+from gear_kinematics.kinematics import GearRatio, RotorTurns
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation import validate
 from gear_kinematics.validation.causes import FindingCause
+from gear_kinematics.validation.findings import sentence
 
 DEFAULT = NodeParameters.load()
 START, STEP = 10**18, 2_000_000  # ns
@@ -43,10 +44,9 @@ def miscounted(monkeypatch) -> None:
     right = RotorTurns.update
 
     def wrong(self, *arguments):
-        right(self, *arguments)
         self.updates = getattr(self, 'updates', 0) + 1
-        if self.updates == 500:
-            self._position = RotorPosition(self.position.turns + 1, self.position.angle)
+        self.periods += self.updates == 500
+        right(self, *arguments)
 
     monkeypatch.setattr(RotorTurns, 'update', wrong)
 
@@ -136,3 +136,26 @@ def test_turns_are_taken_from_the_outputs_where_the_clock_was_set_back(tmp_path)
     report = validate(bag, SINGLE, independent=True)
     assert report.passed
     assert report.independent.passed
+
+
+@pytest.mark.parametrize('stamp', [0, START + 494 * STEP])
+def test_a_turn_is_found_that_is_lost_beside_a_late_stamp_or_none(stamp, monkeypatch, tmp_path):
+    miscounted(monkeypatch)
+    stamps = [START + k * STEP for k in range(1000)]
+    stamps.insert(499, stamp)
+    states = [
+        (ROTOR, START + k * STEP - 1, rotor_bytes(stamp, position=[0.08 * k % math.tau]))
+        for k, stamp in enumerate(stamps)
+    ]
+    bag = made_bags.folder(tmp_path / 'bag', answered(SINGLE, states))
+    assert not validate(bag, SINGLE, independent=True).independent.passed
+
+
+def test_that_stamps_are_lacking_is_said(tmp_path):
+    """A node gives its own time to inputs without any, which tells no output of which it is."""
+    states = [(ROTOR, START + k * STEP, rotor_bytes(0, position=[0.001 * k])) for k in range(200)]
+    bag = made_bags.folder(tmp_path / 'bag', answered(DEFAULT, states))
+    assert validate(bag, DEFAULT).passed
+    report = validate(bag, DEFAULT, independent=True)
+    lacking = 'independently, nothing could be compared: no output has the stamp of an input'
+    assert (report.passed, lacking in map(sentence, report.findings)) == (False, True)

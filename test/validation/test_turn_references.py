@@ -201,6 +201,41 @@ def test_a_second_jump_differs_independently():
     assert not judge(spliced(SINGLE), SINGLE, independent=True).independent.passed
 
 
+def test_a_jump_by_no_turn_of_the_rotor_differs_independently():
+    off = partial(
+        edited, kind=JOINT_STATE, edit=lambda m: setattr(m, 'position', m.position + 0.3)
+    )
+    messages = [
+        (topic, received, off(data) if topic == OUTPUT and received > START + 2 * SECOND else data)
+        for topic, received, data in part(recorded(SINGLE), 1.5)
+        if topic != POSES
+    ]
+    assert not judge(messages, SINGLE, independent=True).independent.passed
+
+
+@pytest.mark.parametrize('strict', [False, True])
+@BOTH
+def test_a_driver_that_starts_again_is_referenced_again(config, strict):
+    """By the time since its start, and a multi-turn encoder at another zero."""
+
+    def again(message):
+        message.header.stamp.sec -= START // SECOND - 10
+        if message.name[0] != 'shaft' and not config.single_turn:
+            message.position += 200.0
+
+    messages = [
+        (
+            topic,
+            received,
+            data if received < START + 2 * SECOND else edited(data, JOINT_STATE, again),
+        )
+        for topic, received, data in both_encoders(recorded(config))
+    ]
+    report = judge(answered(config, messages), config, strict=strict, independent=True)
+    assert report.passed
+    assert report.independent.passed
+
+
 @pytest.mark.parametrize('seed', range(8))
 @BOTH
 def test_losses_of_the_recorder_fail_nothing(config, seed):
