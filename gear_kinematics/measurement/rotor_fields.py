@@ -68,7 +68,7 @@ def questions(
         yield Observation.COUNTS()
     values[:, 0], (period, _) = _unwrapped(stamp, values[:, 0])
     if steps and not counts:
-        yield from _impossible_steps(data, received, joint, period)
+        yield from _impossible_steps(data, received, joint, period, limits)
         if (pace := _pace(states.stamp, np.asarray(received))) > FASTEST:
             yield Condition.STAMPS_TOO_FAST(factor=pace)
     sizes = np.abs(np.diff(values[:, 0]))
@@ -97,16 +97,26 @@ def questions(
 
 
 def _impossible_steps(
-    data: Sequence[bytes], received: Sequence[int], joint: str, period: float
-) -> Iterator[Fact]:
-    """Yield jumps of the encoder or of the clock, and rejected positions, by default limits."""
+    data: Sequence[bytes],
+    received: Sequence[int],
+    joint: str,
+    period: float,
+    limits: tuple[float, float] | None,
+) -> Iterator[Observed | Fact]:
+    """Yield jumps of the encoder or of the clock, and rejected positions, by default limits.
+
+    Motion beyond them is named only if `limits` are given, as they are those of the node then.
+    """
     parameters = replace(NodeParameters.load(), rotor_joint=joint, rotor_encoder_range=period)
     rotor = RotorInput(parameters)
     rotor.accept_batch(data, received)
     known = {Rejection.JOINT_MISSING, Rejection.ARRAY_SIZES}
-    if jumped := rotor.plausibility.jumped:
+    jumped, beyond = rotor.plausibility.jumped, rotor.plausibility.beyond_limits
+    if jumped:
         yield jumped
-    if jumped or rotor.plausibility.beyond_limits:
+    elif beyond and limits:
+        yield Observation.BEYOND_LIMITS(beyond=str(beyond))
+    if jumped or beyond:
         known.add(Rejection.IMPLAUSIBLE)
     if counts := {cause: count for cause, count in rotor.rejected.items() if cause not in known}:
         yield Condition.REJECTED(counts=counts)

@@ -289,6 +289,7 @@ class Observation(Enum):
         'the positions are whole numbers, as of an encoder in counts: let the driver send rad of '
         'the rotor'
     )
+    BEYOND_LIMITS = '{beyond}: let the driver send rad, or set the limit to that of the motor'
     STAMPS_REPEAT = '{count} of {total} stamps repeat the one before'
     NO_EFFORT = 'the effort is 0 throughout the motion, and taken as none'
     # What differs between recordings

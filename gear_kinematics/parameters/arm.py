@@ -163,7 +163,7 @@ def shared_names(actuators: Mapping[str, NodeParameters]) -> list[str]:
 def unknown_parameters(
     names: Iterable[str], branches: Mapping[str, Iterable[str]], others: Iterable[str] = ()
 ) -> list[str]:
-    """List a fault for names that no node has with these branches; all known ones if none is near."""
+    """List a fault for each name that no node has with these branches; all if none is near."""
     every = dict.fromkeys(branch for each in branches.values() for branch in each)
     known = [*PARAMETERS, *branch_parameters(every), *others]
     own = [

@@ -65,11 +65,15 @@ class DriverLog:
             self._log.warning(labelled(', '.join(joints), text))
 
     def _faults(self) -> dict[tuple[str, Condition, float], Fact]:
-        """Return how turns were lost and velocities are wrong, by what identifies each fault."""
+        """Return how turns were lost, what is wrong or beyond limits, by what identifies each."""
         return {
             (name, fact.condition, fact.values.get('time', 0.0)): fact
             for name, each in self._inputs.items()
-            for fact in (each.why_lost, each.velocity_field.meaning)
+            for fact in (
+                each.why_lost,
+                each.velocity_field.meaning,
+                each.plausibility.beyond_limits,
+            )
             if fact
         }
 

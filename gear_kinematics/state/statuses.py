@@ -104,7 +104,7 @@ class Condition(Enum):
     BEYOND_LIMITS = (
         WARN,
         '{which}',
-        'Raise the limit to what the motor can do, or check the units of positions and stamps.',
+        'Let the driver send rad, stamped in s and ns, or set the limit to that of the motor.',
     )
     BEYOND_SPEED = WARN, '{speed:.4g} rad/s exceed max_rotor_speed', ''
     BEYOND_ACCELERATION = WARN, '{acceleration:.4g} rad/s² exceed max_rotor_acceleration', ''

@@ -129,6 +129,21 @@ def test_counts_of_an_encoder_are_named(counts):
         assert [*questions(data, [0] * len(data), 'rotor')] == told
 
 
+@pytest.mark.parametrize('limits', [None, (650.0, 6500.0)])
+def test_motion_beyond_the_limits_of_a_node_is_named(limits):
+    """As of a driver that sends degrees; a recording alone has no limits."""
+    degrees = np.degrees(100.0 * TIMES)
+    data = [
+        rotor_bytes(int(stamp), position=[float(position)])
+        for stamp, position in zip(stamps(TIMES), degrees, strict=True)
+    ]
+    told = [
+        str(each) for each in questions(data, [0] * len(data), 'rotor', None, limits, steps=True)
+    ]
+    said = '5730 rad/s exceed max_rotor_speed: let the driver send rad, or set the limit to that '
+    assert told == [f'{said}of the motor'] * bool(limits)
+
+
 def test_other_joints_of_the_same_time_repeat_no_stamp():
     """As of an arm and its grippers, whose publishers share a topic."""
     data = [

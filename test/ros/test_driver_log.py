@@ -108,6 +108,16 @@ def test_jump_of_the_encoder_is_one_warning():
     assert [(level, text[: len(said)]) for level, text in graph.logged] == [('W', said)]
 
 
+def test_positions_in_degrees_are_one_warning():
+    graph = Graph()
+    for number in range(200):
+        with contextlib.suppress(RejectedInputError):
+            graph.hear(1.0 + 0.005 * number, math.degrees(100.0 * 0.005 * number))
+        graph.driver_log.update(1, 0.0)
+    said = '5730 rad/s exceed max_rotor_speed. Let the driver send rad, stamped in s and ns, or '
+    assert graph.logged == [('W', f'{said}set the limit to that of the motor.')]
+
+
 def test_velocities_that_contradict_the_positions_are_one_warning():
     graph = Graph()
     for number in range(200):
