@@ -30,8 +30,10 @@ _JUDGED = (
     ': {inside:.1f} ± {spread:.1f} % of the measured angles are within the {coverage} interval; '
     'it changes the error from {before:arcmin} to {after:arcmin} arcmin rms.'
 )
-_MESH = 'With the ratio {ratio} of {source}, in {time} both branches were in mesh'
-_NEEDED = '; the least preload that would have held: {needed:si} N·m (set: {preload:si})'
+_NEEDED = (
+    '; the least preload that would have held: {needed:si} N·m (set: {preload:si}); the ratio is '
+    '{ratio}, by {source}'
+)
 
 
 class Cause(Enum):
@@ -50,8 +52,8 @@ class Observation(Enum):
 
     # Readings that cannot be true; moments are seconds, or numbers of samples if not `timed`
     STRAY = (
-        '{count:%d reading that contradicts|%d readings that contradict} both neighbours left '
-        'out, {at} {moments:si.6}{unit}{more: and %d more}'
+        'left out: {count:%d reading that contradicts|%d readings that contradict} both '
+        'neighbours, {at} {moments:si.6}{unit}{more: and %d more}'
     )
     SATURATED = (
         'the torque sensor is saturated, first {at} {moment:si.6}{unit}: {count} readings left '
@@ -99,14 +101,13 @@ class Observation(Enum):
     )
     EXCHANGED = 'the output turns more than the rotor: exchange the two'
     UPSIDE_DOWN = (
-        _RATIO + ', which is upside down: give --ratio={ratio}, the speed of the rotor by that of '
-        'the output'
+        _RATIO + ', which is upside down: give --ratio={ratio}, rotor speed over output speed'
     )
     COUNTS_BACKWARDS = _RATIO + ': an encoder counts backwards, or --ratio={ratio} is right'
     ANOTHER_RATIO = _RATIO + '; gearkin commission finds it, or give --ratio={ratio}'
     OTHER_RATIOS = _RATIO + '; gearkin commission finds it, or give it, such as --ratio={ratio}'
     MULTIPLE_RATIO = (
-        _RATIO + ', but a multiple: check counts per turn and units, or give --ratio={ratio}'
+        _RATIO + ', but a multiple of it: check counts per turn and units, or give --ratio={ratio}'
     )
     TURN_FURTHER = 'turn the output by {degrees}° or more'
     SAMPLE_TOGETHER = 'turning further hardly helps: sample both encoders at once, and more often'
@@ -116,8 +117,8 @@ class Observation(Enum):
         'later than the angle, as behind a filter or from another clock.'
     )
     LOOPS_DIFFER = (
-        'How far the output rests from its middle is unknown: {hysteresis:arcmin}′. The loops '
-        'differ by more than their width, as where the angle drifts or slips.'
+        'The hysteresis is unknown: {hysteresis:arcmin}′. The loops differ by more than their '
+        'width, as where the angle drifts or slips.'
     )
     PLAY_UNKNOWN = _RESTS + '. How much of it is play is not known; {cause.value}.'
     PLAY = _RESTS + '. Of it, {play:arcmin}′ is play, the rest friction.'
@@ -129,8 +130,8 @@ class Observation(Enum):
         'or locked.'
     )
     INFERRED = (
-        'Inferred: no angle is known to be that of an encoder at the output, as by a name such as '
-        'output_angle. With that of the motor and a locked output, the figures include the '
+        'Inferred: no angle has a name such as output_angle, which tells that its encoder is at '
+        'the output. If it is that of the motor, with the output locked, the figures include the '
         'compliance of motor, bench and clamping.'
     )
     READ_BELOW_FRICTION = (
@@ -143,7 +144,7 @@ class Observation(Enum):
     )
     ONE_AMPLITUDE = 'All ramps have about one amplitude: small ones would separate play better.'
     # What both encoders show
-    HARDLY_MOVES = 'The output does not move far enough in one direction to tell its errors.'
+    HARDLY_MOVES = 'The output does not move far enough in one direction to show its errors.'
     DEVIATES = _DEVIATES + '.'
     LOSES = _DEVIATES + '; on reversals it loses {lost:arcmin}′.'
     LAGS = (
@@ -164,7 +165,7 @@ class Observation(Enum):
     PLUS_MINUS = (
         'Each ± contains the value with a probability of {coverage}, given the scatter of repeats '
         'and the steps of the encoders where they are known. Errors of scale (1 % of the torque '
-        'is 1 % of friction and stiffness) and other positions of the output are not in it.'
+        'is 1 % of friction and stiffness) and other positions of the output are not included.'
     )
     # What commissioning determines and leaves open, and the evidence
     GEAR_RATIO = 'The gear has the ratio {ratio} ({evidence}).'
@@ -228,8 +229,8 @@ class Observation(Enum):
         'of the output, in both directions.'
     )
     MOVED = (
-        '{recording}: the output moves by {angle:arcmin} arcmin against the rotor {at} '
-        '{moment:si.6}{unit} for good, which is most of what a correction leaves. Nothing is '
+        '{recording}: {at} {moment:si.6}{unit} the output shifts against the rotor, and stays '
+        'there: {angle:arcmin} arcmin, most of the error that a correction leaves. Nothing is '
         'written; check the couplings and the encoders, and record again.'
     )
     NO_CORRECTION = (
@@ -244,7 +245,7 @@ class Observation(Enum):
     FEW_CYCLES = 'the longest travel holds {cycles:.2g} cycles, less than 2'
     SOME_EFFORTS = 'not every recording has an effort throughout'
     TORQUE_CONSTANT = 'the torque does not vary'
-    STATE_UNKNOWN = 'its state is known at {percent:.0f} % of the samples'
+    STATE_UNKNOWN = 'its state is known at only {percent:.0f} % of the samples'
     HOLDS = 'The calibration holds' + _JUDGED
     DOES_NOT_HELP = 'The calibration does not help' + _JUDGED
     NO_LONGER_HOLDS = (
@@ -253,21 +254,21 @@ class Observation(Enum):
     )
     # What the loads of a recording show
     NO_PRELOAD = (
-        'With the ratio {ratio} of {source}, over {time} the output gave at most {torque:si} N·m; '
-        'without the parameter preload, nothing is known of the mesh'
+        'The output gave at most {torque:si} N·m in {time}; without the parameter preload, '
+        'nothing is known of the mesh; the ratio is {ratio}, by {source}'
     )
-    IN_MESH = _MESH + _NEEDED
+    IN_MESH = 'Both branches stayed in mesh over {time}' + _NEEDED
     OUT_OF_MESH = (
-        _MESH + ' except {count:%d interval|%d intervals} ({total:si} s), the first at '
-        '{start:.3f} s' + _NEEDED
+        'A branch was out of mesh in {count:%d interval|%d intervals}, {total:si} s of {time}, '
+        'first at {start:.3f} s' + _NEEDED
     )
     IMPLAUSIBLE = '{answer}; {question}'
     LOADS_UNKNOWN = (
-        '{answer}; the loads are unknown for {seconds:si} s, the first time from {start:.3f} s on'
+        '{answer}; the loads are unknown for {seconds:si} s, first from {start:.3f} s on'
     )
     LOADS_BEGIN_LATE = (
-        '{answer}; the loads are unknown for {seconds:si} s, the first time before 0 s, when the '
-        'first known load was'
+        '{answer}; the loads are unknown for {seconds:si} s, first before 0 s, the time of the '
+        'first known load'
     )
     BRANCH_OUT_OF_MESH = (
         'branch {branch} was out of mesh for {duration:si} s from {start:.3f} s on: {torque:si} '
@@ -286,8 +287,8 @@ class Observation(Enum):
     # What the messages of a rotor seem to have wrong
     SIZES_DIFFER = '{count:%d message|%d messages} rejected: ' + Rejection.ARRAY_SIZES
     COUNTS = (
-        'the positions are whole numbers, as of an encoder in counts: let the driver send rad of '
-        'the rotor'
+        'the positions are whole numbers, as if in counts of an encoder: let the driver send rad '
+        'of the rotor'
     )
     BEYOND_LIMITS = '{beyond}: let the driver send rad, or set the limit to that of the motor'
     STAMPS_REPEAT = '{count} of {total} stamps repeat the one before'

@@ -82,8 +82,8 @@ class Condition(Enum):
     )
     POSITIONS_STAND = (
         WARN,
-        'the velocities contradict the positions, which stand',
-        'Check whether the encoder is stuck, its cable, and whose velocities the driver sends.',
+        'the velocities contradict the positions, which do not change',
+        'Check the encoder, its cable, and which velocities the driver sends.',
     )
     CLOCKS_ALTERNATE = (
         WARN,
@@ -168,7 +168,7 @@ class Condition(Enum):
     CLOCKS_APART = (
         WARN,
         'the newest stamps of rotor_state and output_encoder are at least {apart:.2g} s apart',
-        'First check that both drivers stamp by one clock: angles of other times do not agree.',
+        'First check that both drivers stamp by one clock: angles of different times disagree.',
     )
     TOO_LARGE = (
         WARN,

@@ -63,10 +63,10 @@ class FindingCause(Enum):
     )
     # The rotor's count, from where the outputs take it
     ALL_MOVED_BY_ENCODER = (
-        'from the start, output angles are moved by {angle:.12g} rad, by the output encoder'
+        'from the start, output angles are shifted by {angle:.12g} rad, by the output encoder'
     )
     ALL_MOVED_BY_HOMING = (
-        'from the start, output angles are moved by {angle:.12g} rad, as by another rotor_zero'
+        'from the start, output angles are shifted by {angle:.12g} rad, as by another rotor_zero'
     )
     HOMED = 'later outputs have the new zero of a node that was homed[, at {moment}]'
     LAST_ALONE = 'only the last output is off'
@@ -76,7 +76,7 @@ class FindingCause(Enum):
     ENCODER_UNKNOWN = (
         'the reference is not judged: no recorded output_encoder determines the turns'
     )
-    ERRORS_AGREE = 'in agreement with both encoders: {messages}'
+    ERRORS_AGREE = 'both encoders confirm {messages}'
     ERRORS_DIFFER = (
         'error {error} rad against the encoders of rotor and output exceeds the tolerance of the '
         'angle, {tolerance} rad: {messages}' + _FIRST

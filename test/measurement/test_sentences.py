@@ -29,7 +29,7 @@ def test_every_observation_has_its_sentence():
 
 def test_counts_have_their_nouns_and_moments_of_samples_no_unit():
     assert str(Observation.STRAY(timed=False, moments=[7.0], more=0, count=1)) == (
-        '1 reading that contradicts both neighbours left out, at sample 7'
+        'left out: 1 reading that contradicts both neighbours, at sample 7'
     )
     assert Observation.JUMPED_FURTHER(count=1).sentence == (
         '1 further jump of the output against the rotor.'

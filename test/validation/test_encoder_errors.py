@@ -66,7 +66,7 @@ def test_errors_of_a_node_agree(homed, tmp_path):
     assert report.passed, explain(report)
     text = explain(report)
     for name in RATIOS:
-        assert f'{name}: {ERRORS}: in agreement with both encoders: 24' in text
+        assert f'{name}: {ERRORS}: both encoders confirm 24' in text
     assert 'not compared' not in text
 
 
@@ -95,7 +95,7 @@ def test_what_the_recorder_lost_is_not_judged(tmp_path):
 
     report = judged(tmp_path, messages)
     assert report.passed, explain(report)
-    assert ': in agreement with both encoders: 2' in explain(report)
+    assert ': both encoders confirm 2' in explain(report)
 
 
 def test_errors_without_the_encoder_are_not_compared(tmp_path):
@@ -114,7 +114,7 @@ def test_an_encoder_whose_topic_was_remapped_is_found_by_its_joints(tmp_path):
 
     joints = {f'{name}.output_encoder_joint': f'{name}_encoder' for name in RATIOS}
     report = judged(tmp_path, messages, **joints)
-    assert explain(report).count(f'{ERRORS}: in agreement with both encoders: 24') == len(RATIOS)
+    assert explain(report).count(f'{ERRORS}: both encoders confirm 24') == len(RATIOS)
 
 
 def test_errors_of_other_outputs_are_not_kept_beside_computed_ones(tmp_path):

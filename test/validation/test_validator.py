@@ -422,7 +422,7 @@ def test_what_is_wrong_with_all_messages_is_named(recorded, config, topic, edit,
 def test_an_offset_of_the_output_angle_alone_is_named(recorded, config):
     report = validate(change_all(recorded, OUTPUT, add('position', 0.125)), config)
     assert not report.passed
-    moved = 'from the start, output angles are moved by 0.125 rad, as by another rotor_zero'
+    moved = 'from the start, output angles are shifted by 0.125 rad, as by another rotor_zero'
     assert texts(report) == [moved]
     assert [topic.passed for topic in report.topics] == [True, False]
 
@@ -458,7 +458,7 @@ def test_the_offset_that_homing_leaves_passes_and_is_said(recorded, config, chan
     *unjudged, said = texts(report)
     poses = f'{POSES} is not judged: only the ratio of the gear is known'
     assert unjudged == [poses] * bool(changes)
-    assert said.startswith(f'from the start, output angles are moved by {-0.75 / 19:.9g}')
+    assert said.startswith(f'from the start, output angles are shifted by {-0.75 / 19:.9g}')
     assert said.endswith(' rad, as by another rotor_zero')
     failed = validate(recorded, homed, strict=True)
     assert failed.verdict == Verdict.FAIL
