@@ -190,6 +190,7 @@ class Plausibility:
         wraps = possible and self._wraps(step, stamp)
         clear = 2.0 * (high - low) < self.period
         self.wraps.counted = round((position - before - step) / self.period) if clear else 0
+        self.wraps.earlier = former[2:] if self.wraps.counted else (0.0, 0)
         for size in (abs(step), abs(step - last_step)):
             if EQUAL < size < 0.5 * self.noise:
                 self.noise = max(2.0 * size, FLOOR)
@@ -214,10 +215,8 @@ class Plausibility:
                     even = min(even, 0.25 * self.period)
                 most = self.limits.speed * shortest * 1e-9
                 self._even = even, most * most, math.ceil(shortest), int(longest)
-        if wraps:
-            self.jumps += 1
-            return Belief.JUMP
-        return BELIEVED
+        self.jumps += bool(wraps)
+        return Belief.JUMP if wraps else BELIEVED
 
     def _wraps(self, step: float, stamp: int) -> bool:
         """Return whether the last step, which was believed, was a wrap, as the next step shows."""
@@ -230,7 +229,8 @@ class Plausibility:
         if self.period:
             if self._former[1] <= self._repeated:  # a part of the last step may be yet to come
                 return bool(self.wraps.period)
-            return self.wraps.check((former_step, last_step, step), (former_span, last_span, span))
+            spans = former_span, last_span, span
+            return self.wraps.check((former_step, last_step, step), spans, self.noise)
         speeds = former_step / (former_span * 1e-9), step / (span * 1e-9)
         return self.wraps.note(last_step, position, last_span * 1e-9, speeds, jump=False)
 

@@ -24,7 +24,8 @@ _STEADY = 0.5  # of the greater speed: what the speeds before and after may diff
 _RESERVE = 1.25  # times what is needed: limits that are proposed
 _MANY = 16  # wraps, whose mean shows that a range is another
 _EVEN = 1.1  # greatest ratio of times between readings of which the steps are compared
-_OFF, _SURE = 0.05, 6.0  # rad, by which it is then off at least, and standard errors of the mean
+_SURE = 6.0  # standard errors of the mean, by which it is then off beyond the noise of a reading
+_ALIKE = 0.5  # of the greatest step: least one of those around a wrap that shows it
 _RANGE = 'rotor_encoder_range, which gearkin init can find'
 
 
@@ -35,6 +36,7 @@ class Wraps:
     known: float = 0.0  # rad, after which the positions repeat by the parameters; 0: never
     period: float = 0.0  # rad, after which they repeat instead; 0 if they do not seem to
     counted: int = 0  # periods that were taken for wraps in the last step
+    earlier: tuple[float, int] = 0.0, 0  # rad, ns: the step before the one before it, and its time
     _times: int = 0  # wraps that were checked, and of what they were off by, rad, its sums
     _off: float = 0.0
     _squares: float = 0.0
@@ -50,21 +52,26 @@ class Wraps:
         setting = 'rotor_encoder to single_turn' if turn else _RANGE
         return Condition.WRAPS(angle=TURN if turn else self.period, setting=setting)
 
-    def check(self, steps: tuple[float, float, float], spans: tuple[int, int, int]) -> bool:
+    def check(
+        self, steps: tuple[float, float, float], spans: tuple[int, int, int], noise: float
+    ) -> bool:
         """Check the known period by the step of a wrap; return whether it is another.
 
         The steps, rad, are those before the wrap, of it, without the periods `counted`, and behind
-        it, in spans of time, ns. What the motion does not explain shows how far the range is off.
+        it, in spans of time, ns. What the motion and the noise of a reading, rad, do not explain
+        shows how far the range is off. A vibration can be fastest at each wrap: the parabola
+        through the steps around it allows for that, as long as they differ little.
         """
-        if max(spans) > _EVEN * min(spans):
+        (before, wrap, after), (earlier, time) = steps, self.earlier
+        around = sorted(math.copysign(1.0, before) * step for step in (earlier, before, after))
+        if max(time, *spans) > _EVEN * min(time, *spans) or around[0] < _ALIKE * around[-1]:
             return bool(self.period)
-        before, wrap, after = steps
-        off = math.copysign(1.0, self.counted) * (wrap - 0.5 * (before + after))
+        off = math.copysign(1.0, self.counted) * (wrap - before - (after - earlier) / 3.0)
         self._times += 1
         self._off, self._squares = self._off + off, self._squares + off * off
         mean = self._off / self._times
         error = math.sqrt(max(0.0, self._squares / self._times - mean * mean) / self._times)
-        if self._times >= _MANY and abs(mean) > _OFF + _SURE * error:
+        if self._times >= _MANY and abs(mean) > noise + _SURE * error:
             self.period = abs(self.counted) * self.known + mean
         return bool(self.period)
 

@@ -458,6 +458,21 @@ def test_positions_that_wrap_at_another_range_than_the_configured_one_are_named(
     assert rotor.referenced != other
 
 
+@pytest.mark.parametrize('resolution', [0.0, TURN / 100])
+@pytest.mark.parametrize(('rate', 'frequency', 'amplitude'), [
+    (10, 1.0, 0.5), (20, 3.0, 0.5), (30, 4.0, 1.0), (40, 4.0, 0.5), (60, 3.0, 0.5),
+])  # fmt: skip
+def test_an_oscillation_about_the_wrap_is_no_other_range(rate, frequency, amplitude, resolution):
+    """Its speed is greatest at each wrap."""
+    angles = amplitude * np.sin(TURN * frequency * np.arange(25 * rate) / rate)
+    if resolution:
+        angles = np.floor(angles / resolution) * resolution
+    rotor = RotorInput(replace(SINGLE, max_rotor_speed=1.2 * TURN * frequency * amplitude))
+    for data in messages(np.arange(25 * rate) / rate, np.mod(angles, TURN)):
+        rotor.accept(data, int)
+    assert rotor.plausibility.jumped is None
+
+
 def test_positions_next_to_zero_are_no_numbers_of_single_precision():
     """rclpy publishes a whole number in a field of float64 as 5e-324."""
     rotor, _ = fed(MULTI, messages([0.0, 0.01, 0.02], [0.0, 5e-324, 1e-323]))
