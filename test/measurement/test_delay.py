@@ -2,11 +2,11 @@
 """A delay between the stamps of both encoders is no lost motion, and another ratio no error."""
 
 import math
+from itertools import accumulate
 
 import numpy as np
 import pytest
 from gear_recordings import encoders
-from scipy.signal import lfilter
 from simulated_encoders import (
     ARC_MINUTE,
     TURN,
@@ -78,7 +78,7 @@ def test_a_filter_of_the_output_is_no_play():
     strokes = ramped_strokes(5.0, 9.0, 0.7)
     times, rotor, output = drive.readings(lambda t: strokes(t * (0.5 + t / 30.0)), 30.0, 100.0, 1)
     share = 1.0 - math.exp(-0.01 / 0.02)
-    filtered = output[0] + lfilter([share], [1.0, share - 1.0], output - output[0])
+    filtered = np.array([*accumulate(output, lambda one, next_: one + share * (next_ - one))])
     found = figures(encoders(rotor, filtered, stamps(times), COUNTS, OUTPUT_COUNTS))
     assert found.lost_motion.value == pytest.approx(PLAY, abs=0.1 * ARC_MINUTE)
 

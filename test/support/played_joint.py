@@ -62,7 +62,8 @@ def main() -> None:
     while True:
         number += 1
         if late == 'left out':
-            due = np.searchsorted(after, 1e9 * (time.monotonic() - start), 'right') - 1
+            passed = int(1e9 * (time.monotonic() - start))  # a float would convert all of them
+            due = np.searchsorted(after, passed, 'right') - 1
             number = max(number, int(due))
         moment, row = int(after[number]), rows[number]
         time.sleep(max(0.0, start + 1e-9 * moment - time.monotonic()))
