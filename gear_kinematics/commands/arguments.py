@@ -56,7 +56,7 @@ ALL = 'use this actuator of an arm only (default: all)'
 def add_config(
     parser: argparse.ArgumentParser,
     node: str = NODE,
-    default: str = 'actuator.yaml beside a recording, else config/actuator.yaml',
+    default: str = 'actuator.yaml beside a recording, if any, else that of the package',
     *,
     chosen: str = '',
     actuator: str = 'use this actuator of an arm',

@@ -38,7 +38,7 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: boo
     is not `configured` takes neither parameters of the node nor a ratio.
     """
     number = '+' if configured else '*'  # --live takes their place
-    text = 'recording by ROS, or table such as a CSV file'
+    text = 'ROS recording, or a table such as a CSV file'
     parser.add_argument('recordings', nargs=number, type=Path, metavar='BAG|TABLE', help=text)
     add_rotor(parser, configured=configured)
     add_encoder(parser)

@@ -19,7 +19,7 @@ from gear_kinematics.twin.parameters import NODE, default_config
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    arguments.add_config(parser, NODE, 'config/simulated_actuator.yaml')
+    arguments.add_config(parser, NODE, 'simulated_actuator.yaml of the package')
     gear = arguments.group(parser, 'gear')
     text = 'calibration with the kinematic errors (default: the parameter calibration)'
     gear.add_argument('--calibration', type=Path, metavar='FILE', help=text)

@@ -39,7 +39,8 @@ def add_report_forms(parser: argparse.ArgumentParser, *, junit: bool = False) ->
     group = arguments.group(parser, 'output')
     for form in _FORMS:
         if junit or form != 'junit':
-            text = f'write the report as {form.upper()} (-: stdout)'
+            name = 'JUnit' if form == 'junit' else form.upper()
+            text = f'write the report as {name} (-: stdout)'
             group.add_argument(f'--{form}', metavar='FILE', help=text)
     group.add_argument('--plot', metavar='FILE', help='write a figure: .png, .svg or .pdf')
     add_force(parser)
