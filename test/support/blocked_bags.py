@@ -120,13 +120,12 @@ class BlockedBag:
 
     def readers(self) -> list[int]:
         """Give the ids of the processes that are at it."""
-        found = []
-        for process in Path('/proc').glob('[0-9]*'):
-            with suppress(OSError):  # it, or a file of its, is gone meanwhile
-                links = [link.readlink() for link in (process / 'fd').iterdir()]
-                if self._file in links and int(process.name) != os.getpid():
-                    found.append(int(process.name))
-        return sorted(found)
+        found, own = [], self._file.stat()
+        for process in filter(str.isdecimal, (entry.name for entry in os.scandir('/proc'))):
+            with suppress(OSError), os.scandir(f'/proc/{process}/fd') as opened:
+                if any(os.path.samestat(each.stat(), own) for each in opened):
+                    found.append(int(process))
+        return sorted({*found} - {os.getpid()})
 
     def reader(self) -> int:
         """Wait for the first process that is at it, and sleeps: a signal will wake it."""
