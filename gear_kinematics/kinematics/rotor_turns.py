@@ -213,6 +213,10 @@ class RotorTurns:
         self._reading = 0.0
         self._stamp = 0
         self._velocity: float | None = None
+        self._since_gap: tuple[float, float, float, float] | None = None
+        """By what the turns since a gap that velocities narrowed down exceed the expected ones,
+        and the width of their bounds, rad; the gap, and for how long it matters, s: behind a
+        message that was late, others come in a burst, and turn too far in all."""
 
     def forget_turns(self) -> None:
         """Make the turns as unknown as at the start; counting goes on."""
@@ -252,17 +256,24 @@ class RotorTurns:
             more = round((expected - apparent) / period)
             # Stamps that are early or late put the turn outside of what is possible: it is the
             # right one only if any other were far less possible.
-            width = high - low
-            wide = width >= period
+            off, width, gap = apparent + period * more - expected, high - low, elapsed
+            wide, since = width >= period, self._since_gap
             if wide:
                 self._gap += (elapsed - self._gap) / (self._gaps + 1)
             self._gaps = min(self._gaps + 1, _MOST_GAPS) if wide else max(self._gaps - 1, 0)
-            outside = abs(apparent + period * more - expected) - 0.5 * width
+            if 2.0 * self.max_speed * elapsed >= period:
+                since = 0.0, 0.0, elapsed, 2.0 * elapsed
+            if since:
+                sums = off + since[0], width + since[1], since[2], since[3] - elapsed
+                since = sums if since[3] > elapsed and sums[1] < period else None
+                off, width, gap, _ = since or (off, width, elapsed, 0.0)
+            outside = abs(off) - 0.5 * width
             if wide or outside > _NOISE + (period - width - outside) / 5.0:
-                self.referenced = False
+                self.referenced, since = False, None
                 self.unknown_gaps += 1
-                self.longest_gap = max(self.longest_gap, elapsed)
-                self.unseen_travel += self.max_speed * elapsed + 0.5 * period
+                self.longest_gap = max(self.longest_gap, gap)
+                self.unseen_travel += self.max_speed * gap + 0.5 * period
+            self._since_gap = since
             self.periods += more
             if self.periods != self._offset[0]:
                 self._offset = (self.periods, *repeated(self.periods, period))
@@ -309,11 +320,8 @@ class RotorTurns:
     def home(self, rotor_angle: float, direction: int) -> float:
         """Declare that the rotor angle φ2 is `rotor_angle` now; the turns are known from now on.
 
-        Returns:
-            The zero, rad, with which `relative_to` gives `rotor_angle` at the present position.
-
-        Raises:
-            RuntimeError: before the first update.
+        The zero, rad, with which `relative_to` gives that angle at the present position is
+        returned. RuntimeError is raised before the first update.
         """
         zero = self.zero_for(rotor_angle, direction)
         # Drop the periods counted so far.
