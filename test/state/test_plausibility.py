@@ -349,6 +349,17 @@ def test_a_driver_that_always_sends_in_bursts_is_believed_from_the_first_reading
         assert judge.judge(angle, stamp) is BELIEVED
 
 
+@pytest.mark.parametrize('start', [0.1, 0.203, 0.505])
+@pytest.mark.parametrize('rate', [1000, 2000])
+def test_a_rotor_is_believed_that_starts_after_bursts_that_did_not_show(rate, start):
+    """Each 4 ms come the readings since; of a rotor that stands they are all alike."""
+    judge, n, count = Plausibility(*LIMITS), np.arange(int(rate * (start + 0.2))), rate // 250
+    stamps = START + 4_000_000 * (n // count) + 5_000 * (n % count)
+    angles = np.round(1500.0 * (n / rate - start).clip(0.0) ** 2, 4)
+    for stamp, angle in zip(stamps.tolist(), angles.tolist(), strict=True):
+        assert judge.judge(angle, stamp) is BELIEVED
+
+
 @pytest.mark.parametrize('rate', [500, 1000])
 def test_an_encoder_that_is_stuck_soon_after_the_start_is_named(rate):
     times = np.arange(rate) / rate
