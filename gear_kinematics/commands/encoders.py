@@ -56,6 +56,9 @@ def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
     )
     for role in ('time', *roles):
         group.add_argument(f'--{role}-column', metavar='NAME', help=_COLUMNS[role])
+    if 'output' in roles:
+        text = 'time of the output encoder, if --time-column is that of the rotor alone'
+        group.add_argument('--output-time', metavar='NAME', help=text)
     text = 'unit of all angles (default: by name, or rad unless something contradicts it)'
     group.add_argument('--angle-unit', choices=GIVEN_UNITS, help=text)
     if 'torque' in roles:
@@ -137,6 +140,7 @@ def sources(options: argparse.Namespace) -> Sources:
     names: dict[str, Any] = {role: getattr(options, f'{role}_column', None) for role in _COLUMNS}
     return Sources(
         **names,
+        output_time=getattr(options, 'output_time', None),
         unit=options.angle_unit,
         on_rotor=getattr(options, 'on_rotor', False),
         rotor_counts=options.rotor_counts,

@@ -68,7 +68,7 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
     ]
     likely = others or [unit for unit in dated if unit in likely] or likely
     if (len(likely) != 1 and role == 'rotor') or (
-        _is_temps(clock) and times[0] > _LATE_ROWS * step
+        _is_temps(clock.name, clock.unit) and times[0] > _LATE_ROWS * step
     ):
         cause = f'the times in {clock.name}: steps of {step:.6g} do not tell their unit'
         raise ColumnsError(cause, 'it', time=f'{clock.name} [ms]')
@@ -87,21 +87,20 @@ def check_units(rotor: Array, output: Array) -> None:
         )
 
 
-def are_no_times(clock: Column, times: Array) -> bool:
+def are_no_times(name: str, unit: str, times: Array) -> bool:
     """Return whether numbers of a name that may say something else do not rise as times do.
 
-    They are called T, or temps (French for times), or have an unknown word, as cycle_time has.
+    They are called T, t_m, or temps (French for times), or have a further word, as cycle_time has.
     """
-    steps = np.diff(times.astype(float))
-    if _is_temps(clock):
+    steps, says = np.diff(times.astype(float)), meaning(name)
+    if _is_temps(name, unit) or (says.unsure and 't' in says.words):
         return not np.all(steps > 0.0)
     rise, least = np.sum(steps), _RISING * np.sum(steps, where=steps > 0.0)
-    doubtful = meaning(clock.name).unsure
-    return bool((doubtful and rise <= least) or (clock.name == 'T' and rise < least))
+    return bool((says.unsure and rise <= least) or (name == 'T' and rise < least))
 
 
-def _is_temps(clock: Column) -> bool:
-    return clock.name.lower() == 'temps' and not clock.unit
+def _is_temps(name: str, unit: str) -> bool:
+    return name.lower() == 'temps' and not unit
 
 
 def stamps(
@@ -123,7 +122,8 @@ def stamps(
         return np.arange(len(rows)) * SECOND, rows
     times = times[rows]
     if clock.unit == '100ns':
-        times = times - next(epoch for epoch in _TICKS if epoch <= np.nanmax(times) or not epoch)
+        last = np.max(times, where=times == times, initial=0)  # noqa: PLR0124, no NaN
+        times = times - next(epoch for epoch in _TICKS if epoch <= last or not epoch)
     if times.dtype.kind == 'M':
         readable = ~np.isnat(times)
         stamp = times.astype('datetime64[ns]').astype(np.int64)
@@ -134,8 +134,10 @@ def stamps(
         seconds = times * round(factor) if exact else np.where(readable, times, 0.0) * factor
         stamp = np.round(seconds).astype(np.int64)
     if np.mean(~readable) > _UNREADABLE:
-        cause = f'the times in {clock.name}: no numbers nor ISO 8601, or too large'
-        raise ColumnsError(cause, 'their unit', time=f'{clock.name} [ns]')
+        cause = f'the times in {clock.name}: no numbers nor ISO 8601'
+        if times.dtype.kind == 'M' or np.mean(np.isnan(times)) > _UNREADABLE:
+            raise ValueError(f'{cause}; give another with --time-column')
+        raise ColumnsError(f'{cause}, or too large', 'their unit', time=f'{clock.name} [ns]')
     if lost := np.count_nonzero(~readable):
         remarks.append(Observation.NO_TIMES(rows=lost, column=clock.name))
     rows, stamp = rows[readable], stamp[readable]

@@ -25,6 +25,7 @@ ROLES = {
     'time': TIME_UNITS,
     **dict.fromkeys(ANGULAR, ANGLE_UNITS),
     'torque': TORQUE_UNITS,
+    'output_time': TIME_UNITS,
 }
 """Units of the columns by role."""
 _COUNTS = '4096'  # counts a turn, as an example
@@ -43,6 +44,7 @@ class Sources:
     rotor: str | None = None
     output: str | None = None
     time: str | None = None
+    output_time: str | None = None  # of the output's encoder, if it has times of its own
     unit: str | None = None  # of all angles, one of GIVEN_UNITS; None: by their names, or rad
     on_rotor: bool = False  # whether angle and torque are the rotor's, unless named otherwise
     rotor_counts: int | None = None  # per turn of the encoder of the rotor, or of the angle column

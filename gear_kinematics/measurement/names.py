@@ -41,6 +41,8 @@ _CERTAIN = {'time', 'stamp', 'timestamp', 'timestamps', 'zeit', 'zeitstempel'}
 _SPEEDS = {'rpm', 'rps', 'dps', 'cps'}
 _IN_BRACKETS = {'rotation': 'rev', 'min': 'minutes', 'h': 'hours'}
 """Units that mean something else as words of a name, as in position_min."""
+_OF_ONE = re.compile(r't_[a-z]+( ?[\[(].*)?|.*[a-z][./]t')
+"""Names that may be the times of one side, such as t_m, but not T_m, a torque or temperature."""
 _NO_UNIT = re.compile(r'-|none|n/a|1|:|utc.*|.*h:m+.*')
 
 _DEG, _KGF, _LBF = UNITS['deg'], 9.80665, 4.4482216152605  # rad, N, N
@@ -155,6 +157,8 @@ def meaning(name: str) -> Meaning:
     outputs = {word for word in kinds if kinds[word] == 'output'}
     output = bool(outputs - _EITHER if rotor else outputs)
     role, rank = _role(words, unit, rotor=rotor, output=output)
+    if not role and unit in {'', *TIME_UNITS} and _OF_ONE.fullmatch(name):
+        role, rank = 'time', (len(_KINDS), len(words))
     known = kinds.keys() <= _KINDS.keys() and (not words or 'time' in kinds.values())
     unsure = role == 'time' and (rotor or output or not known)
     return Meaning(words, unit, role, rank, rotor, output, unsure)

@@ -150,8 +150,11 @@ class _Samples:
         clocks = {role: table.clocks.get(one.name, usual) for role, one in self.found.items()}
         asked = clock and not (table.clocks or sources.time)
         own = own_clocks(table.names, self.found) if asked else {}
+        given = self.found.pop('output_time', None)
+        own = {'output': given.name} if given else own
+        units = {**table.units, **{one.name: one.unit for one in (clock, given) if one}}
         raw, clock = self._loaded(table, clock, {*clocks.values(), *own.values()})
-        clocks |= self._own(own, raw, usual, table)
+        clocks |= self._own(own, raw, usual, units)
         if len({*clocks.values()}) == 1 and len(lengths := {*map(len, raw.values())}) > 1:
             number = ' and '.join(map(str, sorted(lengths)))
             raise ValueError(f'columns of {number} rows, without times of each')
@@ -202,7 +205,7 @@ class _Samples:
             times = raw[clock.name]
             filled = times == times  # noqa: PLR0124, as NaN is not equal to itself
             empty = not (filled.any() or table.first.get(clock.name, clock.name))
-            clock = None if empty or are_no_times(clock, times[filled]) else clock
+            clock = None if empty or are_no_times(clock.name, clock.unit, times[filled]) else clock
         if clock and rest:
             seconds, nanoseconds = (raw[name].astype(np.int64) for name in (clock.name, rest))
             raw[clock.name] = seconds * SECOND + nanoseconds
@@ -210,16 +213,20 @@ class _Samples:
         return raw, clock
 
     def _own(
-        self, own: dict[str, str], raw: dict[str, Array], usual: str, table: TableFile
+        self, own: dict[str, str], raw: dict[str, Array], usual: str, units: dict[str, str]
     ) -> dict[str, str]:
         """Return the columns of times by role that belong to one column alone.
 
-        Either both encoders have their own times by name, or a column has numbers exactly where
-        its times have some, and elsewhere than the usual times.
+        Either both encoders have their own times by name, or they are given, or a column has
+        numbers exactly where its times have some, and elsewhere than the usual times.
         """
         found = {}
         filled = {name: values == values for name, values in raw.items()}  # noqa: PLR0124, no NaN
         named = meaning(usual).on_rotor != meaning(usual).on_output
+        if self._sources.output_time:
+            named = True
+        else:
+            own = {k: v for k, v in own.items() if not are_no_times(v, '', raw[v][filled[v]])}
         for role, times in own.items():
             alike = [
                 np.array_equal(filled[one], filled[self.found[role].name])
@@ -228,13 +235,15 @@ class _Samples:
             if times != usual and (named or alike == [True, False]):
                 found[role] = times
             elif len({*own.values()}) > 1 and _are_apart(raw[usual], raw[times]):
+                one, other = (own.get(side, usual) for side in ('rotor', 'output'))
                 raise ColumnsError(
-                    f'{usual} and {times} may be the times of one encoder each: give the times of '
-                    'both with --time-column, or name the columns motor_time and output_time',
-                    time=usual,
+                    f'{one} and {other} may be the times of one encoder each: give both, or the '
+                    'times of all with --time-column alone',
+                    time=one,
+                    output_time=other,
                 )
         for times in {*found.values()}:
-            own_unit, unit = (table.units.get(k) or meaning(k).unit for k in (times, usual))
+            own_unit, unit = (units.get(k) or meaning(k).unit for k in (times, usual))
             if own_unit != unit:
                 if not {own_unit, unit} <= TIME_UNITS.keys():
                     cause = 'are not in the same unit: give both units in the names'

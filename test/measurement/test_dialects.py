@@ -450,6 +450,11 @@ ENCODERS = {
         [*np.pad([t, r], [(0, 0), (0, 1)], constant_values=np.nan),
          *np.pad([t, o], [(0, 0), (1, 0)], constant_values=np.nan)],
         'time,rotor,time.1,output', '{:.5f}').replace('nan', ''),
+    'times of each side in short': lambda t, r, o: written(
+        [t[:-1], t[1:], r[:-1], o[1:]], 't_m,t_o,motor_pos,output_pos', '{:.5f}'),
+    'temperatures of both sides': lambda t, r, o: written(
+        [t, t / 2 + np.sin(t), r, t / 3 + np.sin(t), o], 'time,t_motor,motor_pos,t_output,out_pos',
+        '{:.5f}'),
     'X of each side': lambda t, r, o: written(
         [t[1:], r[1:], t[:-1], o[:-1]], 'X,Motor [rad],X,Load [rad]', '{:.5f}'),
     'times of each side in groups': lambda t, r, o: written(
@@ -683,6 +688,8 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         (' (1764230000.000000) can0 141#A100000000000000\n', 'a log of CAN frames: decode'),
         (lambda t, r, o: written([t, r, t, o], 'motor_time,motor_pos,output_time_ms,output_pos'),
          'are not in the same unit: give both units in the names'),
+        (lambda t, r, o: written([t, r, o], 'time [100ns],rotor,output', 'x{:.2f}'),
+         r'time \[100ns\]: no numbers nor ISO 8601; give another with --time-column$'),
         ('date Thu Nov 26 09:12:33 2026\nbase hex\n', 'a log of CAN frames: decode'),
         ('  can0  00000141   [8]  A1 00 00 00 00 00 00 00\n', 'a log of CAN frames: decode'),
         (' (1764230000.000000)  can0  141   [2]  A1 00\n', 'a log of CAN frames: decode'),
@@ -1116,8 +1123,11 @@ def test_two_times_that_are_apart_and_may_be_of_one_encoder_each_are_asked_for(
     names = f'{usual},motor_pos [rad],{other},output_pos [rad]'
     path = saved(tmp_path, written([t, r, t + late, o], names, '{:.5f}'))
     if asked:
-        with pytest.raises(RecordingError, match=rf'{usual} and {other} may be .* of one'):
+        with pytest.raises(RecordingError, match=rf'{usual} and {other} may be .* of one') as told:
             read(path, gear)
+        both = read(path, gear, followed(told.value)).encoders
+        # The output's readings are half a second later than those of the same row.
+        assert both.before[0] == 12
     recording = read_table(path, Sources(time=usual if asked else ''), gear.gear.gear_ratio)
     assert recording.columns[0] == f'time [s] from {usual}'
 
