@@ -321,7 +321,7 @@ def _joint_state(row: Sequence[str]) -> tuple[list[str], dict[str, str], dict[st
     """Name the columns of `ros2 topic echo --csv`, if they are of that kind."""
     joints = [*takewhile(lambda cell: cell and not weight(cell, '.'), row[3:])]
     fields = (len(row) - 3) / max(len(joints), 1) - 1.0
-    if fields not in {1.0, 2.0, 3.0} or not all(map(str.isdecimal, row[:2])):
+    if not joints or fields not in {1.0, 2.0, 3.0} or not all(map(str.isdecimal, row[:2])):
         return None
     names = ['stamp_s', 'stamp_ns', 'frame', *len(joints) * [''], *joints]
     kinds = {2.0: ('{} velocity or effort',), 3.0: ('{} velocity', '{} effort')}.get(fields, ())

@@ -9,6 +9,8 @@ which `columns` chooses, or `advice` proposes columns; `clocks` gives the rows t
 `assumed_units` doubts units that are not given; and `tables` decides which rows are used.
 """
 
+import re
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from itertools import zip_longest
@@ -26,29 +28,50 @@ from gear_kinematics.bag.finding import (
     TABLES,
     table_format,
 )
-from gear_kinematics.measurement.cells import numbers
+from gear_kinematics.measurement.cells import elements_of, key_of, numbers
 from gear_kinematics.measurement.dialects import TableFile, loaded, open_text
 from gear_kinematics.measurement.names import meaning
+from gear_kinematics.measurement.series import series_of
 
+_ROWS = 100  # that show whether a column says which series a row is of
+_ASAMMDF = re.compile(r'DG(M?)(\d+)_(.*)')
+"""Names of channels of a group, and of its times (M), that asammdf exports."""
 _OBJECT = 0xDD000000  # begins the reference to an object, such as a table, in a file of MATLAB
 
 
 def _parquet(path: Path) -> TableFile:
-    """Read columns of numbers, and the elements of vectors, as LeRobot writes them."""
-    import pandas as pd  # noqa: PLC0415, of an extra
+    """Read columns of numbers, elements of vectors, as LeRobot writes them, fields, and series."""
+    import pyarrow as pa  # noqa: PLC0415, of an extra
+    import pyarrow.parquet as pq  # noqa: PLC0415, of an extra
 
     columns: dict[str, Any] = {}
-    frame = pd.read_parquet(path, engine='pyarrow')
+    units: dict[str, str] = {}
+    table = pq.read_table(path)
+    while any(map(pa.types.is_struct, table.schema.types)):
+        table = table.flatten()
+    frame = table.to_pandas()
     if frame.index.dtype.kind in 'mMf':
         frame = frame.rename_axis(index=frame.index.name or 'time').reset_index()
-    for name, column in frame.items():
-        if np.ndim(next(iter(column.dropna()), 0)) == 1:
+    names = [*map(str, frame)]
+    texts = [frame[name].head(_ROWS).dropna().astype(str) for name in frame]
+    key, value = key_of(names, dict(enumerate(texts)))
+    if key:
+        return loaded(*series_of(frame.set_axis(names, axis=1), '.', key, value, {}))
+    for name, column in zip(names, map(frame.get, frame), strict=True):
+        first = np.asarray(next(iter(column.dropna()), 0))
+        namer = f'{name.rpartition("position")[0]}name'
+        if first.ndim != 1:
+            columns[name] = numbers(column)
+        elif name.endswith('position') and namer in names:
+            both = frame[[namer, name]].map(lambda each: str(np.asarray(each).tolist()))
+            joints = elements_of(both.set_axis([0, 1], axis=1), [namer, name], [1])
+            columns |= {joint: numbers(angles) for joint, angles in joints.items()}
+            units |= dict.fromkeys(joints, 'rad')
+        elif first.dtype.kind in 'iuf':
             vectors = (vector if np.ndim(vector) else () for vector in column)
             elements = enumerate(zip_longest(*vectors, fillvalue=np.nan))
             columns |= {f'{name}[{k}]': np.array(values, float) for k, values in elements}
-        else:
-            columns[str(name)] = numbers(column)
-    return loaded(columns)
+    return loaded(columns, units)
 
 
 def _mat(path: Path) -> TableFile:
@@ -94,6 +117,10 @@ def _mat(path: Path) -> TableFile:
             {name.partition('.')[2] or name: one for name, one in each.items()}
             for each in (columns, units)
         )
+    groups = [(*named.groups(), v) for k, v in columns.items() if (named := _ASAMMDF.match(k))]
+    if times := {group: values for master, group, _, values in groups if master}:
+        channels = [one for one in groups if not one[0]]
+        return _of_channels((g, own, v, '', times.get(g)) for _, g, own, v in channels)
     if not columns:
         raise ValueError('no columns of numbers: save the vectors of a timetable or timeseries')
     return loaded(columns, units)
@@ -215,7 +242,9 @@ def open_table(path: Path) -> TableFile:
         if file.read(len(POINTER)) == POINTER:
             raise ValueError(NO_CONTENT)
     try:
-        return _READERS[table_format(path)](path)
+        with warnings.catch_warnings():
+            warnings.simplefilter('ignore')  # of the libraries, about what is not read
+            return _READERS[table_format(path)](path)
     except (ImportError, OSError, ValueError):
         raise
     except Exception as error:  # each library has its own

@@ -903,6 +903,52 @@ def parquet(path, time, rotor, output):
     return Sources(rotor='observation.state[0]', output='observation.state[1]', unit='rad')
 
 
+def structs(path, time, rotor, output):
+    pa = pytest.importorskip('pyarrow')
+    import pyarrow.parquet as pq  # noqa: PLC0415
+
+    sides = [[{'pos': one, 'vel': 0.0} for one in values] for values in (rotor, output)]
+    pq.write_table(pa.table({'time': time, 'motor': sides[0], 'output': sides[1]}), path)
+    return Sources()
+
+
+def long_table(path, time, rotor, output):
+    pytest.importorskip('pyarrow')
+    pd = pytest.importorskip('pandas')
+    series = {'/rotor/position': rotor, '/state': np.zeros(len(time)), '/output/position': output}
+    rows = ((t, key, value[k]) for k, t in enumerate(time) for key, value in series.items())
+    pd.DataFrame(rows, columns=['time', 'topic', 'value']).to_parquet(path)
+    return Sources()
+
+
+def joint_states(path, time, rotor, output):
+    """Joints change their places, as where two drivers share a topic."""
+    pytest.importorskip('pyarrow')
+    pd = pytest.importorskip('pandas')
+    order = [slice(None), slice(None, None, -1)]
+    pairs = zip(rotor, output, strict=True)
+    rows = {'stamp_ns': np.round(1e9 * time).astype('i8'),
+            'name': [['m1', 'out'][order[k % 2]] for k in range(len(time))],
+            'position': [[*pair][order[k % 2]] for k, pair in enumerate(pairs)]}  # fmt: skip
+    pd.DataFrame(rows).to_parquet(path)
+    return Sources()
+
+
+def asammdf_export(path, time, rotor, output):
+    """As asammdf 8 exports two groups with a master each."""
+    pytest.importorskip('scipy.io').savemat(path, {
+        'DGM0_timestamps': time[1:], 'DG0_MotorAngle': rotor[1:],
+        'DGM1_timestamps': time[:-1], 'DG1_OutputAngle': output[:-1]})  # fmt: skip
+    return Sources(unit='rad')
+
+
+def fields_with_times(path, time, rotor, output):
+    pytest.importorskip('scipy.io').savemat(path, {
+        'motor': {'t': time[1:], 'angle': rotor[1:]},
+        'output': {'t': time[:-1], 'angle': output[:-1]}})  # fmt: skip
+    return Sources()
+
+
 def parquet_of_times(path, time, rotor, output):
     pytest.importorskip('pyarrow')
     pd = pytest.importorskip('pandas')
@@ -1029,7 +1075,9 @@ def mf4(path, time, rotor, output):
 FORMATS = {'parquet': parquet, 'mat': mat, '7.3.mat': hdf5, 'tdms': tdms, 'mf4': mf4}
 FORMATS |= {'index.parquet': parquet_of_times, 'scope.mat': scope, 'ascii.mat': ascii_mat}
 FORMATS |= {'dates.tdms': tdms_with_dates, 'times.tdms': tdms_with_wrong_increments}
-FORMATS |= {'timeseries.mat': timeseries}
+FORMATS |= {'timeseries.mat': timeseries, 'groups.mat': asammdf_export}
+FORMATS |= {'fields.mat': fields_with_times, 'structs.parquet': structs}
+FORMATS |= {'long.parquet': long_table, 'joints.parquet': joint_states}
 FORMATS |= {'unnamed.mat': scope_without_labels, 'dspace.mat': control_desk}
 FORMATS |= {'xlsx': workbook, **dict.fromkeys(('csv.gz', 'tsv.zst', 'TXT.zip', 'log'), text)}
 
@@ -1142,6 +1190,15 @@ def test_rows_with_a_torque_of_their_own_are_no_filled_gaps(tmp_path, gear):
     path = saved(tmp_path, written(columns, 'time,rotor,output,torque', '{:.6f}'))
     given = replace(gear, gear_ratio='10')
     assert len(read(path, given).encoders.rotor.stamp) == len(time)
+
+
+def test_a_table_without_names_that_begins_with_whole_numbers_has_no_joints(
+    tmp_path, gear, reference
+):
+    t, r, o = reference('encoders')
+    path = saved(tmp_path, written([0 * t, 0 * t, t, r, o], '', 2 * ['{:.0f}'] + 3 * ['{:.5f}']))
+    given = Sources(time='3', rotor='4', output='5', unit='rad')
+    assert_measured(read(path, gear, given), gear)
 
 
 def test_an_index_without_a_name_is_proposed_for_the_times(tmp_path, gear, reference):
