@@ -103,7 +103,8 @@ def ramped(model: TwinModel, high: float, low: float) -> tuple[np.ndarray, np.nd
     model.rotor_locked = True
     ways = []
     for begin, end in pairwise((0.0, high, low, high)):
-        torques = np.linspace(begin, end, _STEPS + 1)
+        steps = round(_STEPS * abs(end - begin) / (high - low))
+        torques = np.linspace(begin, end, steps + 1)
         wind_ups = []
         for torque in torques.tolist():
             model.advance(5e-3, 0.0, -torque)
