@@ -258,7 +258,7 @@ def size_of(path: Path) -> int:
     return sum(file.stat().st_size for file in files)
 
 
-WRITTEN = 'chunks of 32 MiB', '65 535 topics', 'messages of 1 GiB'
+WRITTEN = '65 535 topics', 'messages of 1 GiB'
 """Bags for which `compute` may write more than `validate` does, or which it refuses by itself."""
 
 
