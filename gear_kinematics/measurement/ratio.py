@@ -24,11 +24,13 @@ _FEWEST_WRAPS = 3
 _ONE_TURN = 390  # deg of the output: more than a turn, within which hardly anything repeats
 _MOST_TURNED = 3600  # deg of the output, at most, that the user is asked to turn
 _BY_CHANCE = 0.05  # probability below which a simple fraction in the interval is no coincidence
+_WHOLE = _BY_CHANCE / 4.0  # greatest uncertainty at which the same holds for a whole number
 _MAX_DISTANCE = 2
 """Expanded uncertainties within which a fraction may be the true ratio, since one recording in 20
 has it beyond a single one."""
 _BEYOND = 0.05  # share of such recordings: a coincidence must be as much less likely there
 _CANDIDATES = 10
+_UNITS = {'degrees': math.degrees(1.0), 'turns': 1.0 / TURN}  # per rad, of a rotor by mistake
 _MULTIPLE = 1e-3  # from a whole multiple of the assumed ratio, as by wrong counts per turn
 
 
@@ -161,6 +163,11 @@ def _judged(measured: Estimate, turned: float) -> RatioEstimate:
     advice = Observation.TURN_FURTHER(degrees=more)
     if not turned < more <= _MOST_TURNED:
         advice = Observation.SAMPLE_TOGETHER()
+    for unit, size in _UNITS.items():
+        whole = round(value / size)
+        if abs(whole) > 1 and abs(value - whole * size) < spread < _WHOLE * size:
+            advice = Observation.PERHAPS_UNIT(sent=unit, ratio=whole, advice=advice)
+            break
     candidates = islice(_fractions(low, high, q, value), _CANDIDATES)
     return RatioEstimate(measured, tuple(candidates), advice=advice)
 

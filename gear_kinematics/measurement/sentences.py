@@ -110,6 +110,9 @@ class Observation(Enum):
         _RATIO + ', but a multiple of it: check counts per turn and units, or give --ratio={ratio}'
     )
     TURN_FURTHER = 'turn the output by {degrees}° or more'
+    PERHAPS_UNIT = (
+        'if the rotor is in {sent}, its ratio is {ratio}: let the driver send rad; else {advice}'
+    )
     SAMPLE_TOGETHER = 'turning further hardly helps: sample both encoders at once, and more often'
     # What torque ramps show
     NEGATIVE_HYSTERESIS = (

@@ -171,6 +171,16 @@ def test_nobody_is_told_to_turn_further_where_that_does_not_help():
     assert found.advice == Observation.SAMPLE_TOGETHER()
 
 
+@pytest.mark.parametrize(('unit', 'per_rad'), [('degrees', 180.0 / math.pi), ('turns', 1 / TURN)])
+@pytest.mark.parametrize('ratio', [20, -50, 101])
+def test_a_rotor_in_another_unit_is_named_beside_the_ratio_that_it_gives(unit, per_rad, ratio):
+    rotor, output, time = recorded(ratio, 1.5 * TURN, 1e-3, np.random.default_rng(3), 'sine')
+    found = estimate_ratio(rotor * per_rad, output, time)
+    assert found.taken is None
+    said = f'if the rotor is in {unit}, its ratio is {ratio}: let the driver send rad; else '
+    assert str(found.advice).startswith(said)
+
+
 def test_less_than_a_turn_is_left_open_and_the_advice_is_enough():
     for seed, ratio in enumerate((Fraction(-19), Fraction(101))):
         joint = recorded(
