@@ -15,7 +15,6 @@ from gear_kinematics.measurement.recording import MOST_MESSAGES
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.effort_field import EffortField, questioned
-from gear_kinematics.state.monitors import FASTEST
 from gear_kinematics.state.reach import FLOOR
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition, Fact
@@ -69,8 +68,6 @@ def questions(
     values[:, 0], (period, _) = _unwrapped(stamp, values[:, 0])
     if steps and not counts:
         yield from _impossible_steps(data, received, joint, period, limits)
-        if (pace := _pace(states.stamp, np.asarray(received))) > FASTEST:
-            yield Condition.STAMPS_TOO_FAST(factor=pace)
     sizes = np.abs(np.diff(values[:, 0]))
     given = values[np.isfinite(values[:, 1]), 1]
     velocities = VelocityField(float(1 / ratio) if ratio else np.nan)
@@ -103,7 +100,7 @@ def _impossible_steps(
     period: float,
     limits: tuple[float, float] | None,
 ) -> Iterator[Observed | Fact]:
-    """Yield jumps of the encoder or of the clock, and rejected positions, by default limits.
+    """Yield jumps of the encoder, faults of the clock and rejected positions, by default limits.
 
     Motion beyond them is named only if `limits` are given, as they are those of the node then.
     """
@@ -120,16 +117,8 @@ def _impossible_steps(
         known.add(Rejection.IMPLAUSIBLE)
     if counts := {cause: count for cause, count in rotor.rejected.items() if cause not in known}:
         yield Condition.REJECTED(counts=counts)
-    if step := rotor.disorder.clock_step:
-        yield step
-
-
-def _pace(stamp: Array, received: Array) -> float:
-    """Return how much faster stamps rise than times of reception, (n,); bursts do not count."""
-    if len(stamp) < _FEWEST or not np.ptp(received):
-        return 0.0
-    usual = float(np.median(np.diff(stamp))) / max(float(np.median(np.diff(received))), 1.0)
-    return min(usual, float(np.ptp(stamp) / np.ptp(received)))
+    if fault := rotor.disorder.clock_fault:
+        yield fault
 
 
 def kind_of_encoder(data: Sequence[bytes], received: Sequence[int], joint: str) -> list[Value]:

@@ -12,6 +12,8 @@ from gear_kinematics.wire.cdr import SECOND
 _CLOCK_STEP = 20_000_000  # ns: clocks are slewed by less, and messages are late by less
 _CLOSE = 25  # messages, in which a bag that is looped begins at most once
 ALTERNATING = 3  # resets of the clock so close to each other: as many are no chance
+FASTEST = 100.0  # times the clock: faster than any playback
+_FEWEST = 10  # stamps that tell how fast they rise
 _MANY, _SOON = 64, 0.5  # intervals that the usual one is averaged over; share of it
 
 
@@ -23,13 +25,25 @@ class Disorder:
         self.close_resets = 0  # resets of the clock that directly follow another one
         self._reset = -_CLOSE  # number of the message of the last one
         self._step: Fact | None = None
+        self._too_fast: Fact | None = None
 
     @property
-    def clock_step(self) -> Fact | None:
-        """That the stamps are from two clocks, or else the last step back of the clock."""
+    def clock_fault(self) -> Fact | None:
+        """That stamps are from two clocks, or of another unit, or else the clock's last step back.
+
+        The unit is known of batches only.
+        """
         if self.close_resets < ALTERNATING:
-            return self._step
+            return self._too_fast or self._step
         return Condition.CLOCKS_ALTERNATE(count=self.close_resets)
+
+    def compare(self, stamps: Array, received: Array) -> None:
+        """See whether stamps rise faster than times of reception, (n,), ns; bursts do not count."""
+        time = np.ptp(received) if len(received) >= _FEWEST else 0
+        if time and (pace := np.ptp(stamps) / time) > FASTEST:
+            usual, clock = (float(np.median(np.diff(each))) for each in (stamps, received))
+            if (pace := min(float(pace), usual / max(clock, 1.0))) > FASTEST:
+                self._too_fast = Condition.STAMPS_TOO_FAST(factor=pace)
 
     def note_reset(self, number: int, last: int, stamp: int) -> None:
         """Note that the message of a number reset the clock, from the last stamp to its own."""

@@ -203,6 +203,7 @@ class GearState:
                     corrections += [self.correction] if self.correction else []
                     errors += self.errors
             samples = RotorSamples.of(rows)
+            self.input.disorder.compare(samples.stamp, samples.received)
             if self.corrector:
                 columns = np.array(corrections, float).reshape(-1, len(Correction._fields)).T
                 correction = Correction(*columns)

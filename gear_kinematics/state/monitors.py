@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from gear_kinematics.correction.error_window import ErrorStatistics
 from gear_kinematics.correction.transmission_error import SAMPLES
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.state.disorder import ALTERNATING
+from gear_kinematics.state.disorder import ALTERNATING, FASTEST
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition, Fact, GearReport
@@ -21,8 +21,6 @@ from gear_kinematics.wire.joint_reader import Rejection
 _BEYOND_ANY_GEAR = 0.1  # rad
 _MOST_REPEATED, _ALL_REPEATED = 0.5, 0.95
 """Shares of stamps from which repeated ones are a fault: if turns depend on them, or else."""
-
-FASTEST = 100.0  # times the clock: faster than any playback
 _SOON = 0.1  # time, s, after a report until which the next one repeats its rates and comparisons
 
 

@@ -214,6 +214,7 @@ class RotorInput:
         take = self._all_at_once if in_order else self._one_by_one
         samples = take(rows, stamps, values, clock, rejected)
         self.received = before + len(messages)
+        self.disorder.compare(samples.stamp, samples.received)
         return samples
 
     def _leave_others(self) -> None:

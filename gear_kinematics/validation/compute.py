@@ -190,7 +190,7 @@ def _doubts(rotor: RotorInput, effort: float, outside: Fact | None) -> list[Fact
     doubts = (
         rotor.why_lost,
         rotor.plausibility.beyond_limits,
-        rotor.disorder.clock_step,
+        rotor.disorder.clock_fault,
         unstamped if rotor.zero_stamps else None,
         rotor.velocity_field.in_recording,
         questioned(effort),

@@ -88,7 +88,7 @@ class InputHealth:
             referenced=not (rotor_input.turns.unknown_gaps or rotor_input.plausibility.jumped),
             jumped='' if lost and lost.condition is Condition.GAP else str(lost or ''),
             velocity_is=str(rotor_input.velocity_field.in_recording or ''),
-            set_back=str(rotor_input.disorder.clock_step or ''),
+            set_back=str(rotor_input.disorder.clock_fault or ''),
             beyond_limits=str(rotor_input.plausibility.beyond_limits or ''),
             outside=str(self.outside or ''),
         )

@@ -44,6 +44,16 @@ def test_compute_says_that_stamps_are_missing(tmp_path, capsys):
     assert capsys.readouterr().err == f'gearkin: {out}: {told}\n'
 
 
+def test_compute_says_that_milliseconds_are_sent_as_seconds(tmp_path, capsys):
+    """Recorded at 100 Hz, the stamps rise by 10 s from one message to the next."""
+    times = [k * 10_000_000 for k in range(20)]
+    messages = [(ROTOR, t, rotor_bytes(1000 * t + 1, position=[1.0])) for t in times]
+    source = write_bag(tmp_path / 'source', messages, {ROTOR: JOINT_STATE})
+    assert main(['compute', str(source), str(out := tmp_path / 'out')]) == 0
+    told = 'the stamps run 1000 times as fast as the clock'
+    assert capsys.readouterr().err == f'gearkin: {out}: {told}\n'
+
+
 @pytest.mark.slow
 def test_compute_says_what_it_left_out(tmp_path):
     """What was not wanted, and what a rosbag2 cannot hold."""

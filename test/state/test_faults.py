@@ -142,6 +142,11 @@ ROWS = {
         part({'nanoseconds': (99, SECOND + 60 * PERIOD)}), {'unnormalised_stamps': 1}
     ),
     'clock set back': Row(moved(stamp=-2 * SECOND), {'resets': 1}, found=FindingCause.SET_BACK),
+    'milliseconds as seconds': Row(
+        [{'stamp': START + 1000 * k * PERIOD} for k in range(COUNT)],
+        {},
+        found=FindingCause.SET_BACK,
+    ),
     'clock runs backwards': Row(
         [{'stamp': START + 2 * (COUNT - k) * SECOND} for k in range(COUNT)],
         {'resets': COUNT - 1},

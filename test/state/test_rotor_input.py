@@ -144,7 +144,7 @@ def test_a_clock_that_is_set_back_is_no_jump_and_loses_no_turn_silently(settings
         if not k:
             rotor_input.home(1.0)
     assert set(rotor_input.rejected) == {'out of order'}
-    assert bool(rotor_input.disorder.clock_step) is (back > 20)
+    assert bool(rotor_input.disorder.clock_fault) is (back > 20)
     assert rotor_input.plausibility.jumped is rotor_input.plausibility.beyond_limits is None
     if rotor_input.referenced:
         assert math.tau * end.position.turns + end.position.angle == pytest.approx(angle)
