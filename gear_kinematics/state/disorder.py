@@ -38,7 +38,7 @@ class Disorder:
         return Condition.CLOCKS_ALTERNATE(count=self.close_resets)
 
     def compare(self, stamps: Array, received: Array) -> None:
-        """See whether stamps rise faster than times of reception, (n,), ns; bursts do not count."""
+        """See whether stamps rise faster than times of reception, (n,), ns, bursts apart."""
         time = np.ptp(received) if len(received) >= _FEWEST else 0
         if time and (pace := np.ptp(stamps) / time) > FASTEST:
             usual, clock = (float(np.median(np.diff(each))) for each in (stamps, received))
