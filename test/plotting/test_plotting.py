@@ -13,15 +13,14 @@ from properties import numbers_of
 
 from gear_kinematics import plotting
 from gear_kinematics.kinematics import Branch, Mechanism, matrix_method, split_turns
+from gear_kinematics.plotting.mechanism import BodyDrawing, CentreDrawing
 from gear_kinematics.plotting.trajectory import Trajectory
 from gear_kinematics.report.image import to_image
 from gear_kinematics.shape.outlines import bodies
 
-figure_module = pytest.importorskip('matplotlib.figure', reason='matplotlib is not installed')
+pytest.importorskip('matplotlib', reason='matplotlib is not installed')
 
-from PIL import Image  # noqa: E402, comes with matplotlib
-
-from gear_kinematics.plotting.mechanism import BodyDrawing, CentreDrawing  # noqa: E402
+from PIL import Image
 
 MODULE = 0.0005  # m
 PNG = Path('figure.png')
@@ -30,6 +29,12 @@ PNG = Path('figure.png')
 def corners(patch) -> list[np.ndarray]:
     """The polygons of a patch, each without its closing point."""
     return [polygon[:-1] for polygon in patch.get_path().to_polygons(closed_only=False)]
+
+
+def new_axes():
+    from matplotlib.figure import Figure  # noqa: PLC0415, an import that only these tests wait for
+
+    return Figure().add_subplot()
 
 
 def middle(polygon) -> np.ndarray:
@@ -42,7 +47,7 @@ def test_bodies_and_centres_are_drawn_where_the_motion_says(actuator, rotor_angl
     e = actuator.eccentricity
     expected = oracle.expected_motion(numbers_of(actuator), oracle.rotor_angle_of(rotor_angle))
     for k, motion in enumerate(expected.branches):
-        axes = figure_module.Figure().add_subplot()
+        axes = new_axes()
         drawn, centres = BodyDrawing(axes, actuator, MODULE, k), CentreDrawing(axes, actuator, k)
         drawn.show(split_turns(rotor_angle))
         centres.show(split_turns(rotor_angle))
@@ -74,7 +79,7 @@ def test_bodies_and_centres_are_drawn_where_the_motion_says(actuator, rotor_angl
 @pytest.mark.parametrize('force', [191.0, -1.0])
 def test_forces_on_the_satellite_are_drawn_where_they_act(actuator, force):
     """At the pitch point across the radius, and against it at the centre of the satellite."""
-    axes = figure_module.Figure().add_subplot()
+    axes = new_axes()
     drawn = BodyDrawing(axes, actuator, MODULE, 0, force)
     drawn.show(split_turns(0.7))
     u = np.array([-math.sin(0.7), math.cos(0.7)])
