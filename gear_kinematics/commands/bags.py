@@ -74,8 +74,8 @@ def load_calibration(
     return Calibration.load(path, gear) if path else None
 
 
-def joints_beside(bag: Path, options: argparse.Namespace) -> list[str]:
-    """Return the rotors' joints by the parameter file in a bag's folder, if it can be used.
+def joints_beside(bag: Path, options: argparse.Namespace) -> dict[str, NodeParameters | None]:
+    """Return the parameters of rotors by joint, from a file in a bag's folder if it can be used.
 
     Raises ValueError or OSError if it cannot be used to choose a given actuator.
     """
@@ -86,8 +86,8 @@ def joints_beside(bag: Path, options: argparse.Namespace) -> list[str]:
             if options.actuator:
                 raise
         else:
-            return [config.rotor_joint for config in configs.values()]
-    return []
+            return {config.rotor_joint: config for config in configs.values()}
+    return {}
 
 
 def files_of(

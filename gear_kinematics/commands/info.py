@@ -2,7 +2,7 @@
 """`gearkin info`: list the contents of recordings."""
 
 import argparse
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 
 from rich.text import Text
 
@@ -13,6 +13,7 @@ from gear_kinematics.bag.summary import Summary, summarise
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Console, complain, message_progress
 from gear_kinematics.measurement.rotor_fields import recorded_questions
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import counted, number, printable
 
 _DIGITS = 4
@@ -35,9 +36,10 @@ def run(options: argparse.Namespace) -> ExitCode:
     """Print a line on each recording, even if others cannot be read."""
     found = find_bags(options.bags)
     faults = list(found.faults.values())
-    joints = [options.joint] if options.joint else []
+    joints: dict[str, NodeParameters | None] = {options.joint: None} if options.joint else {}
     if options.config:
-        joints = [config.rotor_joint for config in arguments.load_configs(options).values()]
+        configs = arguments.load_configs(options).values()
+        joints = {config.rotor_joint: config for config in configs}
     for path in found.bags:
         try:
             with (
@@ -46,7 +48,7 @@ def run(options: argparse.Namespace) -> ExitCode:
                 message_progress(path.name, quiet=options.quiet) as progress,
             ):
                 examined = joints or bags.joints_beside(path, options)
-                summary = summarise(bag, options.rotor_topic, examined, progress)
+                summary = summarise(bag, options.rotor_topic, [*examined], progress)
                 asked = [*_questions(bag, summary, examined)]
         except (ValueError, OSError) as error:
             faults.append(str(error))
@@ -60,10 +62,12 @@ def run(options: argparse.Namespace) -> ExitCode:
     return ExitCode.UNUSABLE if faults else ExitCode.DONE
 
 
-def _questions(bag: Bag, summary: Summary, joints: Sequence[str]) -> Iterator[str]:
+def _questions(
+    bag: Bag, summary: Summary, joints: Mapping[str, NodeParameters | None]
+) -> Iterator[str]:
     """Yield what seems wrong in messages of the given joints, or else of a topic's only joint."""
     for topic in summary.topics:
-        asked = joints or topic.joints * (len(topic.joints) == 1)
+        asked = joints or dict.fromkeys(topic.joints * (len(topic.joints) == 1))
         if topic.part != 'rotor' or not asked:
             continue
         for joint, question in recorded_questions(bag, topic.name, asked):

@@ -1,7 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What seems wrong with a driver's messages: sizes, stamps, and units of velocity and effort."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
@@ -38,6 +38,7 @@ def questions(
     limits: tuple[float, float] | None = None,
     *,
     steps: bool = False,
+    parameters: NodeParameters | None = None,
 ) -> Iterator[Observed | Fact]:
     """Yield what seems to be wrong with the fields of n messages.
 
@@ -49,7 +50,9 @@ def questions(
         limits: of the rotor's speed, rad/s, and acceleration, rad/s², up to which its turns are
             to be counted.
         steps: whether to name rejected positions and steps of the clock, too, and steps of the
-            positions that a rotor cannot make by the default limits.
+            positions that a rotor cannot make.
+        parameters: those by which a node would judge these steps; by default, the default ones
+            with the range that the positions show.
     """
     states = decode_joint_states(data, joint)
     stamp = states.stamped(received)
@@ -67,7 +70,8 @@ def questions(
         yield Observation.COUNTS()
     values[:, 0], (period, _) = _unwrapped(stamp, values[:, 0])
     if steps and not counts:
-        yield from _impossible_steps(data, received, joint, period, limits)
+        found = replace(NodeParameters.load(), rotor_joint=joint, rotor_encoder_range=period)
+        yield from _impossible_steps(data, received, parameters or found, limited=bool(limits))
     sizes = np.abs(np.diff(values[:, 0]))
     given = values[np.isfinite(values[:, 1]), 1]
     velocities = VelocityField(float(1 / ratio) if ratio else np.nan)
@@ -94,24 +98,16 @@ def questions(
 
 
 def _impossible_steps(
-    data: Sequence[bytes],
-    received: Sequence[int],
-    joint: str,
-    period: float,
-    limits: tuple[float, float] | None,
+    data: Sequence[bytes], received: Sequence[int], parameters: NodeParameters, *, limited: bool
 ) -> Iterator[Observed | Fact]:
-    """Yield jumps of the encoder, faults of the clock and rejected positions, by default limits.
-
-    Motion beyond them is named only if `limits` are given, as they are those of the node then.
-    """
-    parameters = replace(NodeParameters.load(), rotor_joint=joint, rotor_encoder_range=period)
+    """Yield jumps, faults of the clock, rejected positions, and what exceeds limits if `limited`."""
     rotor = RotorInput(parameters)
     rotor.accept_batch(data, received)
     known = {Rejection.JOINT_MISSING, Rejection.ARRAY_SIZES}
     jumped, beyond = rotor.plausibility.jumped, rotor.plausibility.beyond_limits
     if jumped:
         yield jumped
-    elif beyond and limits:
+    elif beyond and limited:
         yield Observation.BEYOND_LIMITS(beyond=str(beyond))
     if jumped or beyond:
         known.add(Rejection.IMPLAUSIBLE)
@@ -146,9 +142,12 @@ def _in_order(states: JointStates, stamp: Array) -> tuple[Array, Array]:
 
 
 def recorded_questions(
-    bag: Bag, topic: str, joints: Sequence[str]
+    bag: Bag, topic: str, joints: Mapping[str, NodeParameters | None]
 ) -> Iterator[tuple[str, Observed | Fact]]:
-    """Yield joints on a topic of a bag, and the questions on them up to any damage."""
+    """Yield joints on a topic of a bag, and the questions on them up to any damage.
+
+    Their parameters are those of the recorded node, if they are known.
+    """
     data, received = list[bytes](), list[int]()
     try:
         for batch in bag.by_topic([topic]):
@@ -159,6 +158,9 @@ def recorded_questions(
     except DamagedBagError:
         pass  # the reader of the recording reports it
     decoded = JointStateBatch(data)
-    for joint in joints:
-        for question in questions(decoded, received, joint, steps=True):
+    for joint, parameters in joints.items():
+        known = (parameters.gear.gear_ratio, parameters.rotor_limits) if parameters else ()
+        for question in questions(
+            decoded, received, joint, *known, steps=True, parameters=parameters
+        ):
             yield joint, question

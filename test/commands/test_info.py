@@ -42,6 +42,24 @@ def test_messages_of_other_joints_are_counted(others, said, tmp_path, capsys):
     )
 
 
+@pytest.mark.parametrize(('known', 'said'), [
+    ('rotor_encoder: multi_turn', 'the positions wrap every 25 rad: set rotor_encoder_range'),
+    ('rotor_encoder_range: 25.0', 'no gaps\n'),
+])  # fmt: skip
+def test_positions_are_judged_by_the_given_parameters(known, said, tmp_path, capsys):
+    """Of a rotor that turns at 50 rad/s, and wraps every 25 rad."""
+    times = [k * 3_000_000 for k in range(1, 1500)]
+    angles = [math.fmod(50e-9 * t + 3.0, 25.0) for t in times]
+    messages = [
+        (ROTOR, t, rotor_bytes(t, position=[a])) for t, a in zip(times, angles, strict=True)
+    ]
+    bag = write_bag(tmp_path / 'bag', messages, {ROTOR: JOINT_STATE})
+    file = tmp_path / 'gear.yaml'
+    file.write_text(f'gear_state_publisher: {{ros__parameters: {{{known}}}}}')
+    assert main(['info', str(bag), '--config', str(file)]) == 0
+    assert said in capsys.readouterr().out
+
+
 def test_a_terminal_breaks_no_word(capsys):
     narrow = {**ENVIRONMENT, 'COLUMNS': '40'}
     with Terminal() as terminal:
