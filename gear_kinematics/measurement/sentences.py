@@ -228,8 +228,9 @@ class Observation(Enum):
         'parameter calibration.'
     )
     TOO_NARROW = (
-        _FALLS + f'but only {_INSIDE}, which is too narrow. Nothing is written; record more turns '
-        'of the output, in both directions.'
+        _FALLS + 'but the {coverage} interval of ± {half_width:arcmin} arcmin is too narrow for '
+        'it: {inside:.1f} % of it is inside. Nothing is written; record more turns of the output, '
+        'in both directions.'
     )
     MOVED = (
         '{recording}: {at} {moment:si.6}{unit} the output shifts against the rotor, and stays '
