@@ -80,11 +80,12 @@ class Bench(Participant):
         begin = time.time_ns()
 
         def resting() -> bool:
+            if min(len(self.rotor), len(self.output)) <= messages:
+                return False
             recent = self.rotor[-100:] + self.output[-100:]
             still = all(abs(message.velocity[0]) < 1e-3 for message in recent)
             # A busy reader receives late what was sent before.
-            late = any(stamp_of(message) < begin for message in recent)
-            return still and not late and min(len(self.rotor), len(self.output)) > messages
+            return still and all(stamp_of(message) >= begin for message in recent)
 
         self.wait_until(resting, 'both shafts to rest')
         return self.rotor[-1], self.output[-1]

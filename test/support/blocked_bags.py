@@ -88,10 +88,13 @@ def started(command, **options):
 
 def wait_until(condition, what):
     """Wait until a condition holds, and return what it gave."""
-    deadline = time.monotonic() + DEADLINE
+    begin = time.monotonic()
+    deadline = begin + DEADLINE
     while not (result := condition()):
-        assert time.monotonic() < deadline, f'waited in vain for {what}'
-        time.sleep(0.01)
+        now = time.monotonic()
+        assert now < deadline, f'waited in vain for {what}'
+        time.sleep(max(0.01, 4.0 * (now - begin)))  # so that others have the processor
+        begin = time.monotonic()
     return result
 
 
