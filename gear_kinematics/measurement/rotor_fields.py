@@ -100,7 +100,7 @@ def questions(
 def _impossible_steps(
     data: Sequence[bytes], received: Sequence[int], parameters: NodeParameters, *, limited: bool
 ) -> Iterator[Observed | Fact]:
-    """Yield jumps, faults of the clock, rejected positions, and what exceeds limits if `limited`."""
+    """Yield jumps, faults of the clock, rejected positions; if `limited`, what exceeds limits."""
     rotor = RotorInput(parameters)
     rotor.accept_batch(data, received)
     known = {Rejection.JOINT_MISSING, Rejection.ARRAY_SIZES}
