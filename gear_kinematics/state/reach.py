@@ -17,7 +17,7 @@ FLOOR = 0.05  # rad: noise of any encoder, and what two successive steps may alw
 REGULAR = 1.0 / 3.0  # share of the usual time by which one may vary in `RotorLimits.even_step`
 _ROUNDING = 1e-6  # of a step of single precision, by a conversion of units in double precision
 _UNEVEN = 0.25  # of a speed: what it may differ by, as readings are older than their stamps
-_FASTER = 8  # times at least: how much faster than usual readings of a burst come
+_FASTEST = 250_000  # ns between the readings of a driver; those of a burst can be closer
 _CLOSE = 750_000  # ns, below which readings can be those of a burst, rather than of a fast driver
 
 Reading = tuple[float, int, float, int]
@@ -55,7 +55,7 @@ class HeldUp(NamedTuple):
             return HeldUp(end, length, usual if self.usual or usual > _CLOSE else 0)
         speed = abs(former[2]) / former[3] * 1e9 if former[3] else math.inf
         # Bursts that came before while the rotor stood did not show.
-        usual = former[3] if former[3] > min(_CLOSE, _FASTER * span) else 0
+        usual = former[3] if former[3] > min(_CLOSE, max(_FASTEST, 2 * span)) else 0
         return HeldUp(end, length, usual, speed, former[0])
 
     def at_rest(self, last: int, stamp: int) -> 'HeldUp':
