@@ -17,7 +17,7 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
-from gear_kinematics.report.document import hertz, printable
+from gear_kinematics.report.document import counted, hertz, printable
 from gear_kinematics.ros.live import replay_node
 from gear_kinematics.watch.commissioning import LiveCommissioning
 from gear_kinematics.watch.drivers import DriverTopic, Listener
@@ -117,7 +117,7 @@ def show_recording(recorder: Recorder, console: Console, stopped: Callable[[], b
             rows = [Entry('recording', ', '.join(recorder.heard))]
         if console.is_terminal:
             rows = [
-                *(Entry(topic, hertz(polled.rate), f'{polled.count} messages')
+                *(Entry(topic, hertz(polled.rate), counted(polled.count, 'message'))
                   for topic, polled in recorder.heard.items()),
                 Entry('', '' if recorder.heard else rows[0].value, 'q end'),
             ]  # fmt: skip
@@ -148,8 +148,9 @@ def _show(
 
 
 def line(rows: Sequence[Entry]) -> str:
-    """Join rows in one line."""
-    parts = ((row.name, row.value, f'({row.detail})' * bool(row.detail)) for row in rows)
+    """Join rows in one line; their sentences lose their full stops."""
+    bare = ((row.name, row.value.removesuffix('.'), row.detail) for row in rows)
+    parts = ((name, value, f'({detail})' * bool(detail)) for name, value, detail in bare)
     return printable('; '.join(' '.join(filter(None, part)) for part in parts))
 
 

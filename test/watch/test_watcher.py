@@ -37,7 +37,7 @@ from gear_kinematics.watch import drivers
 from gear_kinematics.watch.drivers import DriverTopic
 from gear_kinematics.watch.gear import Answer, GearNode, JointValue, Status
 from gear_kinematics.watch.page import drawing
-from gear_kinematics.watch.text import line, list_drivers, rows_of, show, table
+from gear_kinematics.watch.text import line, list_drivers, rows_of, show, show_recording, table
 from gear_kinematics.watch.view import (
     UNANSWERED,
     Entry,
@@ -468,7 +468,16 @@ def printed(renderable, width: int = 120) -> str:
     return stream.getvalue()
 
 
+def test_one_message_that_is_recorded_is_no_plural():
+    heard, stops = {'/a': SimpleNamespace(rate=0.0, count=1)}, iter([False, True])
+    recorder = SimpleNamespace(poll=lambda: None, absent='', heard=heard)
+    console = Console(file=io.StringIO(), force_terminal=True, color_system=None)
+    show_recording(recorder, console, lambda: next(stops))
+    assert re.search(r'\b1 message\b', console.file.getvalue())
+
+
 def test_line_says_all_of_a_moment():
+    assert line([Entry('0%', 'Turn it.'), Entry('heard', '1')]) == '0% Turn it; heard 1'
     assert line(rows_of(FULL)) == (
         '/left/gear_state_publisher connected (All is well.); output angle 12.5° (0.2 rad); '
         'input 0 Hz; rotor input error: m\\x1b[2J<img src=x onerror=alert(1)> '
