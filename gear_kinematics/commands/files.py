@@ -55,8 +55,7 @@ def check_targets(options: argparse.Namespace, targets: Mapping[str, str | None]
         kind, recognised = _REPLACEABLE.get(option, ('report', is_report))
         if not recognised(path):
             raise ValueError(
-                f'{option} {name}: there is something else than a {kind} of gearkin; '
-                '--force replaces it'
+                f'{option} {name}: exists, and is no {kind} of gearkin; --force replaces it'
             )
 
 

@@ -72,7 +72,7 @@ def test_a_recording_is_never_replaced(command, force, work):
 def test_other_files_are_replaced_only_by_force(command, work, capsys):
     before = contents(work)
     assert refusal(*command.split()) == (
-        f'{command.split()[-2]} notes.md: there is something else than a report of gearkin; '
+        f'{command.split()[-2]} notes.md: exists, and is no report of gearkin; '
         '--force replaces it'
     )
     assert contents(work) == before
@@ -100,7 +100,7 @@ def test_a_figure_replaces_no_other_picture(work):
     for name, command in (('a.png', ['plot', 'scheme']), ('a.gif', ['animate'])):
         Image.new('RGB', (9, 9)).save(work / name)
         before = contents(work)
-        assert f'FILE {name}: there is something else' in refusal(*command, name)
+        assert f'FILE {name}: exists, and is no ' in refusal(*command, name)
         assert contents(work) == before
 
 
@@ -159,7 +159,7 @@ def test_a_file_that_cannot_be_written_is_named_before_any_work(arguments, error
 
 
 def test_a_calibration_replaces_a_calibration_alone(work):
-    error = '-o notes.md: there is something else than a calibration of gearkin'
+    error = '-o notes.md: exists, and is no calibration of gearkin'
     assert error in refusal('calibrate', 'samples.txt', '-o', 'notes.md')
     report = work / 'report.json'
     assert main(['describe', '--json', str(report)]) == 0
