@@ -55,13 +55,14 @@ class Disorder:
         """Return by how much the clock was set back between two samples, ns; forget the stamps.
 
         It was set back if several messages in a row, in order, were older than the last sample.
+        The first of them was as long after it as the second after the first.
         """
         stamps, self.stamps = self.stamps, []
-        rising = len(stamps) > 1 and all(a < b for a, b in pairwise([*stamps, stamp]))
-        time = last - stamps[0] if rising else 0
-        if time > _CLOCK_STEP:
+        if len(stamps) < 2 or any(a >= b for a, b in pairwise([*stamps, stamp])):  # noqa: PLR2004
+            return 0
+        if last - stamps[0] > _CLOCK_STEP:
             self._note_step(last, stamps[0])
-        return time
+        return last - stamps[0] + stamps[1] - stamps[0]
 
     def _note_step(self, last: int, stamp: int) -> None:
         size, at = (last - stamp) / SECOND, last / SECOND

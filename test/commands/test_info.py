@@ -47,7 +47,7 @@ def test_messages_of_other_joints_are_counted(others, said, tmp_path, capsys):
     ('rotor_encoder_range: 25.0', 'no gaps\n'),
 ])  # fmt: skip
 def test_positions_are_judged_by_the_given_parameters(known, said, tmp_path, capsys):
-    """Of a rotor that turns at 50 rad/s, and wraps every 25 rad."""
+    """The rotor turns at 50 rad/s, and its positions wrap every 25 rad."""
     times = [k * 3_000_000 for k in range(1, 1500)]
     angles = [math.fmod(50e-9 * t + 3.0, 25.0) for t in times]
     messages = [

@@ -151,6 +151,20 @@ def test_a_clock_that_is_set_back_is_no_jump_and_loses_no_turn_silently(settings
     assert rotor_input.referenced or (settings.single_turn and back > 2)
 
 
+@pytest.mark.parametrize('back', range(10, 240, 5))
+def test_a_clock_that_is_set_back_by_some_messages_loses_no_turn_silently(back):
+    """At 40 Hz, the first message that is rejected came an interval after the last one."""
+    rotor_input, end = RotorInput(replace(SINGLE_TURN, max_rotor_speed=60.0)), None
+    for k in range(100):
+        ms, angle = 25 * k - back * (k >= 50), 1.0 + 1.25 * k
+        with suppress(RejectedInputError):
+            end = accept(rotor_input, START + ms * 1_000_000, angle % math.tau)
+        if not k:
+            rotor_input.home(1.0)
+    turned = math.tau * end.position.turns + end.position.angle
+    assert not rotor_input.referenced or turned == pytest.approx(angle)
+
+
 numbers = st.lists(st.floats(width=64), max_size=2)
 
 
