@@ -102,6 +102,10 @@ class FindingCause(Enum):
         'messages were merged twice, or nanoseconds lost: where messages are missing, outputs are '
         'compared with the wrong inputs; merge each recording once, and record the nanoseconds'
     )
+    SHORT_SECONDS = (
+        'the nanoseconds in the stamps of {rotor.topic} never reach a thousandth of a second, as '
+        'if they were µs or ms: gaps and speeds are wrong'
+    )
     REJECTED = '{rotor.topic}: rejected: {causes}'
     MOSTLY_REJECTED = (
         '{rejected} of {rotor.messages} messages of {rotor.topic} were rejected ({causes}): too '

@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 _MIN_GAP = 5.0  # median periods
 _LEAST_TIME = 0.5  # median periods; the least time that a step is taken to need
 _MAX_LISTED = 10  # listed gaps
+_FRACTION = 1e-3  # s; longest time within a second of nanoseconds that are µs
 _MANY_REPEATED = 0.25  # share of all stamps, which drivers do not reach by repeating a few
 
 
@@ -112,6 +113,14 @@ def _repeats_stamps(rotor: InputReport) -> Iterator[Finding]:
         yield Finding(FindingCause.REPEATED_STAMPS, values={'rotor': rotor})
 
 
+def _short_seconds(rotor: InputReport) -> Iterator[Finding]:
+    """Yield that stamps stand near each whole second, as if their nanoseconds were µs or ms."""
+    whole = sum(1.0 - _FRACTION < gap.seconds <= 1.0 for gap in rotor.longest_gaps)
+    fast = rotor.rate * rotor.duration > rotor.valid / (2.0 * _FRACTION)
+    if fast and 1 < whole >= min(_MAX_LISTED, int(rotor.duration)):
+        yield Finding(FindingCause.SHORT_SECONDS, values={'rotor': rotor})
+
+
 def _rejected(rotor: InputReport) -> Iterator[Finding]:
     if rejected := sum(rotor.rejected.values()):
         mostly = 2 * rejected > rotor.messages - rotor.of_others
@@ -143,6 +152,7 @@ _NOTED = (
 
 CHECKS: Sequence[Callable[[InputReport], Iterator[Finding]]] = (
     _repeats_stamps,
+    _short_seconds,
     _rejected,
     _counted,
 )

@@ -38,7 +38,7 @@ from gear_kinematics.wire.topics import JOINT_STATES, LOAD_TOPICS, TRANSMISSION_
 
 _FRAME = 'stator'
 _TOPICS = Topics()
-_DOUBTS = {FindingCause.REPEATED_STAMPS, FindingCause.JUMPED}  # of wrong or missing outputs
+_DOUBTS = {FindingCause[one] for one in ('REPEATED_STAMPS', 'SHORT_SECONDS', 'JUMPED')}
 _OF_COUNTS = {FindingCause.BEYOND_LIMITS}  # of missing or additional ones alone
 _NONE: Mapping[str, str] = MappingProxyType({})
 

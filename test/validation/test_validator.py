@@ -319,6 +319,26 @@ def test_outputs_for_inputs_without_stamps_are_matched_in_their_order(recorded, 
     assert field_of(report, OUTPUT, 'position').worst_stamp == stamp
 
 
+@pytest.mark.parametrize('unit', [10**3, 10**6])
+def test_nanoseconds_that_are_in_another_unit_are_named(recorded, config, unit):
+    first = struct.unpack_from('<i', recorded[0][2], 4)[0]
+
+    def over_seconds(message):
+        stamp = message.header.stamp
+        set_stamp(message, 10 * (SECOND * (stamp.sec - first) + stamp.nanosec))
+
+    def in_unit(message):
+        over_seconds(message)
+        message.header.stamp.nanosec //= unit
+
+    spread, whole = recorded, recorded
+    for topic in TYPES:
+        spread, whole = change_all(spread, topic, over_seconds), change_all(whole, topic, in_unit)
+    text = 'never reach a thousandth of a second'
+    assert text in ' '.join(texts(validate(whole, config)))
+    assert text not in ' '.join(texts(validate(spread, config)))
+
+
 def test_stamps_that_lost_their_nanoseconds_are_named_as_the_cause(recorded, config):
     whole = recorded
     for topic in TYPES:
