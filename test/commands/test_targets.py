@@ -72,8 +72,7 @@ def test_a_recording_is_never_replaced(command, force, work):
 def test_other_files_are_replaced_only_by_force(command, work, capsys):
     before = contents(work)
     assert refusal(*command.split()) == (
-        f'{command.split()[-2]} notes.md: exists, and is no report of gearkin; '
-        '--force replaces it'
+        f'{command.split()[-2]} notes.md: exists, and is no report of gearkin; --force replaces it'
     )
     assert contents(work) == before
     assert main([*command.split(), '--force']) == 0

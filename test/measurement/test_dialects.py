@@ -538,10 +538,13 @@ def test_every_dialect_is_read(tmp_path, gear, reference, dialect):
     recording = read(path, gear, Sources(rotor_counts=4096 if 'counts' in dialect else None))
     if kind == 'ramps' or dialect in READ_IN_TURN:
         assert_measured(recording, gear)
-    else:
-        lost = lost_on_reversals(recording.encoders)
-        assert lost == pytest.approx(18.0 * ARCMIN, abs=0.6 * ARCMIN)
     if kind == 'encoders':
+        both, (_, *angles) = recording.encoders, reference(kind)
+        for found, true in zip((both.rotor.turned, both.measured), angles, strict=True):
+            assert np.ptp(found) == pytest.approx(np.ptp(true), rel=1e-3)
+        if dialect not in READ_IN_TURN:
+            lost = lost_on_reversals(both)
+            assert lost == pytest.approx(18.0 * ARCMIN, abs=0.6 * ARCMIN)
         # All but the rows that are out of order or none, of which there are at most 3.
         assert 1317 <= recording.rows <= 1320
         duration = 0.0 if 'without times' in dialect else 52.76
