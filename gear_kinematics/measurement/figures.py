@@ -168,6 +168,19 @@ def _friction(ramps: Ramps) -> Estimate | None:
     return Estimate.of_mean(near, *(Component(other, len(lines) - 1) for other in others))
 
 
+def _gap(half: HalfLoop, torque: float) -> float:
+    """Return by how much the angle differs between the levels around a torque, rad."""
+    sign = 1.0 if half.rising else -1.0
+    after = np.searchsorted(sign * half.torque, sign * torque).clip(1, len(half.angle) - 1)
+    return float(half.angle[after] - half.angle[after - 1])
+
+
+def _spacing(ramps: Ramps) -> float:
+    """Mean distance, N·m, of the levels around a torque, which may be steps of a staircase."""
+    gaps = np.concatenate([np.abs(np.diff(half.torque)) for half in ramps.halves])
+    return float(gaps @ gaps / gaps.sum())
+
+
 def _lost_motion(ramps: Ramps, rated: float) -> Estimate | None:
     torque = LOST_MOTION_SHARE * rated
     sides = [
@@ -179,45 +192,58 @@ def _lost_motion(ramps: Ramps, rated: float) -> Estimate | None:
     angles = [[float(b.angle_at(torque) - b.angle_at(-torque)) for b in side] for side in sides]
     rounding = [b.rounding(torque) - b.rounding(-torque) for side in sides for b in side]
     reading = Component(resolution(ramps.step))  # the mean of two differences of two readings
-    return Estimate.of_sum([(0.5, side) for side in angles], reading, _rounded(rounding))
+    # Where the gear is alike in both directions, so are the errors of two of the four readings.
+    gaps = [_gap(b, at) for side in sides for b in side for at in (torque, -torque)]
+    gap = Component(math.sqrt(2.0) * resolution(float(np.sqrt(np.mean(np.square(gaps))))))
+    return Estimate.of_sum([(0.5, side) for side in angles], reading, gap, _rounded(rounding))
 
 
 # Stiffness
 
 
 def _stiffness(ramps: Ramps, rated: float) -> tuple[MeasuredStiffness, ...]:
-    reach, still = min(rated, ramps.amplitude), _still(ramps)
+    reach, still, spacing = min(rated, ramps.amplitude), _still(ramps), _spacing(ramps)
     corners = (corner for share in STIFFNESS_SHARES if (corner := share * rated) < reach)
     found = []
     for low, high in pairwise((0.0, *corners, reach)):
         if high < _LEAST_RANGE * low:
             break
-        compliances = [
-            0.5 * sum(_compliance(half, low, min(high, abs(half.end))) for half in pull)
-            for pull in ramps.pulls
-            if all(_loads(half, low, ramps) for half in pull)
-        ]
+        pulls = [pull for pull in ramps.pulls if all(_loads(half, low, ramps) for half in pull)]
+        compliances, early, late = (
+            [
+                0.5 * sum(_compliance(h, low + by, min(high, abs(h.end)) + by) for h in p)
+                for p in pulls
+            ]
+            for by in (0.0, -0.5 * spacing, 0.5 * spacing)
+        )
         # Otherwise friction holds the gear throughout.
         if compliances and float(np.mean(compliances)) * (high - low) > still:
             steps = Component(math.sqrt(2.0) * resolution(ramps.step) / (high - low))
-            found.append(
-                MeasuredStiffness(low, high, Estimate.of_mean(compliances, steps).inverse())
-            )
+            # The torque at which play is crossed lies between two samples.
+            between = Component(resolution(abs(float(np.mean(late) - np.mean(early)))))
+            slope = Estimate.of_mean(compliances, steps, between).inverse()
+            found.append(MeasuredStiffness(low, high, slope))
     return tuple(found)
 
 
 def _overall(ramps: Ramps) -> Estimate | None:
     """Slope of the line through both halves of a side, from zero to the peak and back."""
-    positive: list[float] = []
-    negative: list[float] = []
-    for loading, unloading in ramps.sides:
-        high = min(abs(loading.end), abs(unloading.start))
-        there, back = _compliance(loading, 0.0, high), _compliance(unloading, 0.0, high, -1.0)
-        (positive if loading.rising else negative).append(0.5 * (there + back))
-    compliances = [0.5 * sum(pair) for pair in zip(positive, negative, strict=False)]
-    if not compliances or min(positive + negative) <= 0.0:
-        return None
-    return Estimate.of_mean(compliances).inverse()
+    compliances, short = [], []
+    # Beside the greatest sample, smoothed, the peak lies between two samples.
+    for less, found in ((0.0, compliances), (1.0, short)):
+        positive: list[float] = []
+        negative: list[float] = []
+        for loading, unloading in ramps.sides:
+            margin = less * (_spacing(ramps) + loading.blur)
+            high = min(abs(loading.end), abs(unloading.start)) - margin
+            there, back = _compliance(loading, 0.0, high), _compliance(unloading, 0.0, high, -1.0)
+            (positive if loading.rising else negative).append(0.5 * (there + back))
+        found += [0.5 * sum(pair) for pair in zip(positive, negative, strict=False)]
+        if not found or min(positive + negative) <= 0.0:
+            return None
+    peak = Component(abs(float(np.mean(compliances) - np.mean(short))) / math.sqrt(3.0))
+    steps = Component(math.sqrt(2.0) * resolution(ramps.step) / ramps.amplitude)
+    return Estimate.of_mean(compliances, peak, steps).inverse()
 
 
 def _loads(half: HalfLoop, low: float, ramps: Ramps) -> bool:

@@ -147,6 +147,36 @@ def test_ranges_of_stiffness_have_the_mean_of_both_signs():
         assert stiffness.slope.value == pytest.approx(expected / 1.5, rel=1e-3)
 
 
+@pytest.mark.parametrize('share', [0.2, 0.5, 0.7, 0.95])
+def test_figures_between_the_steps_of_a_staircase_are_within_their_uncertainty(share):
+    """Play is crossed at a share of a step of 2.5 N·m."""
+    gear = GEARS['backlash']._replace(friction=2.5 * share)
+    steps = np.repeat(np.round(ramps(*[(LARGE, 16)] * 5) / 2.5) * 2.5, 8)
+    found = measured(steps, creep(gear, steps), step=0.0)
+    assert (
+        abs(found.lost_motion.value - truth(gear)['lost_motion']) <= found.lost_motion.uncertainty
+    )
+    torque = np.linspace(0.0, 6.0, 10_000)
+    load = torque - gear.friction
+    angle = load / gear.stiffness + 0.5 * gear.play * np.sign(load)
+    expected = 1.0 / np.polynomial.polynomial.polyfit(torque, angle, 1)[1]
+    lowest = found.stiffness[0].slope
+    assert abs(lowest.value - expected) <= lowest.uncertainty
+
+
+@pytest.mark.parametrize('step', [0.0, math.radians(0.2)])
+def test_the_overall_stiffness_is_within_its_uncertainty(step):
+    """The peak of a hardening spring lies between samples, or between steps of the encoder."""
+    torque = ramps(*[(LARGE, 30)] * 3)
+    angle = np.sign(torque) * 0.02 * np.sqrt(np.abs(torque) / LARGE)
+    torque = torque + 0.05 * np.random.default_rng(1).standard_normal(len(torque))
+    dense = np.linspace(0.0, LARGE, 10_000)
+    curve = 0.02 * np.sqrt(dense / LARGE)
+    expected = 1.0 / np.polynomial.polynomial.polyfit(dense, curve, 1)[1]
+    found = measured(torque, stepped(angle, step) if step else angle, step).overall
+    assert abs(found.value - expected) <= found.uncertainty
+
+
 def test_ranges_that_the_ramps_do_not_reach_are_left_out():
     torque = ramps(*[(6.5, 200)] * 3)
     found = measured(torque, creep(GEARS['soft'], torque), step=0.0)
