@@ -141,8 +141,8 @@ def _state_of(gear: GearNode | None, running: Collection[str]) -> tuple[str, str
     if gear is None:
         return 'no node', f'No gear_state_publisher is running. {start}'
     if not gear.seen:
-        hint = among(gear.name, {*running}) if running else ''
-        return 'no node', f'{gear.name} is not running{hint}. {start}'
+        hint = among(gear.name, {*running}) if running else f'. {start}'
+        return 'no node', f'{gear.name} is not running{hint}'
     if not gear.running:
         return 'ended', f'{gear.name} has ended. Waiting for it to start again.'
     if gear.fault:

@@ -99,7 +99,7 @@ def test_node_of_a_gear_is_known_by_its_topics(own, output):
 
 # Words
 
-NEAREST = '/lefd/gear is not running; did you mean `/left/gear`? there are: /left/gear. gearkin'
+NEAREST = '/lefd/gear is not running; did you mean `/left/gear`? there are: /left/gear'
 
 
 def gear_node(**changes):
@@ -236,6 +236,7 @@ def test_state_of_the_node_is_told(gear, state, words):
     view = view_of(gear, others)
     assert view.state == state
     assert words in view.message
+    assert words is not NEAREST or words == view.message  # nothing on setting up another
     if state != 'connected':
         assert (view.output, view.question) == (None, '')
     if state in {'no node', 'ended'}:  # nothing of what is gone
