@@ -228,7 +228,8 @@ def _stiffness(ramps: Ramps, rated: float) -> tuple[MeasuredStiffness, ...]:
 
 def _overall(ramps: Ramps) -> Estimate | None:
     """Slope of the line through both halves of a side, from zero to the peak and back."""
-    compliances, short = [], []
+    compliances: list[float] = []
+    short: list[float] = []
     # Beside the greatest sample, smoothed, the peak lies between two samples.
     for less, found in ((0.0, compliances), (1.0, short)):
         positive: list[float] = []
