@@ -42,6 +42,10 @@ With springs that bend by less, the intervals contain backlashes of 0 and of 10â
 _MOVED_BY_GAP = 2.0
 """How far the friction that a gap adds moves its ends, in that friction over the stiffness. In
 simulations of gears with inertia, at most 1.7."""
+_FEW_STEPS = 32.0
+"""Steps of the encoder on a side from which on a reading bounds the error of the dead band by
+itself: two lines through n steps differ by 2 sqrt(4/n) sqrt(2) standard deviations of a reading
+with a probability of 95 %."""
 _NORMAL = 10**9  # degrees of freedom of a normal distribution
 
 
@@ -127,7 +131,9 @@ def backlash_of(
         _dead_bands(ramps, reach, part) for part in (SIDE, _LOWER_HALF, _UPPER_HALF)
     )
     stiffness = 1.0 / float(np.mean(side[:, 1]))
-    reading = resolution(ramps.step) + resolution(_spacing(ramps)) / stiffness
+    # A line through a side of few steps of the encoder may be off by more than one reading.
+    coarse = max(1.0, math.sqrt(_FEW_STEPS * ramps.step * stiffness / reach))
+    reading = coarse * resolution(ramps.step) + resolution(_spacing(ramps)) / stiffness
     whole, bend = Estimate.of_mean(side[:, 0]), Estimate.of_mean(far[:, 0] - near[:, 0])
     bent = abs(bend.value) > bend.expanded + reading
     if bent:

@@ -9,6 +9,8 @@ from gear_recordings import Gear, creep, ramps
 from simulated_ramps import SCENARIOS, Scenario, judge, measured
 
 from gear_kinematics.measurement.backlash import Backlash, Cause, reconciled
+from gear_kinematics.measurement.figures import gear_figures
+from gear_kinematics.measurement.loops import find_ramps
 
 ARC_MINUTE = math.radians(1.0 / 60.0)
 TEN = 10.0 * ARC_MINUTE
@@ -38,6 +40,16 @@ def test_interval_contains_the_play(name):
     assert found.hysteresis >= 17 / 20
     if not NAMED[name].play:
         assert found.above_zero == 0.0
+
+
+def test_interval_contains_the_play_of_an_encoder_with_few_steps():
+    """A play of 1.3 steps, and a spring that yields by less than one to the small ramps."""
+    step, gear = 2.0 * math.pi / 4096.0, Gear(play=0.002, stiffness=3000.0, friction=1.0)
+    torque = ramps(*[(3.0, 200)] * 5, *[(40.0, 400)] * 3)
+    angle = (np.round(creep(gear, torque) / step + 0.5)) * step
+    torque = torque + 0.05 * np.random.default_rng(1).standard_normal(len(torque))
+    backlash = gear_figures(find_ramps(torque, angle, step), 40.0).backlash
+    assert backlash.low <= gear.play <= backlash.high
 
 
 @pytest.mark.slow
