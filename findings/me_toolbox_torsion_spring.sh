@@ -6,9 +6,9 @@
 # A spring that takes the play out of a gear: steel wire of 2 mm, 20 mm wide, six active coils, legs of 30 mm, which its
 # greatest moment turns by 1 rad. Expected of weight with 7850 kg/m³: the wire of the coils and of both legs, 10.3 g.
 # What happens: 1.49 kg, as the legs' length in mm is taken as one in m. Expected of loaded_diameter, the "diameter
-# after load is applied": as the wire keeps its length, the coils get fewer in width as they get more in number, and N
-# coils of 20 mm that are wound up by 0.151 turns have 20 mm · N/(N + 0.151) = 19.5 mm. What happens: 17.1 mm, as the
-# angle in radians is taken for turns; a pin of 16 mm, which has 1.5 mm of play in the spring, is said to have -0.9 mm.
+# after load is applied": as the wire keeps its length, its coils get narrower as they get more, and N coils of 20 mm
+# that are wound up by 0.151 turns have 20 mm · N/(N + 0.151) = 19.5 mm. What happens: 17.1 mm, as the angle in radians
+# is taken for turns; a pin of 16 mm, which has 1.5 mm of play in the spring, is said to have -0.9 mm.
 # For us: weigh with legs of 0, add them yourself, and divide the angle by 2 pi. The package needs icecream, which it
 # does not name.
 #
