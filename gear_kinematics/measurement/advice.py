@@ -87,11 +87,14 @@ def advice(
 
 def rising(table: TableFile) -> dict[str, str]:
     """Return the first of the columns whose numbers only rise, as those of times do, if any."""
-    for name in filter(None, table.names[:_FIRST]):
-        values = np.asarray(table.load([name])[0][name])
-        if values.dtype.kind in 'iufM' and len(values) > 1 and np.all(values[1:] > values[:-1]):
-            return {'time': name}
-    return {}
+    names = filter(None, table.names[:_FIRST])
+    return next(({'time': name} for name in names if _rises(table, name)), {})
+
+
+def _rises(table: TableFile, name: str) -> bool:
+    values = np.asarray(table.load([name])[0][name])
+    several = values.dtype.kind in 'iufM' and len(values) > 1
+    return several and bool(np.all(values[1:] > values[:-1]))
 
 
 def _completed(
@@ -132,6 +135,11 @@ def _examples(table: TableFile) -> Iterator[Mapping[str, str]]:
         or _NO_NAME.fullmatch(name)
     ]
     torques = [name for name in names if _TORQUE.search(name) or units[name] in TORQUE_UNITS]
+    # Of columns without names, the first that only rises has times, unless there are but two.
+    rises = rising(table).get('time', '')
+    others = [name for name in angles if name != rises]
+    if _NO_NAME.fullmatch(rises) and (others[1:] or not all(_rises(table, k) for k in others)):
+        angles = others
     likely = [*filter(_LIKELY.search, angles)]
     raw, _ = table.load((likely if len(likely) > 1 else angles)[:_TRIED])
     raw = {name: array.astype(float) for name, array in raw.items() if array.dtype.kind in 'iuf'}

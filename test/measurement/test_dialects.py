@@ -1212,6 +1212,19 @@ def test_an_index_without_a_name_is_proposed_for_the_times(tmp_path, gear, refer
     assert read(path, gear, followed(caught.value)).encoders.timed
 
 
+@pytest.mark.parametrize('columns', [2, 3])
+def test_the_first_column_without_a_name_that_rises_is_no_encoder(
+    tmp_path, gear, reference, columns
+):
+    path = saved(tmp_path, written(reference('encoders')[:columns], '', '{:.6f}'))
+    with pytest.raises(RecordingError, match='neither an angle') as told:
+        read(path, gear)
+    if columns == 2:
+        assert 'for example' not in str(told.value)
+    else:
+        assert (followed(told.value).rotor, followed(told.value).output) == ('2', '3')
+
+
 @pytest.mark.parametrize('names', ['t,pressure_2,pressure_1', 't,Range,Exchange'])
 def test_only_columns_that_may_be_angles_are_proposed(tmp_path, gear, reference, names):
     with pytest.raises(RecordingError, match='by --angle-column, --torque-column'):
