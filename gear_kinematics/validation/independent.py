@@ -169,27 +169,26 @@ class Independent:
         """Return the rotor angle of an input, whose turns or zero may come from the output."""
         parameters, time, position = self._parameters, given[0], given[1]
         period, absolute = parameters.rotor_period, parameters.absolute
+        first, lost, before = self._offset is None, False, self._offset or 0.0
         if self._last:
             elapsed, turned = (time - self._last[0]) * 1e-9, position - self._last[1]
             if period:
                 position = self._last[1] + math.remainder(turned, period)
-                if elapsed * parameters.max_rotor_speed >= 0.5 * period:
-                    self._offset, self._referable = None, absolute
-            elif elapsed > parameters.longest_silence:
+                lost = elapsed * parameters.max_rotor_speed >= 0.5 * period
+            if lost or (not period and elapsed > parameters.longest_silence):
                 self._referable = absolute
         self._last = time, position
         angle = self._direction * (position - parameters.rotor_zero)
-        missing = output[1] * float(self._ratio) - angle
+        missing = output[1] * float(self._ratio) - angle - before
         known = self._limits['position'] * abs(float(self._ratio))
-        referred = self._offset is not None and abs(missing - self._offset) > known
-        if self._offset is None or (referred and self._referable):
+        referred = not (first or lost) and abs(missing) > known
+        if first or lost or (referred and self._referable):
             self._referable &= not referred
-            before = self._offset or 0.0
-            whole = before + (period * round((missing - before) / period) if period else 0.0)
-            exact = abs(missing - whole) <= known or not self._any_zero or (referred and period)
-            self._offset = whole if exact else missing
-            self._taken += self._offset != 0.0
-        return angle + self._offset
+            whole = period * round(missing / period) if period else 0.0
+            exact = abs(missing - whole) <= known or not self._any_zero or (period and not first)
+            self._offset = before + (whole if exact else missing)
+            self._taken += self._offset != before
+        return angle + (self._offset or 0.0)
 
     def _note(self, name: str, stamps: Sequence[int], errors: Any) -> None:
         errors = np.where(np.isnan(errors), math.inf, errors)

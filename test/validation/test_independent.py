@@ -3,12 +3,14 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import made_bags
 import pytest
 from live import rotor_bytes
 from node_loop import answered
-from shipped_bags import BAGS, OUTPUT, POSES, ROTOR, read_bag
+from replaying import edited
+from shipped_bags import BAGS, JOINT_STATE, OUTPUT, POSES, ROTOR, read_bag
 
 from gear_kinematics.kinematics import GearRatio, RotorTurns
 from gear_kinematics.parameters import NodeParameters
@@ -159,3 +161,20 @@ def test_that_stamps_are_lacking_is_said(tmp_path):
     report = validate(bag, DEFAULT, independent=True)
     lacking = 'independently, nothing could be compared: no output has the stamp of an input'
     assert (report.passed, lacking in map(sentence, report.findings)) == (False, True)
+
+
+def test_a_gap_between_readings_hides_turns_but_no_other_zero(tmp_path):
+    """In 20 ms the rotor can make a turn; from 2 s on, the output is off by less than one."""
+    states = [
+        (ROTOR, START + k * STEP, rotor_bytes(START + k * STEP, position=[0.08 * k % math.tau]))
+        for k in range(0, 2000, 10)
+    ]
+    off = partial(
+        edited, kind=JOINT_STATE, edit=lambda m: setattr(m, 'position', m.position + 0.01)
+    )
+    messages = [
+        (topic, at, off(data) if topic == OUTPUT and at > START + 1000 * STEP else data)
+        for topic, at, data in answered(SINGLE, states, topics=('output_state',))
+    ]
+    bag = made_bags.folder(tmp_path / 'bag', messages)
+    assert not validate(bag, SINGLE, independent=True).independent.passed
