@@ -112,7 +112,7 @@ def run(folder: Path, command: str) -> str:
         done = gearkin_here(*words, cwd=folder)
     else:
         program = [*GEARKIN] if first == 'gearkin' else [sys.executable]
-        done = finished([*program, *words], cwd=folder, timeout=150.0)
+        done = finished([*program, *words], cwd=folder, timeout=300.0)
     codes = {0, 1} if words[0] in {'commission', 'loads', 'validate'} else {0}
     assert done.returncode in codes, done.stdout + done.stderr
     return done.stdout + done.stderr
