@@ -12,7 +12,7 @@ from gear_kinematics.commands import arguments
 from gear_kinematics.commands.bags import add_encoder, add_rotor
 from gear_kinematics.commands.output import complain
 from gear_kinematics.kinematics import GearRatio
-from gear_kinematics.measurement.columns import GIVEN_UNITS, Sources
+from gear_kinematics.measurement.columns import GIVEN_UNITS, Sources, option
 from gear_kinematics.measurement.formats import is_table
 from gear_kinematics.measurement.recording import Recording
 from gear_kinematics.parameters import default_config
@@ -25,6 +25,7 @@ _COLUMNS = {
     'rotor': 'angle of the rotor',
     'output': 'angle of the output encoder',
     'time': 'time of a row (default unit: by name, or by the sampling)',
+    'output_time': 'time of the output encoder, if --time-column is that of the rotor alone',
 }
 _JOINT_OF = re.compile('# (?:The joint .* on|a joint of) (\\S+?)(?:, with .*)?')
 """The comment in parameter files on the joint in the next line, with its topic."""
@@ -54,11 +55,8 @@ def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
     group = parser.add_argument_group(
         'columns of a table', "by default found by name; units may follow, as in 'ms_today [ms]'"
     )
-    for role in ('time', *roles):
-        group.add_argument(f'--{role}-column', metavar='NAME', help=_COLUMNS[role])
-    if 'output' in roles:
-        text = 'time of the output encoder, if --time-column is that of the rotor alone'
-        group.add_argument('--output-time', metavar='NAME', help=text)
+    for role in ('time', *roles, *['output_time'] * ('output' in roles)):
+        group.add_argument(option(role), metavar='NAME', help=_COLUMNS[role])
     text = 'unit of all angles (default: by name, or rad unless something contradicts it)'
     group.add_argument('--angle-unit', choices=GIVEN_UNITS, help=text)
     if 'torque' in roles:
@@ -140,7 +138,6 @@ def sources(options: argparse.Namespace) -> Sources:
     names: dict[str, Any] = {role: getattr(options, f'{role}_column', None) for role in _COLUMNS}
     return Sources(
         **names,
-        output_time=getattr(options, 'output_time', None),
         unit=options.angle_unit,
         on_rotor=getattr(options, 'on_rotor', False),
         rotor_counts=options.rotor_counts,

@@ -82,7 +82,7 @@ class ColumnsError(ValueError):
 def option(field: str) -> str:
     """Return the option for a field of `Sources`."""
     name = {'unit': 'angle-unit'}.get(field, field.replace('_', '-'))
-    return f'--{name}' if '-' in name else f'--{name}-column'
+    return f'--{name}-column' if field in ROLES else f'--{name}'
 
 
 def find_columns(
