@@ -13,7 +13,7 @@ _CLOCK_STEP = 20_000_000  # ns: clocks are slewed by less, and messages are late
 _CLOSE = 25  # messages, in which a bag that is looped begins at most once
 ALTERNATING = 3  # resets of the clock so close to each other: as many are no chance
 FASTEST = 100.0  # times the clock: faster than any playback
-_FEWEST = 10  # stamps that tell how fast they rise
+_FEWEST, _LEAST = 10, 100_000_000  # stamps, and ns, that tell their pace; no burst takes as long
 _MANY, _SOON = 64, 0.5  # intervals that the usual one is averaged over; share of it
 
 
@@ -40,7 +40,7 @@ class Disorder:
     def compare(self, stamps: Array, received: Array) -> None:
         """See whether stamps rise faster than times of reception, (n,), ns, bursts apart."""
         time = np.ptp(received) if len(received) >= _FEWEST else 0
-        if time and (pace := np.ptp(stamps) / time) > FASTEST:
+        if time >= _LEAST and (pace := np.ptp(stamps) / time) > FASTEST:
             usual, clock = (float(np.median(np.diff(each))) for each in (stamps, received))
             if (pace := min(float(pace), usual / max(clock, 1.0))) > FASTEST:
                 self._too_fast = Condition.STAMPS_TOO_FAST(factor=pace)

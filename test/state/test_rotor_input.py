@@ -165,6 +165,16 @@ def test_a_clock_that_is_set_back_by_some_messages_loses_no_turn_silently(back):
     assert not rotor_input.referenced or turned == pytest.approx(angle)
 
 
+@pytest.mark.parametrize('count', [16, 1000])
+def test_a_batch_of_messages_that_came_in_one_burst_shows_no_fast_clock(count):
+    """As the last ones of a recorder that was held up; they are 5 µs apart."""
+    taken = [START + k * 1_000_000 for k in range(count)]
+    received = [taken[-1] + 5000 * k for k in range(count)]
+    rotor_input = RotorInput(SETTINGS)
+    rotor_input.accept_batch([rotor_bytes(t, position=[1e-9 * t]) for t in taken], received)
+    assert rotor_input.disorder.clock_fault is None
+
+
 numbers = st.lists(st.floats(width=64), max_size=2)
 
 
