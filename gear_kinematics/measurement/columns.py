@@ -114,7 +114,8 @@ def find_columns(
             if name not in header:
                 raise ValueError(f'no column {name!r}{among(name, header, most=len(header))}')
             named[role] = name
-    found, side = likeliest(header) | named, 'angle'
+    others = [name for name in header if name != named.get('output_time')]
+    found, side = likeliest(others) | named, 'angle'
     if {'rotor', 'output'} <= found.keys() and 'angle' not in named:
         found.pop('angle', None)
     elif 'torque' in found and (sides := [role for role in ANGULAR if role in found]):

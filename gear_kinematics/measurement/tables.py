@@ -154,6 +154,8 @@ class _Samples:
         own = {'output': given.name} if given else own
         units = {**table.units, **{one.name: one.unit for one in (clock, given) if one}}
         raw, clock = self._loaded(table, clock, {*clocks.values(), *own.values()})
+        if sources.output_time and not (given and clock):
+            raise ValueError('--output-time needs both encoders, and --time-column of the rotor')
         clocks |= self._own(own, raw, usual, units)
         if len({*clocks.values()}) == 1 and len(lengths := {*map(len, raw.values())}) > 1:
             number = ' and '.join(map(str, sorted(lengths)))
@@ -236,6 +238,11 @@ class _Samples:
                 found[role] = times
             elif len({*own.values()}) > 1 and _are_apart(raw[usual], raw[times]):
                 one, other = (own.get(side, usual) for side in ('rotor', 'output'))
+                if one == other:  # the torque has other times
+                    raise ValueError(
+                        f'{usual} and {times} may be the times of one column each: interpolate '
+                        'all to the same times, or give those of all with --time-column'
+                    )
                 raise ColumnsError(
                     f'{one} and {other} may be the times of one encoder each: give both, or the '
                     'times of all with --time-column alone',

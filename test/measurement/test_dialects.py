@@ -1183,6 +1183,28 @@ def test_two_times_that_are_apart_and_may_be_of_one_encoder_each_are_asked_for(
     assert recording.columns[0] == f'time [s] from {usual}'
 
 
+def test_times_that_may_be_of_the_torque_alone_are_named(tmp_path, gear, reference):
+    t, a, q = reference('ramps')
+    path = saved(tmp_path, written([t, a, t + 0.5, q], 'time,angle,time.1,torque', '{:.5f}'))
+    with pytest.raises(RecordingError, match=r'time and time\.1 may be the times of one column'):
+        read(path, gear)
+
+
+def test_the_given_times_of_the_output_are_not_those_of_the_rotor(tmp_path, gear, reference):
+    t, r, o = reference('encoders')
+    path = saved(tmp_path, written([t[1:], o[1:], t[:-1], r[:-1]], 't_o,output,t_m,rotor'))
+    assert_measured(read(path, gear, Sources(output_time='t_o')), gear)
+
+
+@pytest.mark.parametrize('names', ['x,rotor,output', 'T,rotor,output', 'time,angle,torque'])
+def test_times_of_the_output_alone_are_refused(tmp_path, gear, reference, names):
+    """Numbers called T are no times if they fall, as temperatures do."""
+    t, r, o = reference('encoders')
+    path = saved(tmp_path, written([-t, r, o, t], f'{names},t_o', '{:.5f}'))
+    with pytest.raises(RecordingError, match='--output-time needs both encoders, and --time-co'):
+        read(path, gear, Sources(output_time='t_o'))
+
+
 def test_rows_with_a_torque_of_their_own_are_no_filled_gaps(tmp_path, gear):
     """Ideal encoders whose counts of rotor and output never change in the same row."""
     count, time = math.tau / 4096, np.arange(20_000) * 1e-3
