@@ -5,8 +5,8 @@
 # By the register map of the MPU-6000 (revision 4.2) TEMP_OUT stands at 0x41, the temperature is TEMP_OUT / 340 + 36.53
 # °C, and the sample rate is 8 kHz / (1 + SMPLRT_DIV) without the low-pass, with a divider of eight bits. What happens:
 # the temperature as f32 is 365.3 °C at TEMP_OUT = 0, while celcius() gives 36.53. read_temperature() reads the register
-# of the acceleration, so that an arm that turns its x axis up, at 1 g, warms up by 48 °C. A sample rate of 20 Hz, which
-# needs a divider of 399, is set as 143 without an error: 55.6 Hz, so that a turn is integrated 2.8 times too slowly.
+# of the acceleration, so that an arm that turns its x axis up, at 1 g, is read as 48 °C warmer. A sample rate of 20 Hz,
+# which needs a divider of 399, is set by a divider of 143 without an error, and is 55.6 Hz.
 # For us: use read_all() and celcius(), and no rates below 32 Hz without the low-pass.
 #
 # Exit code 0: still so. Needs cargo; installs the version into a temporary folder. The registers are of the script.
