@@ -22,8 +22,8 @@ from gear_kinematics.bag.roles import Topics
 from gear_kinematics.kinematics import Mechanism, matrix_method
 from gear_kinematics.validation.independent_bodies import ERRORS_OF, own_joints
 from gear_kinematics.validation.independent_message import (
-    AGAIN,
     IndependentMessage,
+    InputTime,
     Known,
     State,
     Waiting,
@@ -32,7 +32,6 @@ from gear_kinematics.validation.independent_message import (
 from gear_kinematics.validation.task import Task
 
 _KEPT = 20_000  # inputs, outputs, poses and joints that wait for each other
-_UNKNOWN = 10**18  # ns, longer than any gap
 _LARGEST = math.tau * 2**51  # rad; no output answers a greater position
 _UNITS = {'position': 'rad', 'velocity': 'rad/s', 'effort': 'N·m'}
 _UNITS |= {'position of bodies': 'm', 'orientation of bodies': 'rad'}
@@ -87,8 +86,7 @@ class Independent:
         self._bodies = {topic: list[Waiting]() for topic in (topics.poses, joint_states)}
         self._motions: dict[str, Known] = {topic: defaultdict(list) for topic in self._bodies}
         """Angles and velocities of the rotor, rad and rad/s, that bodies lack."""
-        self._stamp = self._latest = 0  # ns, of the last input, and the latest by the same clock
-        self._time = 0  # ns, by the stamps, also while they rise again after they were set back
+        self._time = InputTime()
         self._last: tuple[int, float] | None = None  # time and position of the last output
         self._offset: float | None = None  # rad, from positions to rotor angles
         self._given = self._compared = self._taken = 0
@@ -106,8 +104,8 @@ class Independent:
                     state = message.joint(self._parameters.rotor_joint)
                     # NaN is not; outputs of inputs without a stamp have the time of the node.
                     if message.stamp and abs(state[1]) <= _LARGEST:
-                        self._go_on(message.stamp)
-                        self._inputs[message.stamp].append((received, (self._time, *state[1:])))
+                        time = self._time.at(message.stamp)
+                        self._inputs[message.stamp].append((received, (time, *state[1:])))
                 elif topic == self._topics.output:
                     self._outputs.append((*at, message.joint(self._joint)))
                 elif topic == self._topics.poses:
@@ -157,13 +155,6 @@ class Independent:
                 errors_of = ERRORS_OF['poses' if topic == self._topics.poses else 'joints']
                 for name, errors in errors_of(gear, np.transpose(moved), given_bodies).items():
                     self._note(name, of, errors)
-
-    def _go_on(self, stamp: int) -> None:
-        """Take the time until the next input, which is not known where a clock began anew."""
-        if stamp < self._latest - AGAIN:
-            self._time, self._latest = self._time + _UNKNOWN, stamp
-        self._time += max(0, stamp - (self._stamp if stamp < self._latest else self._latest))
-        self._stamp, self._latest = stamp, max(stamp, self._latest)
 
     def _angle(self, given: State, output: State) -> float:
         """Return the rotor angle of an input, whose turns or zero may come from the output."""

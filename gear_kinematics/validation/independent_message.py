@@ -1,11 +1,12 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Decodes serialised messages for the independent comparison, by `struct`, and pairs them."""
+"""Decodes serialised messages for the independent comparison by `struct`; times and pairs them."""
 
 import math
 import struct
 from typing import Any
 
-AGAIN = 1_000_000_000  # ns after which a stamp that comes again is of another start of the driver
+_AGAIN = 1_000_000_000  # ns after which a stamp that comes again is of another start of the driver
+_UNKNOWN = 10**18  # ns, longer than any gap
 
 State = tuple[int, float, float, float]  # stamp, ns, position, velocity, effort; NaN for absent
 Waiting = tuple[int, int, Any]  # stamp and time of reception, ns, and the content of a message
@@ -51,6 +52,26 @@ class IndependentMessage:
         return self.stamp, position, velocity, effort
 
 
+class InputTime:
+    """Adds up the time between inputs by their stamps, ns, also where a clock was set back."""
+
+    def __init__(self) -> None:
+        self._time = self._stamp = self._latest = 0
+        self._fell = False  # whether the last stamp was older than the one before it
+
+    def at(self, stamp: int) -> int:
+        """Return the time of the next input, long after the last if a clock began anew."""
+        if stamp < self._latest - _AGAIN:
+            self._time, self._stamp, self._latest = self._time + _UNKNOWN, stamp, stamp
+        late = self._fell and stamp >= self._latest  # the input before, alone
+        rise = max(0, stamp - (self._latest if late else self._stamp))
+        # A clock that was set back does not show the time before, which is about as long.
+        self._time += 2 * rise if self._fell and not late else rise
+        self._fell = stamp < self._stamp
+        self._stamp, self._latest = stamp, max(stamp, self._latest)
+        return self._time
+
+
 def paired(waiting: list[Waiting], known: Known) -> list[tuple[int, int, Any, Any]]:
     """Add what is known of their stamps to what waits, in order; others go on waiting."""
     pairs, left = [], []
@@ -59,7 +80,7 @@ def paired(waiting: list[Waiting], known: Known) -> list[tuple[int, int, Any, An
         rows = known.get(stamp, [])
         while len(rows) > 1:  # the first may be from before a restart, and without an answer
             (before, _), (after, _) = rows[:2]
-            if after - before <= AGAIN or received - before < after - received:
+            if after - before <= _AGAIN or received - before < after - received:
                 break
             rows.pop(0)
         if rows:

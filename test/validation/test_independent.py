@@ -126,16 +126,18 @@ def test_stamps_that_come_again_in_a_restarted_simulation_have_their_own_inputs(
     assert report.independent.compared == len(messages) - len(states)
 
 
-def test_turns_are_taken_from_the_outputs_where_the_clock_was_set_back(tmp_path):
-    """By 0.3 s, in which the node rejects the stamps, and the rotor makes two turns."""
-    stamps = [START + k * STEP - (149 * STEP + STEP // 4) * (k >= 500) for k in range(1000)]
-    positions = [0.08 * k % math.tau for k in range(1000)]
+@pytest.mark.parametrize(('back', 'speed'), [(149.25, 40.0), (2.06, 630.0), (3.5, 400.0)])
+def test_turns_are_taken_from_the_outputs_where_the_clock_was_set_back(back, speed, tmp_path):
+    """The node rejects the stamps meanwhile, and its velocities tell that a turn was made."""
+    single = replace(SINGLE, max_rotor_speed=max(SINGLE.max_rotor_speed, speed / 0.9))
+    stamps = [START + k * STEP - round(back * STEP) * (k >= 500) for k in range(1000)]
+    positions = [1e-9 * STEP * speed * k % math.tau for k in range(1000)]
     states = [
-        (ROTOR, START + k * STEP, rotor_bytes(stamps[k], position=[angle], velocity=[40.0]))
+        (ROTOR, START + k * STEP, rotor_bytes(stamps[k], position=[angle], velocity=[speed]))
         for k, angle in enumerate(positions)
     ]
-    bag = made_bags.folder(tmp_path / 'bag', answered(SINGLE, states))
-    report = validate(bag, SINGLE, independent=True)
+    bag = made_bags.folder(tmp_path / 'bag', answered(single, states))
+    report = validate(bag, single, independent=True)
     assert report.passed
     assert report.independent.passed
 
