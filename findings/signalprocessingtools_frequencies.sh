@@ -1,15 +1,12 @@
 #!/usr/bin/env bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# SignalProcessingTools 1.2.7: a gear mesh at 250 Hz is found at 254 Hz, one at 20 Hz at 20.2 Hz, and the third of an
-# octave at 3150 Hz is called 3.15 Hz.
+# SignalProcessingTools 1.2.7: a gear mesh at 250 Hz is found at 254 Hz, and a record of 100 Hz is taken as one of 101.
 #
 # Expected of TimeSignalProcessing.fft() with windows of 64 readings at 1 kHz: a vibration of 250 Hz at 250 Hz, as line
 # k of a discrete Fourier transform is at k/64 of 1 kHz, and this one is in the middle of line 16. What happens: 253.97
 # Hz, as the lines are spread from 0 to 1 kHz with both ends. Expected of a record of 100 Hz whose times are given,
 # which is "computed based on time": 100 Hz. What happens with 2000 readings at 0, 0.01, 0.02 s and so on: 101 Hz, as
-# the mean interval is 0.01 s but for rounding and its inverse is rounded up; a vibration of 20 Hz is at 20.2 Hz, and a
-# record of 12.5 Hz is one of 13 Hz for each filter. Expected of one_third_octave_bands() for a vibration of 3000 Hz:
-# the band whose nominal centre is 3150 Hz, between 2500 and 4000 Hz. What happens: it is called 3.15 Hz.
+# the mean interval is 0.01 s but for rounding and its inverse is rounded up; a vibration of 20 Hz is at 20.2 Hz.
 # For us: give Fs, and multiply the frequencies by (n - 1)/n, where n is the length of the window or of the record.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
@@ -42,14 +39,4 @@ slow = vibration(20, 100, 2000)
 slow.fft()
 print('20 Hz at 100 Hz:', peak(slow), 'Hz, taken as a record of', slow.Fs, 'Hz')
 assert slow.Fs == 101 and abs(peak(slow) - 20.2) < 0.05
-coarse = vibration(1, 12.5, 1000)
-print('a record of 12.5 Hz is one of', coarse.Fs, 'Hz')
-assert coarse.Fs == 13
-
-fast = vibration(3000, 20_000, 20_000, Fs=20_000)
-fast.fft()
-fast.one_third_octave_bands()
-centres, powers = fast.octave_bands_fft, fast.octave_bands_fft_power
-print('3000 Hz is in the band of', centres[np.argmax(powers)], 'Hz, whose neighbours are', centres[24], centres[26])
-assert centres[np.argmax(powers)] == 3.15 and (centres[24], centres[26]) == (2500, 4000)
 PYTHON
