@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# scurve_motion 0.1.0 (Rust): a joint at a constant 2 rad/s is sent back by 2 mrad within 1 ms where a new phase begins.
+# scurve_motion 0.1.0 (Rust): where a new phase begins, a joint at 2 rad/s is sent back by 2 mrad within 1 ms.
 #
 # A move of 3 rad with at most 2 rad/s, 10 rad/s² and 100 rad/s³ has seven phases, whose times, positions and speeds are
 # right and join without a step. Its MotionPolynomialExecutor is to play them at 1 kHz. Expected: positions that rise
 # from each tick to the next, within 1800 ticks of 1 ms. What happens: a phase of 1200 ticks is played for 1201, one
 # beyond its end, and the tick after it is the first position of the next phase, which is the end of the phase before.
-# So the position falls by one tick's way at each of the six joints, and the move takes 14 ms longer, two per phase.
+# So the position falls back by one tick's way six times, by 0.5 to 2 mrad, and the move takes 14 ms longer, 2 per phase.
 # For us: a following error of 2 mrad looks like play. Evaluate the polynomials by the time since the start of the move.
 #
 # Exit code 0: still so. Needs cargo; installs the version into a temporary folder.
