@@ -6,7 +6,7 @@
 # shoulder without an axis is turned by 90°. Expected: (0, 0, 0.3), as it is found where the URDF has the axis. What
 # happens: (-0.3, 0, 0), as of an axis along z. The same arm has an inertia of 0.01, 0.02 and 0.03 kg·m², given in axes
 # that an rpy of 90° turns about z. Expected in the axes of the link: 0.02, 0.01 and 0.03. What happens: 0.01, 0.02 and
-# 0.03, as the rpy of an inertial is not read. A joint without lower and upper limits gets ±180° instead of 0.
+# 0.03, as the rpy of an inertial is not read.
 # For us: write each axis, also (1, 0, 0), and give inertias in the axes of the link, with an rpy of 0.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.
