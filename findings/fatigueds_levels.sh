@@ -11,7 +11,7 @@
 # whether it is given at each hertz or at 200 frequencies in a geometric series, and a greatest acceleration at 100 Hz
 # near 200 m/s², by Miles' equation: sqrt(pi/2 · f · Q · density) · sqrt(2 · ln(f · T)) for an hour. What happens: 93
 # m/s² and 2 % of the damage with the 200 frequencies, as each of them counts for the first interval. With the four
-# frequencies 20, 80, 350 and 2000 Hz, as a test specification has them, 300 Hz get two fifths of it.
+# frequencies 20, 80, 350 and 2000 Hz, as a test specification has them, 300 Hz get two fifths of their acceleration.
 # For us: give each level of a sweep alone and add the damages; interpolate a density to evenly spaced frequencies
 # first.
 #
