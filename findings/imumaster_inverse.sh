@@ -6,7 +6,7 @@
 # product of both is the quaternion 0, 0, 0, 1. For 90° about x, which is 0.707, 0, 0, 0.707, that is -0.707, 0, 0,
 # 0.707. What happens: 0, 0, -0.707, 0.707, as the four numbers are put in the opposite order; the product is a turn by
 # 120°. conj of the same object and the static inverse(scalar_first=False) are right, and inv with scalar_first=True is.
-# For us: multiply by an inverse once, and look whether nothing is left.
+# For us: take conj of a quaternion of length 1, or the static inverse().
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
 set -euo pipefail
