@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# loadcell 0.3.0 (Rust): a torque sensor that has been zeroed reads -2.5 N·m without load, and 7.5 N·m under 10 N·m.
+# loadcell 0.3.0 (Rust): a torque sensor zeroed by four readings reads -2.5 N·m without load, and 7.5 N·m under 10 N·m.
 #
 # By the datasheet of the HX711, its first conversion after power-up is one of channel A with a gain of 128, and the
 # pulses after a reading choose the channel and gain of the next conversion. Expected: after tare() an unchanged load is
