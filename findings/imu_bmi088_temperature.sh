@@ -1,13 +1,12 @@
 #!/usr/bin/env bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# imu-bmi088 1.0.1: a joint at 20 °C is read at 276 °C, and the sensor of acceleration is never taken out of suspend.
+# imu-bmi088 1.0.1: a joint at 20 °C is read at 276 °C, and one at -10 °C at 246 °C.
 #
 # By the data sheet of the BMI088 (registers 0x22 and 0x23) the temperature is a number of eleven bits with a sign: a
 # value above 1023 stands for the value less 2048, and 0 is 23 °C. What happens: read_temperature() has no sign, so that
 # each temperature below 23 °C is 256 °C too high: 22 °C are read at 278 °C, 20 °C at 276 °C and -10 °C at 246 °C. At
-# 23 °C and above it is right. ACC_POWER_CONF, which the data sheet has at 0x7C and which is 0x03, suspended, after
-# power-up, is 0x7D here, as ACC_ENABLE_ADDRESS is, so that 0x7C is never written. Nothing warns of either.
-# For us: take 256 °C off a temperature above 150 °C, and write 0 to 0x7C by the bus after the constructor.
+# 23 °C and above it is right. Nothing warns of it.
+# For us: take 256 °C off a temperature above 150 °C.
 #
 # Exit code 0: still so. Installs the version into a temporary folder; the bus is one of the script.
 set -euo pipefail
@@ -24,10 +23,10 @@ class Bus:
     """Registers of a BMI088 by address and register; `celsius` is the temperature it has."""
 
     def __init__(self, number):
-        self.written, self.celsius = [], 23
+        self.celsius = 23
 
     def write_byte_data(self, address, register, value):
-        self.written.append((address, register, value))
+        pass
 
     def read_byte_data(self, address, register):
         number = round((self.celsius - 23) / 0.125) % 2048
@@ -42,7 +41,4 @@ for celsius in (-10, 20, 22, 23, 30, 60):
     read[celsius] = imu.read_temperature()
 print('temperatures in °C and what is read:', read)
 assert read == {-10: 246, 20: 276, 22: 278, 23: 23, 30: 30, 60: 60}
-registers = [(register, value) for address, register, value in imu.bus.written if address == 0x18]
-print('written to the sensor of acceleration:', [f'{register:#x} {value:#x}' for register, value in registers])
-assert 0x7C not in dict(registers) and registers[-2:] == [(0x7D, 0), (0x7D, 4)]
 PYTHON
