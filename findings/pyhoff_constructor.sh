@@ -6,8 +6,8 @@
 # add_bus_terminals(). In the process image of a BK9000 a status word stands before each word of data, and outputs begin
 # at 0x0800, which the class itself sets. Expected either way: the channels of a KL3054 are read from 1, 3, 5 and 7, and
 # the first output behind it is written at 0x0809. What happens: the constructor gives out the addresses before it sets
-# the map of the coupler. Channels 1 to 4 are read from 0 to 3, so that channel 1 shows its status as 4 mA, and channel 2
-# the 8 mA of channel 1; a voltage for a drive is written at 4. read_delta() of a counter KL1512 is documented as the
+# the map of the coupler. Channels 1 to 4 are read from 0 to 3, so that channel 1 shows its status as 4 mA, and channel
+# 2 the 8 mA of channel 1; a voltage for a drive is written at 4. read_delta() of a counter KL1512 is documented as the
 # change since the last read, but is the one since the start: 3 pulses that came once are read as 3 each time.
 # For us: make the coupler without terminals and call add_bus_terminals() then; take the difference of read_counter().
 #

@@ -6,7 +6,7 @@
 # right and join without a step. Its MotionPolynomialExecutor is to play them at 1 kHz. Expected: positions that rise
 # from each tick to the next, within 1800 ticks of 1 ms. What happens: a phase of 1200 ticks is played for 1201, one
 # beyond its end, and the tick after it is the first position of the next phase, which is the end of the phase before.
-# So the position falls back by one tick's way six times, by 0.5 to 2 mrad, and the move takes 14 ms longer, 2 per phase.
+# So the position falls back by one tick's way six times, by 0.5 to 2 mrad, and the move takes 14 ms longer.
 # For us: a following error of 2 mrad looks like play. Evaluate the polynomials by the time since the start of the move.
 #
 # Exit code 0: still so. Needs cargo; installs the version into a temporary folder.
