@@ -49,6 +49,8 @@ def _parquet(path: Path) -> TableFile:
     table = pq.read_table(path)
     while any(map(pa.types.is_struct, table.schema.types)):
         table = table.flatten()
+    images = pa.binary(), pa.large_binary()
+    table = table.select([k for k, kind in enumerate(table.schema.types) if kind not in images])
     frame = table.to_pandas()
     if frame.index.dtype.kind in 'mMf':
         frame = frame.rename_axis(index=frame.index.name or 'time').reset_index()

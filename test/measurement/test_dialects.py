@@ -911,7 +911,9 @@ def structs(path, time, rotor, output):
     import pyarrow.parquet as pq  # noqa: PLC0415
 
     sides = [[{'pos': one, 'vel': 0.0} for one in values] for values in (rotor, output)]
-    pq.write_table(pa.table({'time': time, 'motor': sides[0], 'output': sides[1]}), path)
+    images = [{'bytes': b'\x89PNG\xff', 'path': None}] * len(time)  # as LeRobot has them
+    columns = {'time': time, 'motor': sides[0], 'output': sides[1], 'observation.image': images}
+    pq.write_table(pa.table(columns), path)
     return Sources()
 
 
