@@ -1203,7 +1203,9 @@ def test_times_of_the_output_alone_are_refused(tmp_path, gear, reference, names)
     """Numbers called T are no times if they fall, as temperatures do."""
     t, r, o = reference('encoders')
     path = saved(tmp_path, written([-t, r, o, t], f'{names},t_o', '{:.5f}'))
-    with pytest.raises(RecordingError, match='--output-time-column needs both encoders, and --time-co'):
+    with pytest.raises(
+        RecordingError, match='--output-time-column needs both encoders, and --time-co'
+    ):
         read(path, gear, Sources(output_time='t_o'))
 
 
