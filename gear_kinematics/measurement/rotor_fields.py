@@ -108,7 +108,8 @@ def _impossible_steps(
     if jumped:
         yield jumped
     elif beyond and limited:
-        yield Observation.BEYOND_LIMITS(beyond=str(beyond))
+        advice = beyond.advice[0].lower() + beyond.advice[1:].rstrip('.')
+        yield Observation.BEYOND_LIMITS(beyond=str(beyond), advice=advice)
     if jumped or beyond:
         known.add(Rejection.IMPLAUSIBLE)
     if counts := {cause: count for cause, count in rotor.rejected.items() if cause not in known}:

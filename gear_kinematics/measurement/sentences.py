@@ -294,7 +294,7 @@ class Observation(Enum):
         'the positions are whole numbers, as if in counts of an encoder: let the driver send rad '
         'of the rotor'
     )
-    BEYOND_LIMITS = '{beyond}: let the driver send rad, or set the limit to that of the motor'
+    BEYOND_LIMITS = '{beyond}: {advice}'
     STAMPS_REPEAT = '{count} of {total} stamps repeat the one before'
     NO_EFFORT = 'the effort is 0 throughout the motion, and taken as none'
     # What differs between recordings

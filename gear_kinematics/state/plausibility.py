@@ -98,7 +98,7 @@ class Plausibility:
             which.append(Condition.BEYOND_ACCELERATION(acceleration=self.seen_acceleration))
         if step := single_precision_step(self._former[0], self._last[0]):
             which.append(Condition.BEYOND_PRECISION(angle=step))
-        return Condition.BEYOND_LIMITS(which=which) if which else None
+        return Condition.BEYOND_LIMITS(which=which, advice=which[-1].advice) if which else None
 
     def set_back(self, time: int) -> None:
         """Note that the clock was set back by so much, ns, since the last reading."""

@@ -19,6 +19,7 @@ _HOME = f'Move the output to its home angle, {_HOME_IT}.'
 _CLOCKS = 'Check that both drivers run and send often, and that their clocks agree.'
 _RANGE = 'Check output_range, gear_ratio and the zeros of both encoders.'
 _VELOCITY = 'Let the driver send rad/s of the rotor, or no velocities.'
+_LIMIT = 'Let the driver send rad, stamped in s and ns, or set the limit to that of the motor.'
 _QOS = 'Change the quality of service of one of the two.'
 _TWO_NODES = 'Stop one of the two nodes, or give each its own namespace.'
 
@@ -101,17 +102,13 @@ class Condition(Enum):
     EFFORT_IS_ZERO = OK, 'the effort is 0 throughout the motion, and left out', ''
     UNSTAMPED = OK, '{messages} without a stamp: outputs have the time of reception', ''
     UNREFERENCED_AT_END = OK, 'the turns of the rotor are not known at the end', ''
-    BEYOND_LIMITS = (
-        WARN,
-        '{which}',
-        'Let the driver send rad, stamped in s and ns, or set the limit to that of the motor.',
-    )
-    BEYOND_SPEED = WARN, '{speed:.4g} rad/s exceed max_rotor_speed', ''
-    BEYOND_ACCELERATION = WARN, '{acceleration:.4g} rad/s² exceed max_rotor_acceleration', ''
+    BEYOND_LIMITS = WARN, '{which}', '{advice}'
+    BEYOND_SPEED = WARN, '{speed:.4g} rad/s exceed max_rotor_speed', _LIMIT
+    BEYOND_ACCELERATION = WARN, '{acceleration:.4g} rad/s² exceed max_rotor_acceleration', _LIMIT
     BEYOND_PRECISION = (
         WARN,
         'the positions are numbers of single precision, in steps of {angle:.3g} rad so far from 0',
-        '',
+        'Let the driver count turns in double precision, or start it anew in time.',
     )
     ZERO_STAMPS = (
         WARN,

@@ -142,8 +142,8 @@ def test_motion_beyond_the_limits_of_a_node_is_named(limits):
     told = [
         str(each) for each in questions(data, [0] * len(data), 'rotor', None, limits, steps=True)
     ]
-    said = '5730 rad/s exceed max_rotor_speed: let the driver send rad, or set the limit to that '
-    assert told == [f'{said}of the motor'] * bool(limits)
+    said = '5730 rad/s exceed max_rotor_speed: let the driver send rad, stamped in s and ns, or '
+    assert told == [f'{said}set the limit to that of the motor'] * bool(limits)
 
 
 def test_other_joints_of_the_same_time_repeat_no_stamp():

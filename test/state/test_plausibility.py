@@ -126,6 +126,7 @@ def test_positions_of_single_precision_are_named_where_they_are_coarse(start, un
         coarse = Condition.BEYOND_PRECISION(angle=step)
         found = rotor.plausibility.beyond_limits
         assert (found.values['which'] if found else []) == [coarse] * named
+        assert not found or 'count turns in double precision' in found.advice
 
 
 @pytest.mark.parametrize('kind', KINDS)
