@@ -235,8 +235,8 @@ def _overall(ramps: Ramps) -> Estimate | None:
         positive: list[float] = []
         negative: list[float] = []
         for loading, unloading in ramps.sides:
-            margin = less * (_spacing(ramps) + loading.blur)
-            high = min(abs(loading.end), abs(unloading.start)) - margin
+            high = min(abs(loading.end), abs(unloading.start))
+            high -= less * min(_spacing(ramps) + loading.blur, 0.5 * high)
             there, back = _compliance(loading, 0.0, high), _compliance(unloading, 0.0, high, -1.0)
             (positive if loading.rising else negative).append(0.5 * (there + back))
         found += [0.5 * sum(pair) for pair in zip(positive, negative, strict=False)]
