@@ -8,7 +8,7 @@ from gear_kinematics.measurement.figures import GearFigures, gear_figures
 from gear_kinematics.measurement.loops import RampError, find_ramps
 from gear_kinematics.measurement.measured import HYSTERESIS, LOST_MOTION, Measured
 from gear_kinematics.measurement.ramp_gate import gated_ramps
-from gear_kinematics.measurement.ratio import check_ratio
+from gear_kinematics.measurement.ratio import check_ratio, not_followed
 from gear_kinematics.measurement.recording import Recording
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.transmission import TransmissionFigures, transmission_figures
@@ -63,7 +63,10 @@ def measure(
         found = transmission_figures(encoders, ratio, parameters.transmission_error_travel)
     report = LostMotion(recording.name, recording, ratio, transmission=found, wrong_ratio=wrong)
     if not (loading := recording.loading(ratio)):
-        return report
+        # Without a torque that winds it up, the output goes where the rotor moves it.
+        if found and not wrong and (found.forward or found.backward):
+            wrong = not_followed(found.angle, found.error, ratio)
+        return replace(report, wrong_ratio=wrong)
     loading, new_faults = gated_ramps(loading)
     faults = (*recording.faults, *new_faults)
     try:

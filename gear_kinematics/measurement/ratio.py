@@ -31,6 +31,9 @@ has it beyond a single one."""
 _BEYOND = 0.05  # share of such recordings: a coincidence must be as much less likely there
 _CANDIDATES = 10
 _UNITS = {'degrees': math.degrees(1.0), 'turns': 1.0 / TURN}  # per rad, of a rotor by mistake
+_MOST_ERROR = 0.5
+"""Greatest error of a gear without a delay over its motion, rms. It is about 1 or more where the
+output is the angle of another joint, a time, a current or a temperature."""
 _MULTIPLE = 1e-3  # from a whole multiple of the assumed ratio, as by wrong counts per turn
 
 
@@ -91,6 +94,16 @@ def wrong_ratio(encoders: Encoders, assumed: Fraction) -> Observed | None:
     return what(measured=found.measured, assumed=assumed, ratio=ratio)
 
 
+def not_followed(angle: Array, error: Array, assumed: Fraction) -> Observed | None:
+    """Return that the ratio is wrong if the error is too large for so little motion.
+
+    Both are (n,), rad: the output angle that the ratio implies, and the error without a delay.
+    """
+    if np.std(error) <= _MOST_ERROR * np.std(angle):
+        return None
+    return Observation.NOT_THE_RATIO(assumed=assumed, why=Observation.NOT_FOLLOWED())
+
+
 def _estimated(encoders: Encoders, assumed: Fraction) -> RatioEstimate | None:
     """Estimate the ratio, starting from one that is about right; None if that is impossible."""
     ideal = encoders.at_measured(encoders.ideal(assumed))
@@ -130,7 +143,7 @@ def estimate_ratio(
     fit = EncoderFit(rotor, output, times, direction, slope).refined().refined()
     measured = fit.slope_estimate(period)
     if not _MAX_DISTANCE * measured.expanded < abs(measured.value):
-        raise RecordingError('the output does not follow the rotor, or turns too little')
+        raise RecordingError(str(Observation.NOT_FOLLOWED()))
     turned = math.degrees(abs(measured.value) * fit.travel)
     measured = measured.inverse()
     if abs(measured.value) + measured.expanded < 1.0:

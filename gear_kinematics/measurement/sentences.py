@@ -99,6 +99,7 @@ class Observation(Enum):
         'enough to count its wraps, shorten a recording of which one sample of several is used, '
         'and set rotor_encoder to single_turn'
     )
+    NOT_FOLLOWED = 'the output does not follow the rotor, or turns too little'
     EXCHANGED = 'the output turns more than the rotor: exchange the two'
     UPSIDE_DOWN = (
         _RATIO + ', which is upside down: give --ratio={ratio}, rotor speed over output speed'

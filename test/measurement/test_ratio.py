@@ -5,6 +5,7 @@ import math
 from dataclasses import replace
 from fractions import Fraction
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,11 +13,15 @@ from gear_recordings import encoders
 from simulated_encoders import TURN, with_play
 
 from gear_kinematics.kinematics import GearRatio
+from gear_kinematics.measurement.calibration import fit
 from gear_kinematics.measurement.columns import Sources
+from gear_kinematics.measurement.commissioning.analysis import Channel, Request, commission
+from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.ratio import estimate_ratio, wrong_ratio
 from gear_kinematics.measurement.reading import read
-from gear_kinematics.measurement.recording import RecordingError
+from gear_kinematics.measurement.recording import Recording, RecordingError
 from gear_kinematics.measurement.sentences import Observation
+from gear_kinematics.parameters import NodeParameters
 
 MOTIONS = 'sweep', 'there and back', 'sine', 'jog', 'hand'
 
@@ -303,3 +308,46 @@ def test_a_rotor_that_wraps_is_named_and_no_ratio_is_proposed(rate, travel):
     assert wrong_ratio(both, GearRatio(-19)) == wraps
     with pytest.raises(RecordingError, match=str(wraps)):
         estimate_ratio(rotor, output, time)
+
+
+SECONDS = np.arange(1500) * 0.02
+JOINT = 0.5 * np.sin(0.7 * SECONDS)  # rad
+
+
+@pytest.mark.parametrize(
+    ('output', 'related'),
+    [
+        (1e-3 * SECONDS, False),
+        (0.4 * np.sin(0.3 * SECONDS + 1.0), False),  # another joint
+        (1e-3 * np.sign(np.cos(0.7 * SECONDS)), False),  # a current, which friction causes
+        (JOINT + np.radians(2.0) * np.sin(3.0 * JOINT + 1.0), True),  # two bad encoders
+        (np.interp(SECONDS - 0.2, SECONDS, JOINT), True),
+    ],
+)
+def test_an_output_that_the_rotor_does_not_move_is_neither_calibrated_nor_measured(
+    output, related
+):
+    noise = 1e-5 * np.random.default_rng(0).normal(size=len(SECONDS))
+    both = encoders(-19.0 * JOINT, output + noise, np.round(1e9 * SECONDS).astype(np.int64))
+    recording = Recording(Path('gear'), 'gear', (), len(noise), both)
+    assert (measure(recording, NodeParameters.load()).wrong_ratio is None) is related
+    if related:
+        fit([replace(recording, path=Path(__file__))], Fraction(-19))
+    else:
+        with pytest.raises(RecordingError, match=r'gear: .* not have the ratio -19: .*too little'):
+            fit([recording], Fraction(-19))
+
+
+def test_a_given_ratio_is_not_confirmed_by_a_temperature():
+    """Both angles only rise, so that the measured ratio is too uncertain to contradict it."""
+    time = np.arange(600) * 0.05
+    noise = 1e-4 * np.random.default_rng(0).normal(size=600)
+    output = 0.6 * (1.0 - np.exp(-time / 5.0)) + noise
+    both = encoders(
+        6.0 * (1.0 - np.cos(0.05 * time)), output, np.round(1e9 * time).astype(np.int64)
+    )
+    recording = Recording(Path('gear'), 'gear', (), 600, both)
+    nowhere = Channel('', '')
+    result = commission([recording], Request(rotor=nowhere, output=nowhere, ratio=GearRatio(6)))
+    assert result.between is None
+    assert 'not have the ratio 6: the output does not follow the rotor' in str(result.answer)

@@ -35,7 +35,7 @@ from gear_kinematics.measurement.calibration.model import (
 )
 from gear_kinematics.measurement.calibration.terms import Samples, thinned
 from gear_kinematics.measurement.gate import NO_ENCODER
-from gear_kinematics.measurement.ratio import wrong_ratio
+from gear_kinematics.measurement.ratio import not_followed, wrong_ratio
 from gear_kinematics.measurement.recording import Array, Recording, RecordingError
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.share import version
@@ -121,6 +121,10 @@ def _result(
     deviation = values @ model.coefficients[0]
     constant = -float(deviation.mean())
     before, after, width, coverage = model.checked(values)
+    travels = [s.output[s.used] for s in samples]
+    motion = np.concatenate([travel - travel.mean() for travel in travels])
+    if wrong := not_followed(motion, before, ratio):
+        raise RecordingError(f'{", ".join(s.recording.name for s in samples)}: {wrong}')
     fitted = [*_fitted(model)]
     entries, terms = [entry for entry, _ in fitted], tuple(term for _, term in fitted)
     trends = sum(
@@ -174,7 +178,7 @@ def _result(
         [s.recording for s in samples],
         delays,
         refused,
-        np.concatenate([s.output[s.used] for s in samples]),
+        np.concatenate(travels),
         before,
         after,
     )

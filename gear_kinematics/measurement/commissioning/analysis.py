@@ -17,7 +17,7 @@ import numpy as np
 from gear_kinematics.kinematics.gear_ratio import GearRatio, tooth_pairs
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.commissioning.joint import Joint
-from gear_kinematics.measurement.ratio import RatioEstimate, estimate_ratio
+from gear_kinematics.measurement.ratio import RatioEstimate, estimate_ratio, not_followed
 from gear_kinematics.measurement.recording import Recording, RecordingError
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.transmission import transmission_figures
@@ -101,7 +101,12 @@ def commission(recordings: Sequence[Recording], request: Request) -> Commissioni
     joints = tuple(map(Joint.of, recordings))
     longest = max(joints, key=lambda joint: joint.travel)
     ratio, between, evidence = _decided(longest, request.ratio)
-    answer, encoders, known = evidence, longest.encoders, request.file or NodeParameters.load()
+    encoders, known = longest.encoders, request.file or NodeParameters.load()
+    if between:
+        motion = transmission_figures(encoders, between, known.transmission_error_travel)
+        if wrong := not_followed(motion.angle, motion.error, between):
+            between, evidence = None, wrong
+    answer = evidence
     speed = float(np.max(np.abs(encoders.speed(Fraction(1)))))
     both = encoders.rotor.seconds, encoders.seconds
     rotor, output = ((len(times) - 1) / np.ptp(times) for times in both)
@@ -122,8 +127,7 @@ def commission(recordings: Sequence[Recording], request: Request) -> Commissioni
         answer = what(ratio=exact, evidence=evidence, size=longest.rotor_range)
         values += _ratio(between, evidence, request)
         values += _zeros(joints, between, request)
-        travel = known.transmission_error_travel
-        if delay := transmission_figures(encoders, between, travel).delay:
+        if delay := motion.delay:
             late = Observation.LATE if delay.clear else Observation.NOT_LATE
             notes.append(late(delay=delay))
         else:
