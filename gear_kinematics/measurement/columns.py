@@ -31,7 +31,8 @@ ROLES = {
 _COUNTS = '4096'  # counts a turn, as an example
 _REVOLUTIONS = re.compile(r'(?i)servo_stats.*position|pos_estimate|pos_rel|pos_abs')
 """Names with which moteus and ODrive motor controllers give positions in revolutions."""
-_NUMBERED = re.compile(r'\W*\d+$|_[a-z]$')  # of time.1, as pandas repeats a name, and of time_a
+_NUMBERED = re.compile(r'(\W*\d+|_[a-z])(?=( ?[\[(].*)?$)')
+"""Ends of time.1, as pandas repeats a name, and of time_a, before any unit."""
 _MOTEUS = {'position', 'torque', 'q_current'}
 
 

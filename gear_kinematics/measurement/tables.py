@@ -179,8 +179,8 @@ class _Samples:
         self._clock, self.timed = clock, clock is not None
         self.series: dict[str, _Series] = {}
         for roles, kept in groups:
-            times, values = raw.get(clocks[roles[0]]), {role: data[role] for role in roles}
-            one = self._sampled(values, kept, times, alone=len(groups) == 1)
+            name, values = clocks[roles[0]], {role: data[role] for role in roles}
+            one = self._sampled(values, kept, name, raw.get(name), alone=len(groups) == 1)
             self.series |= dict.fromkeys(roles, one)
         angles = (role for role in self.found if role != 'torque')
         self._shown = {role: find_step(self.series[role].values[role]) for role in angles}
@@ -261,12 +261,13 @@ class _Samples:
         return found
 
     def _sampled(
-        self, data: dict[str, Array], kept: Array, times: Array | None, *, alone: bool
+        self, data: dict[str, Array], kept: Array, name: str, times: Array | None, *, alone: bool
     ) -> _Series:
-        """Return the kept rows in the order of time; `alone` if the table has no other series."""
+        """Return kept rows in the order of named times; `alone` if there are no other series."""
         if (left_out := np.count_nonzero(~kept)) and alone:
             self.remarks.append(Observation.ROWS_LEFT_OUT(rows=left_out))
-        stamp, chosen = stamps(self._clock, times, kept, self.remarks, self.faults, alone=alone)
+        clock = self._clock and self._clock._replace(name=name)
+        stamp, chosen = stamps(clock, times, kept, self.remarks, self.faults, alone=alone)
         values = {role: one[chosen] for role, one in data.items()}
         values = {role: np.where(np.abs(v) < _LEAST, 0.0, v) for role, v in values.items()}
         for role in values:

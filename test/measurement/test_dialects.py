@@ -450,6 +450,8 @@ ENCODERS = {
         [*np.pad([t, r], [(0, 0), (0, 1)], constant_values=np.nan),
          *np.pad([t, o], [(0, 0), (1, 0)], constant_values=np.nan)],
         'time,rotor,time.1,output', '{:.5f}').replace('nan', ''),
+    'times of each side in short, with units': lambda t, r, o: written(
+        [1e3 * t[1:], t[:-1], r[1:], o[:-1]], 't_m [ms],t_o [s],motor_pos,output_pos', '{:.5f}'),
     'times of each side in short': lambda t, r, o: written(
         [t[:-1], t[1:], r[:-1], o[1:]], 't_m,t_o,motor_pos,output_pos', '{:.5f}'),
     'temperatures of both sides': lambda t, r, o: written(
@@ -693,6 +695,9 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
          'are not in the same unit: give both units in the names'),
         (lambda t, r, o: written([t, r, o], 'time [100ns],rotor,output', 'x{:.2f}'),
          r'time \[100ns\]: no numbers nor ISO 8601; give another with --time-column$'),
+        (lambda t, r, o: written([t, r, t, o], 't_m,motor_pos,t_o,output_pos',
+                                 ['{:.2f}', '{:.5f}', lambda _: '', '{:.5f}']),
+         'the times in t_o: no numbers'),
         ('date Thu Nov 26 09:12:33 2026\nbase hex\n', 'a log of CAN frames: decode'),
         ('  can0  00000141   [8]  A1 00 00 00 00 00 00 00\n', 'a log of CAN frames: decode'),
         (' (1764230000.000000)  can0  141   [2]  A1 00\n', 'a log of CAN frames: decode'),
