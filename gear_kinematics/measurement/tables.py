@@ -155,9 +155,7 @@ class _Samples:
         units = {**table.units, **{one.name: one.unit for one in (clock, given) if one}}
         raw, clock = self._loaded(table, clock, {*clocks.values(), *own.values()})
         if sources.output_time and not (given and clock):
-            raise ValueError(
-                '--output-time-column needs both encoders, and --time-column of the rotor'
-            )
+            raise ValueError('--output-time-column needs both encoders, and --time-column')
         clocks |= self._own(own, raw, usual, units)
         if len({*clocks.values()}) == 1 and len(lengths := {*map(len, raw.values())}) > 1:
             number = ' and '.join(map(str, sorted(lengths)))
