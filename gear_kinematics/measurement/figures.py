@@ -175,7 +175,7 @@ def _gap(half: HalfLoop, torque: float) -> float:
     return float(half.angle[after] - half.angle[after - 1])
 
 
-def _spacing(ramps: Ramps) -> float:
+def _level_distance(ramps: Ramps) -> float:
     """Mean distance, N·m, of the levels around a torque, which may be steps of a staircase."""
     gaps = np.concatenate([np.abs(np.diff(half.torque)) for half in ramps.halves])
     return float(gaps @ gaps / gaps.sum())
@@ -202,7 +202,7 @@ def _lost_motion(ramps: Ramps, rated: float) -> Estimate | None:
 
 
 def _stiffness(ramps: Ramps, rated: float) -> tuple[MeasuredStiffness, ...]:
-    reach, still, spacing = min(rated, ramps.amplitude), _still(ramps), _spacing(ramps)
+    reach, still, spacing = min(rated, ramps.amplitude), _still(ramps), _level_distance(ramps)
     corners = (corner for share in STIFFNESS_SHARES if (corner := share * rated) < reach)
     found = []
     for low, high in pairwise((0.0, *corners, reach)):
@@ -230,13 +230,14 @@ def _overall(ramps: Ramps) -> Estimate | None:
     """Slope of the line through both halves of a side, from zero to the peak and back."""
     compliances: list[float] = []
     short: list[float] = []
+    spacing = _level_distance(ramps)
     # Beside the greatest sample, smoothed, the peak lies between two samples.
     for less, found in ((0.0, compliances), (1.0, short)):
         positive: list[float] = []
         negative: list[float] = []
         for loading, unloading in ramps.sides:
             high = min(abs(loading.end), abs(unloading.start))
-            high -= less * min(_spacing(ramps) + loading.blur, 0.5 * high)
+            high -= less * min(spacing + loading.blur, 0.5 * high)
             there, back = _compliance(loading, 0.0, high), _compliance(unloading, 0.0, high, -1.0)
             (positive if loading.rising else negative).append(0.5 * (there + back))
         found += [0.5 * sum(pair) for pair in zip(positive, negative, strict=False)]
