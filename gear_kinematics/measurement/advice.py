@@ -136,10 +136,11 @@ def _examples(table: TableFile) -> Iterator[Mapping[str, str]]:
     ]
     torques = [name for name in names if _TORQUE.search(name) or units[name] in TORQUE_UNITS]
     # Of columns without names, the first that only rises has times, unless there are but two.
-    rises = rising(table).get('time', '')
-    left = [name for name in angles if name != rises]
-    if _NO_NAME.fullmatch(rises) and (left[1:] or not all(_rises(table, k) for k in left)):
-        angles = left
+    nameless = {*filter(_NO_NAME.fullmatch, angles)}
+    if nameless and (rises := rising(table).get('time')) in nameless:
+        left = [name for name in angles if name != rises]
+        if left[1:] or not all(_rises(table, k) for k in left):
+            angles = left
     likely = [*filter(_LIKELY.search, angles)]
     raw, _ = table.load((likely if len(likely) > 1 else angles)[:_TRIED])
     raw = {name: array.astype(float) for name, array in raw.items() if array.dtype.kind in 'iuf'}
