@@ -38,8 +38,8 @@ from gear_kinematics.wire.topics import JOINT_STATES, LOAD_TOPICS, TRANSMISSION_
 
 _FRAME = 'stator'
 _TOPICS = Topics()
-_DOUBTS = {FindingCause[one] for one in ('REPEATED_STAMPS', 'SHORT_SECONDS', 'JUMPED')}
-_OF_COUNTS = {FindingCause.BEYOND_LIMITS}  # of missing or additional ones alone
+_DOUBTS = {FindingCause.REPEATED_STAMPS, FindingCause.SHORT_SECONDS, FindingCause.JUMPED}
+_OF_COUNTS = {FindingCause.BEYOND_LIMITS}  # doubts of missing or additional outputs alone
 _NONE: Mapping[str, str] = MappingProxyType({})
 
 
