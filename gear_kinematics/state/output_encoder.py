@@ -59,8 +59,10 @@ class OutputEncoder:
         self._farthest = CLOCK_RESET + longest  # ns, between the latest stamps of both encoders
         self.comparison.configure(max_gap=longest, travel=parameters.transmission_error_travel)
         self.slip_watch = SlipWatch(parameters)
-        self.reference = self._turn_reference if parameters.absolute else None
         self._segment: int | None = None
+        self.reference = self._turn_reference if parameters.absolute else None
+        if self.reference:
+            self.reference.restart()
 
     @property
     def clocks_apart(self) -> Fact | None:

@@ -217,6 +217,7 @@ class TurnReference:
                     alike = decision.budget <= _ALIKE * self._least_budget
                     if not referenced and alike and not doubt():
                         self._refer(decision)
+                        self.restart()
                         return ()
                 elif decision.refuted and decision.budget < self._least_budget:
                     self.refuted = decision
