@@ -43,7 +43,10 @@ class Actuator:
         """Number of gaps that could hide a turn, and of all else that begins a new segment."""
 
     def note(self, now: float) -> None:
-        """Note a valid message of the rotor, and its mean speed over `_SPEED_SPAN`, 0 at first."""
+        """Note a valid message of the rotor, and its mean speed over `_SPEED_SPAN`, 0 at first.
+
+        Where a new count begins, the last known speed remains until the next can be measured.
+        """
         state = self.state
         state.monitor.last_input = self._seen = now
         sample = state.sample
@@ -56,8 +59,6 @@ class Actuator:
             if gaps != self._gaps:  # whole turns may be missing
                 moved = math.remainder(moved, turns.period or math.inf)
             self._speed = moved / (sample.stamp - self._before.stamp) * SECOND
-        else:
-            self._speed = 0.0
         self._before, self._origin, self._gaps = sample, origin, gaps
         self._due = sample.stamp + _SPEED_SPAN
 

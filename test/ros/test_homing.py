@@ -93,6 +93,19 @@ def test_shaft_that_turns_is_not_homed(homing, positions, period, velocity, refu
         assert node.get_parameter('rotor_zero').value == 0.0
 
 
+@pytest.mark.parametrize('again', [True, False])
+def test_shaft_that_turns_is_not_homed_after_another_zero_or_clock(homing, again):
+    """2 rad/s at the rotor are 0.105 rad/s at the output."""
+    node = homing()
+    drive(node, [2e-3 * k for k in range(2000)], MILLISECOND)
+    if again:
+        drive(node, [4.0])  # at 1 ms, as of a clock that was set back
+    else:
+        node.set_parameters([Parameter('rotor_zero', value=1.0)])
+        drive(node, [4.0], 2001 * MILLISECOND)
+    assert home(node).message.startswith('the shaft turns at 0.105 rad/s')
+
+
 @pytest.mark.parametrize(('step', 'refused'), [(1.0, '1.05'), (0.0, '')])
 def test_shaft_that_turns_is_not_homed_where_each_gap_could_hide_a_turn(homing, step, refused):
     """A single-turn encoder at 20 Hz; 20 rad/s at the rotor are 1.05 rad/s at the output."""
