@@ -42,10 +42,7 @@ _LIKELY = re.compile(
 _NO_NAME = re.compile(r'(?i)(.*\[|(data|ch|channel|column|signal|var|axis|joint|j)[ _]?)?\d+\]?')
 """Names of columns that only count them, or elements of a matrix, or joints."""
 _WORD = re.compile(r'(?i)(?!nan|null|none|inf)[^\W\d]')  # in columns of states or names
-_TORQUE = re.compile(
-    rf'(?i)^(?!.*({_WANTED})).*'
-    r'(torq|effort|moment(?!um)|tau|load|n[·.* -]?m\b|^[tm][xyz]$)'
-)
+_TORQUE = re.compile(r'(?i)torq|effort|moment(?!um)|tau|load|n[·.* -]?m\b|^[tm][xyz]$')
 """Words in names of columns that are proposed as torques."""
 
 
@@ -134,7 +131,11 @@ def _examples(table: TableFile) -> Iterator[Mapping[str, str]]:
         or (units[name] not in others and '/' not in units[name] and _LIKELY.search(name))
         or _NO_NAME.fullmatch(name)
     ]
-    torques = [name for name in names if _TORQUE.search(name) or units[name] in TORQUE_UNITS]
+    torques = [
+        name
+        for name in filterfalse(re.compile(f'(?i){_WANTED}').search, names)
+        if _TORQUE.search(name) or units[name] in TORQUE_UNITS
+    ]
     # Of columns without names, the first that only rises has times, unless there are but two.
     nameless = {*filter(_NO_NAME.fullmatch, angles)}
     if nameless and (rises := rising(table).get('time')) in nameless:
@@ -146,9 +147,10 @@ def _examples(table: TableFile) -> Iterator[Mapping[str, str]]:
     raw = {name: array.astype(float) for name, array in raw.items() if array.dtype.kind in 'iuf'}
     pairs = [*_alike(raw, {name: ANGLE_UNITS.get(unit) or 0.0 for name, unit in units.items()})]
     yield from ({'rotor': rotor, 'output': output} for sure, rotor, output in pairs if sure)
-    for angle, torque in product(likely, torques):
-        if angle != torque:
-            yield {'angle': angle, 'torque': torque}
+    # Those of the same actuator share most words.
+    words = {name: {*meaning(name).words} for name in names}
+    both = sorted(product(likely, torques), key=lambda pair: -len(words[pair[0]] & words[pair[1]]))
+    yield from ({'angle': angle, 'torque': torque} for angle, torque in both if angle != torque)
     yield from ({'rotor': rotor, 'output': output} for sure, rotor, output in pairs if not sure)
 
 

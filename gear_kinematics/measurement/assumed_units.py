@@ -56,6 +56,8 @@ def against(
     if not step:
         if whole and len(np.unique(values)) > _WHOLE:
             return 'has whole numbers', 'Nmm'
+        if not any(meaning(word).role == 'torque' for word in says.words):
+            return 'does not say that it is a torque', 'N·m'
         return ('is raw', 'N·m') if 'raw' in says.words else None
     if not (says.role or column.unit):
         likely = 'rad' if np.ptp(numbers) < TURN else 'deg'

@@ -31,8 +31,8 @@ ROLES = {
 _COUNTS = '4096'  # counts a turn, as an example
 _REVOLUTIONS = re.compile(r'(?i)servo_stats.*position|pos_estimate|pos_rel|pos_abs')
 """Names with which moteus and ODrive motor controllers give positions in revolutions."""
-_NUMBERED = re.compile(r'(\W*\d+|_[a-z])(?=( ?[\[(].*)?$)')
-"""Ends of time.1, as pandas repeats a name, and of time_a, before any unit."""
+_NUMBERED = re.compile(r'(\W*\d+|_[a-z]|(?<=^t)[mol])(?=( ?[\[(].*)?$)')
+"""Ends of time.1, as pandas repeats a name, of time_a, and of tm, before any unit."""
 _MOTEUS = {'position', 'torque', 'q_current'}
 
 
@@ -149,7 +149,8 @@ def find_columns(
 def own_clocks(names: Sequence[str], columns: Mapping[str, Column]) -> dict[str, str]:
     """Find the columns of times, by role, that columns of values may have of their own.
 
-    It is that of the same side of the gear, or the last one before the values.
+    It is that of the same side of the gear, or the last one before the values; where two times are
+    numbered, but not one each before the values, the order of both is the same.
     """
     times = {name: meaning(name) for name in names if meaning(name).role == 'time'}
     found = {}
@@ -160,6 +161,13 @@ def own_clocks(names: Sequence[str], columns: Mapping[str, Column]) -> dict[str,
         sure = [one for one in before if not meaning(_NUMBERED.sub('', one)).unsure]
         if same or sure:
             found[role] = (same or sure)[-1]
+    if len({*found.values()}) < 2:  # noqa: PLR2004, both have the same, or one has none
+        plain = {one: _NUMBERED.sub('', one) for one in times}
+        alike = [one for one in times if plain[one] == next(iter(plain.values()))]
+        roles = {column.name: role for role, column in columns.items() if role != 'torque'}
+        sides = [roles[name] for name in names if name in roles]
+        if len(alike) == len(sides):
+            found |= dict(zip(sides, alike, strict=True))
     return found
 
 

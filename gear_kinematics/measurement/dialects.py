@@ -164,8 +164,6 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
         every = 2 ** max(0, math.ceil(math.log2(size / len(head) * len(lines) / _MOST_ROWS)))
         own = {name: layout.names.index(name) for name in wanted if name not in elements}
         places = sorted({*own.values()} | (beside if len(own) < len(wanted) else set()))
-        if layout.interval and 0 in places:
-            places = sorted({*places, 1})  # that of each segment
         filled = sample[places].fillna('') != ''
         usual = filled.any().tolist()
         # Of series that take turns, other steps leave out all but one.
@@ -187,12 +185,12 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
         values = {}
         for name in wanted:
             column = columns[name]
-            if layout.interval and own.get(name) == 0:  # times only below repeated names
-                others = frame[1][column == 'Delta_X'].astype(str).str.replace(',', '.')
-                if any(float(other) != layout.interval for other in others):
-                    raise ValueError('the intervals of its segments differ: save one as a file')
-                steps = every * (column.isna().cumsum() - 1)
-                column = (layout.interval * steps).where(column.isna())
+            if layout.interval and own.get(name) == 0:
+                if column.notna().any():  # such as Delta_X, in a further head
+                    raise ValueError(
+                        'has several segments, with unknown pauses: save it with times (X values)'
+                    )
+                column = layout.interval * every * pd.Series(range(len(column)))
             column = checked(column, name, layout.names, layout.units.get(name, ''))
             values[name] = numbers(column, layout.point)
         return values, every

@@ -46,6 +46,9 @@ def _parquet(path: Path) -> TableFile:
 
     columns: dict[str, Any] = {}
     units: dict[str, str] = {}
+    names = pq.read_schema(path).names
+    if repeated := [name for name in names if names.count(name) > 1]:
+        raise ValueError(f'more than one column {repeated[0]!r}')
     table = pq.read_table(path)
     while any(map(pa.types.is_struct, table.schema.types)):
         table = table.flatten()

@@ -41,7 +41,7 @@ _CERTAIN = {'time', 'stamp', 'timestamp', 'timestamps', 'zeit', 'zeitstempel'}
 _SPEEDS = {'rpm', 'rps', 'dps', 'cps'}
 _IN_BRACKETS = {'rotation': 'rev', 'min': 'minutes', 'h': 'hours'}
 """Units that mean something else as words of a name, as in position_min."""
-_OF_ONE = re.compile(r't_[a-z]+( ?[\[(].*)?|.*[a-z][./]t')
+_OF_ONE = re.compile(r't(_[a-z]+|[mol])( ?[\[(].*)?|.*[a-z][./]t')
 """Names that may be the times of one side, such as t_m, but not T_m, a torque or temperature."""
 _NO_UNIT = re.compile(r'-|none|n/a|1|:|utc.*|.*h:m+.*')
 

@@ -282,11 +282,10 @@ ENCODERS = {
     'LabVIEW, without times': lambda t, r, o: written(
         [0 * t, r, o], 'X_Value\tMotor angle [rad]\tOutput angle [rad]\tComment',
         (lambda _: '', '{:.5f}', '{:.5f}'), '\t'),
-    'LabVIEW, with an interval in place of times, in two segments': lambda t, r, o: ''.join(
-        written([at, rotor, out], '\nSamples\t660\t660\nX_Dimension\tTime\tTime\nX0\t0.0\t0.0\n'
-                'Delta_X\t0.040\t0.040\n***End***\nX_Value\tMotor angle\tOutput angle\tComment',
-                (lambda _: '', '{:.5f}', '{:.5f}'), '\t')
-        for at, rotor, out in zip(*(np.split(one, 2) for one in (t, r, o)), strict=True)),
+    'LabVIEW, with an interval in place of times': lambda t, r, o: written(
+        [t, r, o], '\nSamples\t1320\t1320\nX_Dimension\tTime\tTime\nX0\t0.0\t0.0\n'
+        'Delta_X\t0.040\t0.040\n***End***\nX_Value\tMotor angle\tOutput angle\tComment',
+        (lambda _: '', '{:.5f}', '{:.5f}'), '\t'),
     'names behind a word, as their units are': plain(
         'Units;ms;deg;deg\ntime;rotor;output', ';', angle=DEG, unit=1e3),
     'units above names': plain('ms,deg,deg\ntime,rotor,output', angle=DEG, unit=1e3),
@@ -684,8 +683,8 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
             written([t[:99], r[:99], o[:99]],
                     f'X_Dimension\tTime\tTime\nDelta_X\t{interval}\t{interval}\n***End***\n'
                     'X_Value\tMotor angle\tOutput angle\tComment',
-                    (lambda _: '', '{:.5f}', '{:.5f}'), '\t') for interval in ('0.04', '0.02')),
-         'intervals of its segments differ'),
+                    (lambda _: '', '{:.5f}', '{:.5f}'), '\t') for interval in ('0.04', '0.04')),
+         r'several segments, with unknown pauses: save it with times \(X values\)'),
         (lambda t, r, o: 'time,position\n' + ''.join(
             f'{at:.2f},"[{rotor:.5f}{f", {out:.5f}" if at > 45.0 else ""}]"\n'
             for at, rotor, out in zip(t, r, o, strict=True)),
@@ -711,6 +710,9 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         ('time,angle,torque\ns,mil,Nm\n0,1,2\n', 'the unit mil is not known'),
         ('rotor,output\n1.5,20\n359.5,30.5\n', 'rotor has turns of 360'),
         ('Data1,torque\n0,2\n', 'Data1 does not say that it is an angle: .* --angle-unit'),
+        *((f'time,angle,{name}\n0,0,2\n1,0.001,3\n',
+           f'{name} does not say that it is a torque: .* --torque-column .{name} .N·m')
+          for name in ('load', 'Iq')),
         ('arm_moves_freely', 'the output turns by 100° under torque'),
         ('degrees_without_unit', 'speeds of .* as in degrees: .* --angle-unit'),
         ('vesc_tool', 'not say .* an angle: .* --angle-unit'),
@@ -724,6 +726,8 @@ def test_what_speaks_against_a_unit_is_said(tmp_path, gear, reference, table, wr
         path = saved(tmp_path, written_as) if '\n' in written_as else table(written_as)
         if angle := re.search(r'angle_\w*|Data1', written_as):
             given = {'angle': angle[0]}
+        if torque := re.search(r'load$|Iq', written_as, re.MULTILINE):
+            given = {'angle': 'angle', 'torque': torque[0]}
     else:
         path = saved(tmp_path, written_as(*reference('encoders')))
     counts = 4096 if 'three decimals' in cause else None
@@ -1132,6 +1136,12 @@ def daqmx(path, _, angle, torque):
         writer.write_segment(channels)
 
 
+def twice(path, time, rotor, output):
+    pa, pq = pytest.importorskip('pyarrow'), pytest.importorskip('pyarrow.parquet')
+    columns = ['time', 'rotor', 'rotor', 'output']
+    pq.write_table(pa.table([time, rotor, rotor, output], names=columns), path)
+
+
 def saved_mat(columns):
     return lambda path, *data: pytest.importorskip('scipy.io').savemat(path, columns(*data))
 
@@ -1148,6 +1158,7 @@ TABLE = np.array([[0xDD000000], [2], [1], [1], [1], [1]], np.uint32)  # the refe
     ('r.mat', saved_mat(lambda *_: {'T': TABLE}), NO_NUMBERS),
     ('r.mat', saved_mat(lambda t, r, o: {'tout': t[1:], 'rotor': r, 'output': o}),
      'columns of 1319 and 1320 rows, without times of each'),
+    ('r.parquet', twice, "more than one column 'rotor'"),
     ('r.ods', lambda path, *_: path.write_bytes(b'PK\x03\x04'),
      r'bags are .mcap.* tables .csv.*\.parquet.* as \.csv\.gz, \.csv\.zst, \.csv\.zip'),
 ])  # fmt: skip
@@ -1188,6 +1199,26 @@ def test_two_times_that_are_apart_and_may_be_of_one_encoder_each_are_asked_for(
         assert both.before[0] == 12
     recording = read_table(path, Sources(time=usual if asked else ''), gear.gear.gear_ratio)
     assert recording.columns[0] == f'time [s] from {usual}'
+
+
+@pytest.mark.parametrize(
+    'names',
+    [
+        'rotor,output,t,t.1',
+        'rotor,time1,output,time2',
+        'time_a,time_b,rotor,output',
+        'tm,rotor,to,output',
+    ],
+)
+def test_two_times_are_asked_for_wherever_they_stand(tmp_path, gear, reference, names):
+    t, r, o = reference('encoders')
+    times = iter([t, t + 0.5])
+    angles = {'rotor': r, 'output': o}
+    columns = [angles[k] if k in angles else next(times) for k in names.split(',')]
+    path = saved(tmp_path, written(columns, names, '{:.5f}'))
+    with pytest.raises(RecordingError, match=r'may be the times of one encoder each') as told:
+        read(path, gear)
+    assert read(path, gear, followed(told.value)).both.before[0] == 12
 
 
 def test_times_that_may_be_of_the_torque_alone_are_named(tmp_path, gear, reference):
