@@ -91,6 +91,7 @@ class VelocityField:
         """Forget the readings, but not what was found."""
         self.due = 0  # ns, the stamp from which on the next reading is wanted
         self.quiet_until = 0  # ns: `due`, or 0 while the velocities are not to be used
+        self._pause_until = 0  # ns, while only a stuck encoder is looked for
         self._total, self._count = 0.0, 0  # of the velocities since the last reading
         self._last: float | None = None  # rad/s, the velocity at the last reading
         self._readings: list[tuple[int, float, float]] = []
@@ -172,6 +173,15 @@ class VelocityField:
         self.due = stamp + SPAN
         readings = self._readings
         self.add(velocity)
+        stuck = self._stuck(stamp, position, velocity)
+        if stuck or stamp < self._pause_until:
+            readings[:] = [(stamp, position, 0.0)]
+            self._last, self._total, self._count = velocity, 0.0, 0
+            if stuck:
+                self._candidate = VelocityMeaning.UNKNOWN
+                self._decide(math.inf)
+            self.quiet_until = 0 if stuck else self.due
+            return
         if not self._count or (readings and stamp > readings[-1][0] + 2 * SPAN):
             readings.clear()
         travel = max(_TRAVEL, _NOISES * noise)
@@ -190,6 +200,20 @@ class VelocityField:
             if self._compare(travel, stride):
                 break
         self.quiet_until = 0 if self.contradicts else self.due
+
+    def _stuck(self, stamp: int, position: float, velocity: float | None) -> bool:
+        """Return whether velocities that were right go on while the position does not change.
+
+        Behind a stop, those of a filter fall.
+        """
+        right = self.finding is VelocityMeaning.RIGHT and self._readings
+        if not right or velocity is None or self._last is None:
+            return False
+        (since, before, _), mean = self._readings[-1], self._total / self._count
+        least = max(0.5 * abs(mean), (1.0 - _STEADY) * abs(self._last))
+        goes_on = velocity * mean >= least * abs(mean) and 2.0 * self._last * mean >= mean * mean
+        travel = abs(mean) * (stamp - since) * 1e-9
+        return goes_on and position == before and travel >= _TRAVEL
 
     def _follow(self, travel: float, noise: float) -> None:
         """Decide on a motion of more than `travel`, rad, however unsteady, of the latest readings.
@@ -315,7 +339,7 @@ class VelocityField:
             self.finding, self.factor = found, factor
             self.contradicts = found is not VelocityMeaning.RIGHT
             if not self.contradicts:
-                self.due = self._readings[-1][0] + SPAN + _PAUSE
+                self._pause_until = self._readings[-1][0] + _PAUSE
         self._candidate = found
 
     def _meaning_of(self, factor: float) -> VelocityMeaning:

@@ -290,6 +290,26 @@ def test_velocities_of_an_unsteady_motion_show_that_an_encoder_is_stuck(velocity
     assert rotor.velocity_field.positions_stand == stuck
 
 
+@pytest.mark.parametrize('begin', [1.2, 1.65])
+@pytest.mark.parametrize('rate', [40, 500])
+def test_an_encoder_that_is_stuck_beside_right_velocities_is_named_within_0_2_s(rate, begin):
+    def fields(time):
+        return 60.0 * min(time, begin) + 0.1 * math.sin(20.0 * min(time, begin)), 60.0
+
+    rotor, _ = heard(fields, rate, begin + 0.2 + 1.5 / rate)
+    assert rotor.velocity_field.positions_stand
+
+
+@pytest.mark.parametrize('lag', [0.02, 0.1, 0.5])
+@pytest.mark.parametrize('stop', [1.2, 1.65])
+def test_filtered_velocities_of_a_rotor_that_stops_show_no_stuck_encoder(stop, lag):
+    def fields(time):
+        return 100.0 * min(time, stop), 100.0 * math.exp(-max(0.0, time - stop) / lag)
+
+    rotor, _ = heard(fields, 200, 2.5)
+    assert rotor.velocity_field.meaning is None
+
+
 @pytest.mark.parametrize('noise', [0.0, 0.002])
 @pytest.mark.parametrize(('speed', 'duration'), [(10.0, 2.0), (-1.0, 10.0)])
 def test_velocities_of_an_encoder_that_is_stuck_contradict_it(speed, duration, noise):
