@@ -14,6 +14,7 @@ from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.measurement.recording import MOST_MESSAGES
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.report.document import counted
 from gear_kinematics.state.effort_field import EffortField, questioned
 from gear_kinematics.state.reach import FLOOR
 from gear_kinematics.state.rotor_input import RotorInput
@@ -62,6 +63,8 @@ def questions(
     repeated = int(np.count_nonzero(np.diff(own) == 0))
     if 2 * repeated > len(own):
         yield Observation.STAMPS_REPEAT(count=repeated, total=len(own))
+    if unstamped := int(np.count_nonzero(states.joint_found & (states.stamp == 0))):
+        yield Condition.UNSTAMPED(messages=counted(unstamped, 'message'))
     stamp, values = _in_order(states, stamp)
     if len(stamp) < _FEWEST:
         return

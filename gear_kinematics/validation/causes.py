@@ -90,6 +90,7 @@ class FindingCause(Enum):
     VELOCITY_IS = '{rotor.velocity_is}'
     BEYOND_LIMITS = '{rotor.beyond_limits}'
     OUTSIDE = '{rotor.outside}'
+    EFFORT_IS = '{rotor.effort_is}'
     SET_BACK = '{rotor.set_back}'
     STOPPED = '{rotor.joint} stopped {seconds:.1f} s before other joints of {rotor.topic}'
     OF_OTHERS = '{messages} of {rotor.topic} for other joints, which is no fault'

@@ -20,6 +20,7 @@ from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.state.turn_reference import farthest_outside
+from gear_kinematics.validation.input_health import MANY_REPEATED
 from gear_kinematics.wire.batches import join_joint_states
 from gear_kinematics.wire.topics import (
     BODY_POSES,
@@ -187,11 +188,13 @@ def _answers(
 def _doubts(rotor: RotorInput, effort: float, outside: Fact | None) -> list[Fact]:
     """Return what seems wrong with an input, by its state at the end and its greatest effort."""
     unstamped = Condition.UNSTAMPED(messages=counted(rotor.zero_stamps, 'message'))
+    repeated = Condition.REPEATED_STAMPS(count=rotor.duplicates)
     doubts = (
         rotor.why_lost,
         rotor.plausibility.beyond_limits,
         rotor.disorder.clock_fault,
         unstamped if rotor.zero_stamps else None,
+        repeated if rotor.duplicates > MANY_REPEATED * rotor.received else None,
         rotor.velocity_field.in_recording,
         questioned(effort),
         outside,

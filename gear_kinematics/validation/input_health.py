@@ -6,7 +6,10 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.state.effort_field import questioned
 from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.rotor_samples import RotorSamples
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.report import Finding, Gap, InputReport
@@ -19,7 +22,7 @@ _MIN_GAP = 5.0  # median periods
 _LEAST_TIME = 0.5  # median periods; the least time that a step is taken to need
 _MAX_LISTED = 10  # listed gaps
 _FRACTION = 1e-3  # s; longest time within a second of nanoseconds that are µs
-_MANY_REPEATED = 0.25  # share of all stamps, which drivers do not reach by repeating a few
+MANY_REPEATED = 0.25  # share of all stamps, which drivers do not reach by repeating a few
 
 
 class InputHealth:
@@ -36,14 +39,17 @@ class InputHealth:
         self._longest: list[Gap] = []
         self._overspeed = 0
         self._fastest = 0.0
+        self._effort = 0.0  # the greatest of the rotor, N·m
         self.outside: Fact | None = None  # the first output angle outside of its range
 
-    def update(self, stamp: NDArray[np.int64], rotor_angle: Array) -> None:
-        """Add the next samples: stamps in ns, angles in rad, (n,)."""
+    def update(self, samples: RotorSamples) -> None:
+        """Add the next samples."""
+        stamp, rotor_angle = samples.stamp, TURN * samples.turns + samples.angle
         if not len(stamp):
             return
         if self._first_stamp is None:
             self._first_stamp = int(stamp[0])
+        self._effort = float(np.fmax.reduce(np.abs(samples.effort), initial=self._effort))
         last_stamp, last_angle = self._last or (stamp[0], rotor_angle[0])
         self._last = int(stamp[-1]), float(rotor_angle[-1])
         forward, period, duration = _periods(stamp, int(last_stamp))
@@ -67,6 +73,7 @@ class InputHealth:
         timed = 2 * rotor_input.zero_stamps <= rotor_input.received
         timed &= not rotor_input.plausibility.jumped
         lost = rotor_input.why_lost  # gaps are counted
+        no_effort = Condition.EFFORT_IS_ZERO() if rotor_input.effort_field.absent else ''
         return InputReport(
             topic=topic,
             joint=rotor_input.parameters.rotor_joint,
@@ -92,6 +99,7 @@ class InputHealth:
             set_back=str(rotor_input.disorder.clock_fault or ''),
             beyond_limits=str(rotor_input.plausibility.beyond_limits or ''),
             outside=str(self.outside or ''),
+            effort_is=str(questioned(self._effort) or no_effort),
         )
 
 
@@ -109,7 +117,7 @@ def _periods(
 
 def _repeats_stamps(rotor: InputReport) -> Iterator[Finding]:
     """Yield that too many stamps repeat to match outputs with inputs by them."""
-    if rotor.duplicates > _MANY_REPEATED * rotor.valid:
+    if rotor.duplicates > MANY_REPEATED * rotor.valid:
         yield Finding(FindingCause.REPEATED_STAMPS, values={'rotor': rotor})
 
 
@@ -142,6 +150,7 @@ _NOTED = (
     'jumped',
     'jumps',
     'outside',
+    'effort_is',
     'velocity_is',
     'beyond_limits',
     'set_back',

@@ -122,6 +122,7 @@ class InputReport:
     velocity_is: str = ''  #: what velocities that contradict the positions seem to be; or ''
     beyond_limits: str = ''  #: speed and acceleration beyond their limits, in words; or ''
     outside: str = ''  #: an output angle outside of `output_range`, in words; or ''
+    effort_is: str = ''  #: that efforts are too large, or 0 throughout the motion; or ''
     set_back: str = ''  #: the clock's last step back, or that it is of another unit; or ''
     overspeed: int = 0  #: steps faster than `max_rotor_speed`
     max_speed: float = 0.0  #: greatest speed between two positions, rad/s

@@ -14,7 +14,6 @@ from gear_kinematics.bag import MessagesByTopic
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.correction.corrector import Correction
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.loads import LoadEstimator
@@ -225,7 +224,7 @@ class Validator:
         was_real = field.real
         self.samples = samples = self._state.samples(messages.data, messages.received)
         self._inputs.update(samples.received, samples.stamp, samples.rejected)
-        self._health.update(samples.stamp, TURN * samples.turns + samples.angle)
+        self._health.update(samples)
         columns = {name: getattr(samples, name) for name, _ in SAMPLES[4:]}
         columns['number'] = first_number(samples.segment) + self._samples
         columns['number'] += np.arange(len(samples.stamp))

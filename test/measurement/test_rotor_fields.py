@@ -74,6 +74,12 @@ def test_stamps_that_repeat_are_named(tmp_path):
     assert asked == Observation.STAMPS_REPEAT(count=792, total=800)
 
 
+def test_stamps_that_are_missing_are_named():
+    data = [rotor_bytes(0, position=[float(position)]) for position in ROTOR]
+    [asked] = questions(data, stamps(TIMES).tolist(), 'rotor')
+    assert asked == Condition.UNSTAMPED(messages='800 messages')
+
+
 @pytest.mark.parametrize('wrap', [0.0, math.tau, 25.0])
 @pytest.mark.parametrize('readings', [0, 2, 300])
 def test_steps_that_no_rotor_can_make_are_named(readings, wrap, tmp_path):

@@ -60,13 +60,17 @@ def rotor_only(tmp_path) -> Path:
     return path
 
 
-def test_an_effort_of_zero_throughout_the_motion_makes_outputs_doubtful(tmp_path):
+@pytest.mark.parametrize(('effort', 'tick', 'doubt'), [
+    (0.0, 1, Condition.EFFORT_IS_ZERO()),
+    (1.0, SECOND // 50, Condition.REPEATED_STAMPS(count=50)),
+])  # fmt: skip
+def test_efforts_of_zero_and_repeated_stamps_make_outputs_doubtful(tmp_path, effort, tick, doubt):
     stamps = range(SECOND, 2 * SECOND, SECOND // 100)
-    data = [rotor_bytes(t, position=[t / SECOND], effort=[0.0]) for t in stamps]
+    data = [rotor_bytes(t - t % tick, position=[t / SECOND], effort=[effort]) for t in stamps]
     messages = [('/rotor_state', t, each) for t, each in zip(stamps, data, strict=True)]
     types = {'/rotor_state': TYPES['/rotor_state']}
     done = run(write_bag(tmp_path / 'in', messages, types), tmp_path / 'out', config())
-    assert done.doubts == {'': [Condition.EFFORT_IS_ZERO()]}
+    assert done.doubts == {'': [doubt]}
 
 
 @pytest.mark.parametrize('compression', ['none', 'zstd'])

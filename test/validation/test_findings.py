@@ -25,6 +25,7 @@ ROTOR = InputReport(
     jumps=2,
     set_back='the clock was set back by 0.3 s',
     outside='the output, at -10.00°, is outside of output_range, 0.00° to 270.00°',
+    effort_is='efforts of up to 1500 N·m',
     of_others=12,
     zero_stamps=3,
     duplicates=2004,

@@ -244,6 +244,15 @@ def test_zeros_for_velocities_may_have_been_known_from_before_a_short_recording(
     assert (report.verdict == Verdict.PASS) is passes
 
 
+@pytest.mark.parametrize(('effort', 'named'), [
+    (0.0, 'the effort is 0 throughout the motion, and left out'),
+    (-1500.0, 'efforts of up to 1500 N·m at the rotor'), (5.0, ''),
+])  # fmt: skip
+def test_efforts_that_are_no_torques_are_named(recorded, config, effort, named):
+    report = validate(change_all(recorded, ROTOR, fill('effort', effort)), config)
+    assert report.rotor.effort_is[: len(named) or None] == named
+
+
 @pytest.mark.parametrize('value', [1.4e154, -1e200, 1.7976931348623157e308, 5e-324])
 @pytest.mark.parametrize('topic', [ROTOR, OUTPUT])
 @pytest.mark.parametrize('field', FIELDS)
