@@ -22,10 +22,13 @@ def call(name: str, kind: type = Trigger, **values: bool) -> None:
 
 
 parser = ArgumentParser(description=__doc__)
-parser.add_argument('what', help='wear, power_cycle, or the CSV file to write')
+parser.add_argument('what', help='wear, power_cycle, or the .csv file to write')
+what, words = parser.parse_args().what, {'wear', 'power_cycle'}
+if not (what in words or what.endswith('.csv')):
+    parser.error(f'{what} is neither wear nor power_cycle, nor the name of a .csv file')
 rclpy.init()
 node, output, resting = rclpy.create_node('bench'), [JointState(effort=[nan])], 0.001  # rad/s
-if (what := parser.parse_args().what) in {'wear', 'power_cycle'}:
+if what in words:
     raise SystemExit(call(what))
 loads = node.create_publisher(Float64, '/load_torque', 10)
 call('lock_rotor', SetBool, data=True)  # who answers has discovered the publisher before

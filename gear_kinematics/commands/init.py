@@ -139,7 +139,7 @@ def _ratios(options: argparse.Namespace, joints: Sequence[str]) -> dict[str, Gea
                 f'Exact ratio of {gear}, such as 1457/26, negative if the output turns against '
                 f'the rotor{again}: '
             )
-            ratio = GearRatio.parse(ask(question) or before)
+            ratio = ask(question, lambda answer: GearRatio.parse(answer or before))  # noqa: B023, at once
             before = str(ratio)
         ratios[joint] = ratio
     return ratios

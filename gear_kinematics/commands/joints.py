@@ -2,10 +2,10 @@
 """Questions to the user about which of the joints in live or recorded messages is meant."""
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import groupby
 from operator import attrgetter
-from typing import Literal
+from typing import Literal, TypeVar
 
 from gear_kinematics.commands.output import complain
 from gear_kinematics.measurement.commissioning.analysis import Channel
@@ -13,6 +13,7 @@ from gear_kinematics.report.document import printable
 from gear_kinematics.wire.nearest import among, listed, nearest
 from gear_kinematics.wire.topics import OUTPUT_ENCODER, ROTOR_STATE, TOPICS, base_name
 
+_T = TypeVar('_T')
 _NO_JOINTS = f'There is none on topics of type {TOPICS[ROTOR_STATE].type}.'
 
 
@@ -21,13 +22,21 @@ def can_ask() -> bool:
     return sys.stdin.isatty() and sys.stdout.isatty()
 
 
-def ask(question: str) -> str:
-    """Return the answer to a question; raises ValueError if the input ends, as by Ctrl-D."""
-    try:
-        return input(question).strip()
-    except EOFError as error:
-        print()
-        raise ValueError('no answer was given, and nothing is written') from error
+def ask(question: str, meaning: Callable[[str], _T]) -> _T:
+    """Return the meaning of an answer; where that raises ValueError, say why and ask again.
+
+    Raises ValueError if the input ends, as by Ctrl-D.
+    """
+    while True:
+        try:
+            answer = input(question).strip()
+        except EOFError as error:
+            print()
+            raise ValueError('no answer was given, and nothing is written') from error
+        try:
+            return meaning(answer)
+        except ValueError as error:
+            complain(error)
 
 
 def choose_joint(
@@ -58,12 +67,15 @@ def choose_joint(
         raise ValueError(f'{question} {remedy if names else _NO_JOINTS}')
     for number, (topic, joint) in enumerate(found, 1):
         print(f'{number:3}  {printable(joint)} on {topic}')
-    answer = ask(f'Number of the joint of the {role}{hint}: ')
-    if answer.isdecimal() and 1 <= int(answer) <= len(found):
-        return found[int(answer) - 1]
-    if len(named := [joint for joint in found if joint.joint == answer]) == 1:
-        return named[0]
-    raise ValueError(f'{answer!r} is not a number from 1 to {len(found)}')
+
+    def meant(answer: str) -> Channel:
+        if answer.isdecimal() and 1 <= int(answer) <= len(found):
+            return found[int(answer) - 1]
+        if len(named := [joint for joint in found if joint.joint == answer]) == 1:
+            return named[0]
+        raise ValueError(f'{answer!r} is not a number from 1 to {len(found)}')
+
+    return ask(f'Number of the joint of the {role}{hint}: ', meant)
 
 
 def joints_of_arm(

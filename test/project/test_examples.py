@@ -63,6 +63,17 @@ def test_an_example_answers_help(name, monkeypatch, capsys):
     assert said.out.startswith(f'usage: {Path(name).name}.py')
 
 
+def test_a_mistyped_word_is_not_taken_as_the_name_of_a_file(monkeypatch, tmp_path, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr('sys.argv', ['bench.py', 'weer'])
+    with pytest.raises(SystemExit, match='2'):
+        runpy.run_path(str(EXAMPLES / 'bench.py'), run_name='__main__')
+    assert 'weer is neither wear nor power_cycle, nor the name of a .csv file' in (
+        capsys.readouterr().err
+    )
+    assert not list(tmp_path.iterdir())
+
+
 def test_the_documented_test_of_a_package_holds_its_recording_to_its_parameters(tmp_path):
     [source] = re.findall(
         r'```python\n(from gear_kinematics\.validation .*?)```',

@@ -766,30 +766,31 @@ def test_init_leaves_out_what_is_no_motor(listening, monkeypatch):
 
 
 def test_init_asks_for_the_ratio_of_each_joint(listening, monkeypatch, capsys):
-    """Enter repeats the last one."""
+    """Enter repeats the last one; after a typing error it asks again."""
     monkeypatch.setattr(drivers, 'listen', lambda: list(ARM))
     monkeypatch.setattr(init, 'can_ask', lambda: True)
-    answers = iter(['-101', '', '50.5'])
+    answers = iter(['', 'abc', '-101', '', '0', '50.5'])
     monkeypatch.setattr('builtins.input', lambda question: print(question) or next(answers))
     assert main(['init', '--arm']) == 0
-    said = capsys.readouterr().out
-    assert 'ratio of the gear of wrist 1, such as 1457/26, negative if' in said
-    assert said.count(' (Enter: -101): ') == 2
+    told = capsys.readouterr()
+    assert 'ratio of the gear of wrist 1, such as 1457/26, negative if' in told.out
+    assert told.out.count(' (Enter: -101): ') == 3
+    assert re.findall("a gear ratio must .*, not '(.*)'", told.err) == ['', 'abc', '0']
     ratios = [each.gear_ratio for each in load_actuators(listening / 'actuator.yaml').values()]
     assert ratios == ['-101', '-101', '101/2']
 
 
-@pytest.mark.parametrize('answer', ['2', 'm1', 'm2'])
-def test_init_takes_the_number_or_the_name_of_a_joint(listening, monkeypatch, capsys, answer):
+@pytest.mark.parametrize('answers', [['2'], ['m1'], ['m2', '3', '2']])
+def test_init_takes_the_number_or_the_name_of_a_joint(listening, monkeypatch, capsys, answers):
     monkeypatch.setattr(joints, 'can_ask', lambda: True)
-    monkeypatch.setattr('builtins.input', lambda _: answer)
-    known = answer != 'm2'
-    assert main(['init', '--ratio', '-19']) == (0 if known else 2)
+    given = iter(answers)
+    monkeypatch.setattr('builtins.input', lambda _: next(given))
+    assert main(['init', '--ratio', '-19']) == 0
     told = capsys.readouterr()
     assert '  2  m1 on /motor/joint_states\n' in told.out
-    assert ("'m2' is not a number from 1 to 2" in told.err) is not known
-    written = [NodeParameters.load(file).rotor_joint for file in listening.iterdir()]
-    assert written == ['m1'] * known
+    assert re.findall("'(.*)' is not a number from 1 to 2", told.err) == answers[:-1]
+    [written] = listening.iterdir()
+    assert NodeParameters.load(written).rotor_joint == 'm1'
 
 
 def test_init_without_an_answer_writes_nothing(listening, monkeypatch):
