@@ -16,7 +16,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull
 
 Array = NDArray[np.float64]
 
@@ -243,17 +242,19 @@ def _ramps(
 def _isotonic(values: Array) -> NDArray[np.intp]:
     """Find where the levels of the nearest non-decreasing sequence begin, and the end of the last.
 
-    The levels are the slopes of the greatest convex minorant of the cumulative sums (R. E. Barlow
-    et al., Statistical Inference under Order Restrictions, 1972, p. 9).
+    Neighbours in the wrong order are pooled (M. Ayer et al., Annals of Mathematical Statistics 26
+    (1955) 641).
     """
-    if np.ptp(values) <= _ROUNDING * np.max(np.abs(values)):
-        return np.array([0, len(values)])
-    sums = np.concatenate([[0.0], np.cumsum(values - values.mean())])
-    hull = ConvexHull(np.column_stack([np.arange(len(sums)), sums])).vertices
-    first, last = np.argmin(hull), np.argmax(hull)
-    # Vertices are in counterclockwise order: the lower ones lead from the first to the last.
-    lower: NDArray[np.intp] = np.roll(hull, -first)[: (last - first) % len(hull) + 1]
-    return lower.astype(np.intp)
+    least = _ROUNDING * float(np.max(np.abs(values)))
+    levels: list[tuple[float, int]] = []  # mean and rows of each
+    for value in values.tolist():
+        mean, rows = value, 1
+        while levels and levels[-1][0] >= mean - least:
+            before, more = levels.pop()
+            rows += more
+            mean += (before - mean) * more / rows
+        levels.append((mean, rows))
+    return np.cumsum([0, *(rows for _, rows in levels)])
 
 
 def _half_loops(torque: Array, angle: Array) -> list[HalfLoop]:
