@@ -11,6 +11,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import accumulate
 from typing import NamedTuple
 
 import numpy as np
@@ -219,9 +220,7 @@ def _late(values: np.ndarray, time: float) -> np.ndarray:
 
 def _coloured(shape: tuple[int, int], time: float, random: np.random.Generator) -> np.ndarray:
     """Noise of first order with standard deviation 1."""
-    from scipy.signal import lfilter  # noqa: PLC0415, takes long
-
-    keep = np.exp(-1.0 / (time * RATE))
+    keep = math.exp(-1.0 / (time * RATE))
     values = random.standard_normal(shape)
-    values[1:] *= np.sqrt(1.0 - keep * keep)
-    return lfilter([1.0], [1.0, -keep], values, axis=0)
+    values[1:] *= math.sqrt(1.0 - keep * keep)
+    return np.array([*accumulate(values, lambda before, new: keep * before + new)])
