@@ -154,7 +154,7 @@ def weight(cell: str, point: str) -> float:
         return min(weight(one, '.') for one in elements)
     mark, other = re.escape(point), re.escape('.' if point == ',' else ',')
     cell = _NEGATIVE.sub(r'-\1', cell)
-    if re.fullmatch(rf'[-+\u2212]?(\d+({mark}\d*)?|{mark}\d+)([eE][-+]?\d+)?', cell):
+    if re.fullmatch(rf'[-+\u2212]?(\d+({mark}\d*)?|{mark}\d+)([eE][-+]?\d+)?|0x[\da-fA-F]+', cell):
         return 1.0 if ',' not in cell else 0.9
     grouped = rf"[-+\u2212]?[1-9]\d{{0,2}}(([ '\u2019\u00a0\u202f]|{other})\d{{3}})+({mark}\d*)?"
     return 0.5 if re.fullmatch(grouped, cell) or MOMENT.fullmatch(cell) else 0.0

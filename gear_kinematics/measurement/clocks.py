@@ -76,6 +76,27 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
     return clock._replace(unit=unit, scale=TIME_UNITS[unit])
 
 
+def in_nanoseconds(seconds: Array, fraction: Array, name: str) -> Array | None:
+    """Add the fractions in a column of a name to whole seconds; None if they are times alone."""
+    size = round(1.0 / TIME_UNITS[meaning(name).unit])
+    known = (seconds == seconds) & (fraction == fraction)  # noqa: PLR0124, no NaN
+    if np.any(seconds[known] % 1.0) or np.any(fraction[known] >= size):
+        return None
+    whole, rest = (np.where(known, one, 0).astype(np.int64) for one in (seconds, fraction))
+    both = whole * SECOND + rest * (SECOND // size)
+    return both if known.all() else np.where(known, both, np.nan)
+
+
+def are_apart(usual: Array, other: Array) -> bool:
+    """Return whether times, (n,), are of the same zero, but more than a row apart."""
+    known = (usual == usual) & (other == other)  # noqa: PLR0124, as NaN is not equal to itself
+    apart, usual = np.abs(other - usual)[known], usual[known]
+    if len(usual) <= 1:
+        return False
+    step = np.median(np.abs(np.diff(usual)))
+    return bool(np.any((apart > step) & (apart < np.ptp(usual))))
+
+
 def check_units(rotor: Array, output: Array) -> None:
     """Raise ValueError if the stamps of both encoders, ns, are a power of 1000 apart in length."""
     spans = [float(np.ptp(stamp)) / SECOND for stamp in (rotor, output)]

@@ -87,7 +87,11 @@ def option(field: str) -> str:
 
 
 def find_columns(
-    header: Sequence[str], given: Sources, below: Mapping[str, str], clocks: Mapping[str, str]
+    header: Sequence[str],
+    given: Sources,
+    below: Mapping[str, str],
+    clocks: Mapping[str, str],
+    first: Mapping[str, str],
 ) -> dict[str, Column]:
     """Find angle and torque, or rotor and output, with torque and time if there are any.
 
@@ -96,6 +100,7 @@ def find_columns(
         given: names and units that the user gives; a name may end with its unit in brackets.
         below: units that the file gives elsewhere than in the names, by name.
         clocks: columns of times, by the names of columns that have their own.
+        first: first values by name; times are rather where there is one.
 
     Raises:
         ColumnsError: if too few columns are found, or a unit is unknown.
@@ -116,7 +121,8 @@ def find_columns(
                 raise ValueError(f'no column {name!r}{among(name, header, most=len(header))}')
             named[role] = name
     others = [name for name in header if name != named.get('output_time')]
-    found, side = likeliest(others) | named, 'angle'
+    filled = [name for name in others if first.get(name, name) or meaning(name).role != 'time']
+    found, side = likeliest(others) | likeliest(filled) | named, 'angle'
     if {'rotor', 'output'} <= found.keys() and 'angle' not in named:
         found.pop('angle', None)
     elif 'torque' in found and (sides := [role for role in ANGULAR if role in found]):
@@ -227,8 +233,8 @@ def described(role: str, column: Column) -> str:
     return f'{role}{side} [{unit}] from {column.name}'
 
 
-def nanoseconds_of(name: str, names: Sequence[str]) -> str | None:
-    """Return the column of nanoseconds that belongs to a column of whole seconds, as in ROS."""
+def fraction_of(name: str, names: Sequence[str]) -> str | None:
+    """Return the column of ns, µs or ms that may belong to one of whole seconds, as in ROS."""
     words, unit, *_ = meaning(name)
-    rest = (other for other in names if meaning(other)[:2] == (words, 'ns'))
-    return next(rest, None) if unit == 's' else None
+    likely = [(words, other) for other in ('ns', 'us', 'ms') if unit == 's']
+    return next((other for other in names if meaning(other)[:2] in likely), None)

@@ -281,10 +281,13 @@ def _names(
     says = [sum(bool(m.role) and not m.unsure for m in map(meaning, row)) for row in rows]
     at = max([*whole, last], key=lambda k: (says[k], k))
     names, groups = rows[at], rows[at - 1] if at else []
+    if rows[last][0] and meaning(rows[last][0]).role == 'time' != meaning(names[0]).role:
+        names = [rows[last][0], *names[1:]]  # TIME below Labels, of Tektronix
     if label:  # such as Y_Unit_Label of LabVIEW
         units = ['', *label][len(label) >= len(names) :]
     else:
-        units = next(filter(None, map(known_units, (*rows[at + 1 : at + 2], groups))), [])
+        below = (known_units(row, fewest=1) for row in rows[at + 1 : at + 2])
+        units = next(filter(None, (*below, known_units(groups))), [])
     filled = [*filter(None, names)]
     if len({*filled}) < len(filled) and len(groups) == len(names):  # such as Motor,,Load,
         for k in range(1, len(groups)):

@@ -21,7 +21,8 @@ _VOCABULARY = {
     '扭矩 力矩 转矩 トルク',
     'current': 'current',
     'time': 'time t stamp timestamp timestamps today datetime elapsed zeit uhrzeit messzeit '
-    'prüfzeit temps tempo tiempo tout xtime ts zeitstempel horodatage 时间 时间戳 時間 x',
+    'prüfzeit temps tempo tiempo tout xtime ts zeitstempel horodatage heure hora ora 时间 时间戳 '
+    '時間 x',
     'filling': 'header receive log dynamic measured meas actual act filtered raw field data value '
     'values feedback state states axis angular rotary present sensor abs side in ist host pi ros '
     'system unix epoch channel ch fb fbk ave estimate scalars signals date datum utc wall '
@@ -51,7 +52,7 @@ _SIZES: Mapping[str, Mapping[str, Any]] = {
         'rad radian radians': 1.0,
         'mrad': 1e-3,
         'deg ° degree degrees grados gradi degrés': _DEG,
-        'rev turn turns revs revolution revolutions rotations': TURN,
+        'rev turn turns revs revolution revolutions rotations umdrehungen umdr': TURN,
         'mdeg millideg': 1e-3 * _DEG,
         'cdeg': 1e-2 * _DEG,
         'ddeg': 0.1 * _DEG,
@@ -76,7 +77,7 @@ _SIZES: Mapping[str, Mapping[str, Any]] = {
     },
     'time': {
         's sec secs second seconds': 1.0,
-        'ms msec millis milliseconds': 1e-3,
+        'ms msec millis millisecond milliseconds': 1e-3,
         'us µs usec micros microseconds': 1e-6,
         'ns nsec nsecs nanosec nanosecs nanoseconds': 1e-9,
         'minutes minute': 60.0,
@@ -213,11 +214,11 @@ def usual_unit(text: str) -> str:
     return '' if _NO_UNIT.fullmatch(plain) else _UNITS.get(plain, plain)
 
 
-def known_units(cells: Sequence[str], others: Collection[str] = ()) -> list[str]:
-    """Return the units in a row if two or most are known, or among others; otherwise nothing."""
+def known_units(cells: Sequence[str], others: Collection[str] = (), fewest: int = 2) -> list[str]:
+    """Return the units in a row if the fewest or most are known, or among others; or nothing."""
     units = [usual_unit(cell) for cell in cells]
     known = len([unit for unit in units if unit in _UNITS or unit in others])
-    return units if known > 1 or 2 * known > len([*filter(None, units)]) else []
+    return units if known >= fewest or 2 * known > len([*filter(None, units)]) else []
 
 
 def _words(name: str) -> tuple[tuple[str, ...], str]:

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from gear_kinematics.measurement.cells import numbers
-from gear_kinematics.measurement.columns import likeliest, nanoseconds_of
+from gear_kinematics.measurement.clocks import in_nanoseconds
+from gear_kinematics.measurement.columns import fraction_of, likeliest
 from gear_kinematics.measurement.names import meaning
 from gear_kinematics.measurement.recording import Array
-from gear_kinematics.wire.cdr import SECOND
 
 _BY_CHANCE = 0.01
 """Greatest share of the rows with a new value that have two, if gaps were filled."""
@@ -37,9 +37,10 @@ def series_of(
     filled = frame.columns[2 * angles.count() > len(angles)]  # not the stamps of no headers
     clock = likeliest(filled).get('time')
     unit = units.get(clock) or meaning(clock).unit if clock else ''
-    if nanoseconds := nanoseconds_of(clock or '', [*frame]):
-        seconds, rest = (numbers(frame[name], point) for name in (clock, nanoseconds))
-        frame[clock], unit = seconds * SECOND + rest, 'ns'
+    if rest := fraction_of(clock or '', [*frame]):
+        seconds, fraction = (numbers(frame[name], point) for name in (clock, rest))
+        if (both := in_nanoseconds(seconds, fraction, rest)) is not None:
+            frame[clock], unit = both, 'ns'
     others = [name for name in frame if name not in {key, clock, ''} and frame[name].ndim == 1]
     columns, clocks, known = {}, dict[str, str](), dict[str, str]()
     for joint, series in frame.groupby(key, sort=False):

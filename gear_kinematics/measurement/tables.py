@@ -13,14 +13,21 @@ import numpy as np
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.measurement.advice import advice, rising
 from gear_kinematics.measurement.assumed_units import against, differ_as_degrees
-from gear_kinematics.measurement.clocks import are_no_times, check_units, stamps, with_unit
+from gear_kinematics.measurement.clocks import (
+    are_apart,
+    are_no_times,
+    check_units,
+    in_nanoseconds,
+    stamps,
+    with_unit,
+)
 from gear_kinematics.measurement.columns import (
     Column,
     ColumnsError,
     Sources,
     described,
     find_columns,
-    nanoseconds_of,
+    fraction_of,
     own_clocks,
 )
 from gear_kinematics.measurement.dialects import TableFile
@@ -118,16 +125,6 @@ def _advised(path: Path, sources: Sources, read: Callable[[TableFile, Sources], 
         raise RecordingError(f'{path}: {text}') from error
 
 
-def _are_apart(usual: Array, other: Array) -> bool:
-    """Return whether times, (n,), are of the same zero, but more than a row apart."""
-    known = (usual == usual) & (other == other)  # noqa: PLR0124, as NaN is not equal to itself
-    apart, usual = np.abs(other - usual)[known], usual[known]
-    if len(usual) <= 1:
-        return False
-    step = np.median(np.abs(np.diff(usual)))
-    return bool(np.any((apart > step) & (apart < np.ptp(usual))))
-
-
 class _Series(NamedTuple):
     """Quantities that were sampled together, (n,) each."""
 
@@ -144,7 +141,7 @@ class _Samples:
         """Read the columns; ValueError if they are missing or contain no numbers."""
         self._sources, self._ratio, self._remark = sources, ratio, table.remark
         self.remarks, self.faults = list[Observed](), list[Observed]()
-        self.found = find_columns(table.names, sources, table.units, table.clocks)
+        self.found = find_columns(table.names, sources, table.units, table.clocks, table.first)
         clock = self.found.pop('time', None)
         usual = clock.name if clock else ''
         clocks = {role: table.clocks.get(one.name, usual) for role, one in self.found.items()}
@@ -196,7 +193,7 @@ class _Samples:
         self, table: TableFile, clock: Column | None, clocks: set[str]
     ) -> tuple[dict[str, Array], Column | None]:
         """Load columns by name; also return the column of times with its unit, if it has any."""
-        rest = nanoseconds_of(clock.name, table.names) if clock else None
+        rest = fraction_of(clock.name, table.names) if clock else None
         wanted = {column.name for column in self.found.values()} | clocks | {rest or ''}
         raw, self._every = table.load(sorted(wanted - {''}))
         if self._every > 1:
@@ -208,10 +205,9 @@ class _Samples:
             filled = times == times  # noqa: PLR0124, as NaN is not equal to itself
             empty = not (filled.any() or table.first.get(clock.name, clock.name))
             clock = None if empty or are_no_times(clock.name, clock.unit, times[filled]) else clock
-        if clock and rest:
-            seconds, nanoseconds = (raw[name].astype(np.int64) for name in (clock.name, rest))
-            raw[clock.name] = seconds * SECOND + nanoseconds
-            clock = clock._replace(unit='ns', scale=1.0 / SECOND)
+        both = in_nanoseconds(raw[clock.name], raw[rest], rest) if clock and rest else None
+        if clock and both is not None:
+            raw[clock.name], clock = both, clock._replace(unit='ns', scale=1.0 / SECOND)
         return raw, clock
 
     def _own(
@@ -236,7 +232,7 @@ class _Samples:
             ]
             if times != usual and (named or alike == [True, False]):
                 found[role] = times
-            elif len({*own.values()}) > 1 and _are_apart(raw[usual], raw[times]):
+            elif len({*own.values()}) > 1 and are_apart(raw[usual], raw[times]):
                 one, other = (own.get(side, usual) for side in ('rotor', 'output'))
                 if one == other:  # the torque has other times
                     raise ValueError(

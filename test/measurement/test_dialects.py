@@ -282,6 +282,22 @@ ENCODERS = {
     'LabVIEW, without times': lambda t, r, o: written(
         [0 * t, r, o], 'X_Value\tMotor angle [rad]\tOutput angle [rad]\tComment',
         (lambda _: '', '{:.5f}', '{:.5f}'), '\t'),
+    'times in ns beside those in s': lambda t, r, o: written(
+        [t, 1e9 * t, r, o], 'time_s,time_ns,rotor,output',
+        ('{:.2f}', '{:.0f}', '{:.5f}', '{:.5f}')),
+    'whole seconds and their µs': lambda t, r, o: written(
+        [t // 1, 1e6 * (t % 1.0), r, o], 'sec,usec,rotor,output',
+        ('{:.0f}', '{:.0f}', '{:.5f}', '{:.5f}')),
+    'FAMOS, with Grad below the names': plain(
+        'Zeit;Motorwinkel;Abtriebswinkel\ns;Grad;Grad', ';', '{:.5f}', angle=DEG, german=True),
+    'French, with the day and the time in two columns': lambda t, r, o: written(
+        [t, r * DEG, o * DEG], 'Date;Heure;Position moteur (deg);Position sortie (deg)',
+        (lambda s: f'26/11/2026;{moment()(s)[11:]}', '{:.5f}', '{:.5f}'), ';'),
+    'rosbag_to_csv, with an empty stamp': lambda t, r, o: written(
+        [1e9 * t, t // 1, 1e9 * (t % 1.0), r, o], 'rosbagTimestamp,stamp,secs,nsecs,rotor,output',
+        ('{:.0f},', '{:.0f}', '{:.0f}', '{:.5f}', '{:.5f}')),
+    'Tektronix, with labels above its names': plain(
+        'Model,MSO44\nHorizontal Units,s,,\n\nLabels,Motor angle,Output angle\nTIME,CH1,CH2'),
     'LabVIEW, with an interval in place of times': lambda t, r, o: written(
         [t, r, o], '\nSamples\t1320\t1320\nX_Dimension\tTime\tTime\nX0\t0.0\t0.0\n'
         'Delta_X\t0.040\t0.040\n***End***\nX_Value\tMotor angle\tOutput angle\tComment',
@@ -376,6 +392,9 @@ ENCODERS = {
     'hexadecimal counts, said': lambda t, r, o: written(
         [t, *in_counts(r - r.min()).astype(int), o], 'time,rotor_counts,output_rad',
         ('{:.2f}', '0x{:x}', '{:.5f}')),
+    'hexadecimal numbers alone': lambda t, r, o: written(
+        [t, *(1e3 * DEG * (np.array([r, o]) + 1e3)).astype(int)], 'time,rotor_mdeg,output_mdeg',
+        ('{:.2f}', '0x{:08X}', '0x{:08X}')),
     'counts of as many digits, in arrays': lambda t, r, o: written(
         [t, *in_counts(r) + 500_000, o], 'time,rotor_counts,output_rad',
         ('{:.2f}', '[{:.0f}]', '{:.5f}')),
@@ -710,6 +729,7 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         ('time,angle,torque\ns,mil,Nm\n0,1,2\n', 'the unit mil is not known'),
         ('rotor,output\n1.5,20\n359.5,30.5\n', 'rotor has turns of 360'),
         ('Data1,torque\n0,2\n', 'Data1 does not say that it is an angle: .* --angle-unit'),
+        ('time;rotor;output\nsec;U;U\n0;0;0\n', 'rotor: the unit u is not known'),
         *((f'time,angle,{name}\n0,0,2\n1,0.001,3\n',
            f'{name} does not say that it is a torque: .* --torque-column .{name} .N·m')
           for name in ('load', 'Iq')),
