@@ -173,14 +173,12 @@ class VelocityField:
         self.due = stamp + SPAN
         readings = self._readings
         self.add(velocity)
-        stuck = self._stuck(stamp, position, velocity)
-        if stuck or stamp < self._pause_until:
+        if self._stuck(stamp, position, velocity):
+            self._decide(math.inf, certain=True)
+        if stamp < self._pause_until:
             readings[:] = [(stamp, position, 0.0)]
             self._last, self._total, self._count = velocity, 0.0, 0
-            if stuck:
-                self._candidate = VelocityMeaning.UNKNOWN
-                self._decide(math.inf)
-            self.quiet_until = 0 if stuck else self.due
+            self.quiet_until = self.due
             return
         if not self._count or (readings and stamp > readings[-1][0] + 2 * SPAN):
             readings.clear()
@@ -206,14 +204,12 @@ class VelocityField:
 
         Behind a stop, those of a filter fall.
         """
-        right = self.finding is VelocityMeaning.RIGHT and self._readings
-        if not right or velocity is None or self._last is None:
+        if self.finding is not VelocityMeaning.RIGHT or not self._readings:
             return False
-        (since, before, _), mean = self._readings[-1], self._total / self._count
-        least = max(0.5 * abs(mean), (1.0 - _STEADY) * abs(self._last))
-        goes_on = velocity * mean >= least * abs(mean) and 2.0 * self._last * mean >= mean * mean
-        travel = abs(mean) * (stamp - since) * 1e-9
-        return goes_on and position == before and travel >= _TRAVEL
+        (since, before, _), mean = self._readings[-1], self._total / max(1, self._count)
+        last, now = (math.copysign(v or 0.0, (v or 0.0) * mean) for v in (self._last, velocity))
+        goes_on = min(last, now) >= 0.5 * abs(mean) and now >= (1.0 - _STEADY) * last
+        return position == before and goes_on and abs(mean) * (stamp - since) * 1e-9 >= _TRAVEL
 
     def _follow(self, travel: float, noise: float) -> None:
         """Decide on a motion of more than `travel`, rad, however unsteady, of the latest readings.
@@ -327,10 +323,10 @@ class VelocityField:
             self._decide(factor)
         return True
 
-    def _decide(self, factor: float) -> None:
-        """Change the finding if two comparisons in a row find the same."""
+    def _decide(self, factor: float, *, certain: bool = False) -> None:
+        """Change the finding if it is certain, or two comparisons in a row find the same."""
         found = self._meaning_of(factor)
-        if found is self._candidate:
+        if certain or found is self._candidate:
             if self.decided is None:
                 self.decided = self._readings[-1][0]
             if self.contradicts and found is VelocityMeaning.RIGHT:
@@ -338,8 +334,7 @@ class VelocityField:
                 self._past = Condition.VELOCITIES_WERE(time=end, doubt=self.meaning)
             self.finding, self.factor = found, factor
             self.contradicts = found is not VelocityMeaning.RIGHT
-            if not self.contradicts:
-                self._pause_until = self._readings[-1][0] + _PAUSE
+            self._pause_until = 0 if self.contradicts else self._readings[-1][0] + _PAUSE
         self._candidate = found
 
     def _meaning_of(self, factor: float) -> VelocityMeaning:
