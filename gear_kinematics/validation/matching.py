@@ -227,11 +227,19 @@ class OutputTopic:
         if late := len(self.late):
             messages = self.late + messages
             times = np.concatenate([self._late_received, times])
-        if self.shared and self.joints:
+        if self.joints:
             if not isinstance(messages, JointStateBatch):
                 messages = JointStateBatch(messages)
-            having, messages = messages.having(self.joints)
-            times = times if having is None else times[having]
+            having, own = messages.having(self.joints)
+            if having is not None and not self.shared:
+                # The only message of an input's stamp can be its output under another name.
+                stamps = messages.heads[0]
+                named_otherwise = np.isin(stamps, window['stamp']) & ~np.isin(stamps, own.heads[0])
+                having = np.union1d(having, np.flatnonzero(named_otherwise))
+                own = JointStateBatch([messages[row] for row in having.tolist()])
+            if having is not None:
+                messages, times = own, times[having]
+                late = int(np.count_nonzero(having < late))
         stamps, malformed = self._decode(messages)
         self.matcher.see(stamps[late:] if late else stamps)
         usable = np.flatnonzero(~malformed)

@@ -591,6 +591,25 @@ def test_outputs_recorded_before_their_inputs_match(recorded, config):
     assert validate(early, config).passed
 
 
+@pytest.mark.parametrize('later', [0, -15_000_000, 1])
+def test_other_joints_on_the_topic_of_the_outputs_are_no_fault(recorded, config, later):
+    """A gripper's driver on a shared /joint_states, by the stamps of the motor's or by its own."""
+    shared = [
+        (
+            OUTPUT,
+            received + k % 3,
+            rotor_bytes(
+                replaying.stamp_of(replaying.decode(data, JOINT_STATE)) + later, ['gripper'], [1.0]
+            ),
+        )
+        for k, (topic, received, data) in enumerate(recorded)
+        if topic == ROTOR
+    ]
+    report = validate(sorted(recorded + shared, key=lambda message: message[1]), config)
+    assert texts(report) == texts(validate(recorded, config))
+    assert (report.verdict, topic_of(report, OUTPUT).compared) == (Verdict.PASS, 300)
+
+
 def repeated(messages: list[Message], times: int, seconds: int) -> list[Message]:
     """Repeat a recording with increasing stamps."""
     long = []
