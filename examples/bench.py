@@ -18,17 +18,14 @@ def call(name: str, kind: type = Trigger, **values: bool) -> None:
         rclpy.spin_until_future_complete(node, answer, timeout_sec=5.0)
         if answer.done():  # else it was lost, as its sender had not discovered this node yet
             return print(answer.result().message)
-    raise SystemExit('no gear_simulator is running')
+    raise SystemExit(f'no gear_simulator that answers ~/{name} is running')
 
 
 parser = ArgumentParser(description=__doc__)
 parser.add_argument('what', help='wear, power_cycle, or the .csv file to write')
-what, words = parser.parse_args().what, {'wear', 'power_cycle'}
-if not (what in words or what.endswith('.csv')):
-    parser.error(f'{what} is neither wear nor power_cycle, nor the name of a .csv file')
 rclpy.init()
 node, output, resting = rclpy.create_node('bench'), [JointState(effort=[nan])], 0.001  # rad/s
-if what in words:
+if not (what := parser.parse_args().what).endswith('.csv'):
     raise SystemExit(call(what))
 loads = node.create_publisher(Float64, '/load_torque', 10)
 call('lock_rotor', SetBool, data=True)  # who answers has discovered the publisher before
