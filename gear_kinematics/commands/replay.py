@@ -14,6 +14,7 @@ from gear_kinematics.commands.output import (
     stopped_by_signals,
     warn_of_shared_memory,
 )
+from gear_kinematics.report.document import counted
 from gear_kinematics.wire.nearest import among
 from gear_kinematics.wire.topics import ROTOR_STATE
 
@@ -72,8 +73,8 @@ def run(options: argparse.Namespace) -> ExitCode:
             )
             interrupted = stopped()
     if not options.quiet:
-        delay = 1e3 * played.worst_delay
-        print(f'{played.messages} messages, at most {delay:.1f} ms late')
+        late = f', at most {1e3 * played.worst_delay:.1f} ms late' * bool(played.messages)
+        print(counted(played.messages, 'message') + late)
     if interrupted:
         raise KeyboardInterrupt
     return ExitCode.DONE

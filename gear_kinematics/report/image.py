@@ -52,7 +52,9 @@ def check_image(path: Path, formats: Collection[str] = _METADATA.keys()) -> None
     Raises ValueError or ModuleNotFoundError if that is not so.
     """
     if _format(path) not in formats:
-        raise ValueError(f'{path}: the suffix must be {" or ".join(formats)}')
+        raise ValueError(
+            f'{path}: the suffix must be {" or ".join(f".{each}" for each in formats)}'
+        )
     with chdir(_FOLDER):
         import_module('matplotlib')
 

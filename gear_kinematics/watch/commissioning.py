@@ -83,7 +83,7 @@ class LiveCommissioning:
             found = MessagesByTopic(self._topics, messages)
             self._states.add(*(found[topic] for topic in self._topics))
             self._count += len(messages)
-        name = f'live on {datetime.now().astimezone():%Y-%m-%d at %H:%M}'
+        name = f'the messages of {datetime.now().astimezone():%Y-%m-%d %H:%M}'
         recording = gated(self._states.recording(Path(name), Sources(as_recorded=True)))
         return commission([recording], self.request)
 

@@ -119,7 +119,8 @@ def show_recording(recorder: Recorder, console: Console, stopped: Callable[[], b
             rows = [
                 *(Entry(topic, hertz(polled.rate), counted(polled.count, 'message'))
                   for topic, polled in recorder.heard.items()),
-                Entry('', '' if recorder.heard else rows[0].value, 'q end'),
+                *([] if recorder.heard else rows),
+                Entry('', '', 'q end'),
             ]  # fmt: skip
         return rows, pressed != 'q'
 

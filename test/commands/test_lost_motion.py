@@ -157,7 +157,7 @@ def page_of(path):
     [
         (['nowhere.csv'], 'nowhere.csv: No such file'),
         (['nowhere'], 'nowhere: no such file or folder'),
-        (['{recording}', '--plot', 'x.txt'], 'x.txt: the suffix must be png or'),
+        (['{recording}', '--plot', 'x.txt'], 'x.txt: the suffix must be .png or'),
         (['{recording}', '--json', '-', '--html', '-'], 'only one report can go to stdout'),
         (['{motion}', '--rotor-column', 'phi'], "no column 'phi'; there are: output, rotor"),
         (['{motion}', '--ratio', '19:1'], 'a gear ratio must be an integer, a fraction or a dec'),

@@ -91,7 +91,7 @@ SCHEME, OUTPUT = ['plot', 'scheme', 'a.png'], ['plot', 'output', 'a.png']
 
 
 @pytest.mark.parametrize(('arguments', 'cause'), [
-    (['plot', 'scheme', 'a.xyz'], 'a.xyz: the suffix must be png or '),
+    (['plot', 'scheme', 'a.xyz'], 'a.xyz: the suffix must be .png or '),
     (['plot', 'scheme', 'none/a.png'], 'none/a.png: No such file or directory'),
     ([*SCHEME, '--degrees', 'nan'], 'must be a finite number, not nan'),
     ([*SCHEME, '--speed', '1'], '--speed is for slides, not for scheme'),
@@ -102,7 +102,7 @@ SCHEME, OUTPUT = ['plot', 'scheme', 'a.png'], ['plot', 'output', 'a.png']
     ([*PLOT, '--duration', '1'], '--duration needs --bag'),
     ([*ANIMATE, '--start-offset', '1'], '--start-offset needs --bag'),
     ([*ANIMATE, '--rate', '0.05'], 'frames are more than 2000; reduce --duration or raise --rate'),
-    (['animate', 'a.png'], 'a.png: the suffix must be gif'),
+    (['animate', 'a.png'], 'a.png: the suffix must be .gif'),
     (['animate', 'none/a.gif'], 'none/a.gif: No such file or directory'),
 ])  # fmt: skip
 def test_unusable_input_gets_one_clear_line_and_no_file(arguments, cause, tmp_path, monkeypatch):

@@ -88,7 +88,7 @@ def gearkin(folder: Path, *arguments: str) -> str:
         with Person(folder, *arguments) as person:
             person.wait_for('the output turned')
             # 6 s of messages, unless it ends by itself before, when everything is known.
-            person.wait_for(r'heard +([3-9]\d{3}|\d{5,}) messages|live on 20')
+            person.wait_for(r'heard +([3-9]\d{3}|\d{5,}) messages|the messages of 20')
             person.type('\n')
             code = person.end()
             assert not code or 'undetermined' in person.shown()

@@ -469,12 +469,19 @@ def printed(renderable, width: int = 120) -> str:
     return stream.getvalue()
 
 
-def test_one_message_that_is_recorded_is_no_plural():
-    heard, stops = {'/a': SimpleNamespace(rate=0.0, count=1)}, iter([False, True])
+@pytest.mark.parametrize(
+    ('heard', 'said'),
+    [
+        ({'/a': SimpleNamespace(rate=0.0, count=1)}, r'/a .*\b1 message\b'),
+        ({}, r'waiting +for a gear_state_publisher'),
+    ],
+)
+def test_a_terminal_shows_what_is_recorded_or_waited_for(heard, said):
+    stops = iter([False, True])
     recorder = SimpleNamespace(poll=lambda: None, absent='', heard=heard)
     console = Console(file=io.StringIO(), force_terminal=True, color_system=None)
     show_recording(recorder, console, lambda: next(stops))
-    assert re.search(r'\b1 message\b', console.file.getvalue())
+    assert re.search(said, console.file.getvalue())
 
 
 def test_line_says_all_of_a_moment():
