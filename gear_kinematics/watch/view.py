@@ -207,10 +207,11 @@ def status_entry(status: Status, now: float) -> Entry:
 
 
 def _diagnostic(gear: GearNode, subject: str, key: str) -> str:
-    """Look up a value of the diagnostics; '' if it is absent or out of date."""
+    """Look up a value of the diagnostics; '' if it is absent, none or out of date."""
     status = gear.statuses.get(subject)
     known = status and time.monotonic() - status.at <= _MAX_STATUS_AGE
-    return status.values.get(key, '') if status and known else ''
+    value = status.values.get(key, '') if status and known else ''
+    return '' if value == 'none' else value
 
 
 def _number(text: str) -> float | None:

@@ -44,8 +44,8 @@
       `${(points[k - 1]?.[1] ?? null) === null ? 'M' : 'L'}` +
       `${(300 + 300 * (time - now) / SPAN).toFixed(1)},${height(value)}`);
     find('curve').querySelector('path').setAttribute('d', path.join(''));
-    set(find('curve').firstElementChild,
-      `output angle, ${SPAN} s: ${low.toFixed(1)} to ${high.toFixed(1)}°`);
+    const [least, greatest] = [low, high].map(value => value.toFixed(1).replace('-0.0', '0.0'));
+    set(find('curve').firstElementChild, `output angle, ${SPAN} s: ${least} to ${greatest}°`);
   }
 
   function showJoints(joints) {

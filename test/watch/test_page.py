@@ -250,6 +250,7 @@ def test_names_are_text_on_the_page(browser):
         drivers=(Entry(hostile, hostile, hostile),),
         joints=((hostile, hostile), (hostile, 'b')),
         guide=Guide(hostile, 0.5, (Entry(hostile, hostile, hostile),)),
+        output=-1e-9,
     )
     with shown(browser, view) as (page, _):
         parts = '#node', '#message', '#values dt', '#values dd', '#diagnostics dd', '#drivers dt'
@@ -258,6 +259,8 @@ def test_names_are_text_on_the_page(browser):
         option = page.locator('#commission option').first
         expect(option).to_have_text(f'{hostile} on {hostile}')
         assert page.locator('img').count() == 0
+        caption = page.locator('#curve figcaption')
+        expect(caption).to_have_text('output angle, 10 s: 0.0 to 0.0°')
 
 
 def test_a_question_that_was_cancelled_just_before_does_not_home_as_well(browser):

@@ -152,6 +152,9 @@ def test_values_are_those_of_the_topics():
         Entry('transmission error', '-1′ 30.000″', 'peak to peak 0.0002 rad'),
     ]
     assert list(values_of(gear_node(parameters=None))) == []
+    unknown = Status('transmission error', 0, 'ok', {'peak to peak (rad)': 'none'}, math.inf)
+    *_, last = values_of(gear_node(statuses={'transmission error': unknown}))
+    assert last == Entry('transmission error', '-1′ 30.000″')
 
 
 def test_a_gear_at_rest_has_no_negative_zero():
