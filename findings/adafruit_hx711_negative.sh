@@ -18,7 +18,9 @@ python3 -m venv "$folder/venv"
 "$folder/venv/bin/pip" install --quiet --disable-pip-version-check --no-deps adafruit-circuitpython-hx711==1.1.2
 cd "$folder"
 printf '%s\n' 'class DigitalInOut: pass' > digitalio.py
-printf '%s\n' 'def disable_interrupts(): pass' 'def enable_interrupts(): pass' 'def delay_us(time): pass' > microcontroller.py
+for name in "disable_interrupts()" "enable_interrupts()" "delay_us(time)"; do
+    echo "def $name: pass" >> microcontroller.py
+done
 timeout 60 venv/bin/python - <<'PYTHON'
 import sys
 
