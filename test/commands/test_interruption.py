@@ -4,6 +4,7 @@
 import os
 import re
 import signal
+from itertools import product
 
 import pytest
 from blocked_bags import BAGS, DEADLINE, BlockedBag, running_gearkin, wait_until
@@ -29,13 +30,14 @@ def counts(terminal) -> list[tuple[str, str]]:
 
 
 REPORTS = '--json a.json --junit a.xml'
+INT, TERM = signal.SIGINT, signal.SIGTERM
 
 
-@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize('arguments', [
-    'info BAG', 'lost-motion BAG', 'calibrate --encoder-topic /output_state BAG',
-    'plot output a.png --bag BAG', 'compute BAG out --joint rotor',
-    f'validate {REPORTS} SERVO BAG', f'validate --jobs 2 {REPORTS} SERVO BAG',
+@pytest.mark.parametrize(('arguments', 'number'), [
+    ('info BAG', INT), ('lost-motion BAG', INT), ('plot output a.png --bag BAG', INT),
+    ('calibrate --encoder-topic /output_state BAG', INT), (f'validate {REPORTS} SERVO BAG', INT),
+    # One handler has both signals: SIGTERM is sent where files or other processes have to go.
+    *product(['compute BAG out --joint rotor', f'validate --jobs 2 {REPORTS} BAG'], [INT, TERM]),
 ])  # fmt: skip
 def test_what_is_interrupted_while_it_reads_ends_at_once_and_leaves_nothing(
     arguments, number, tmp_path
