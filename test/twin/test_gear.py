@@ -7,7 +7,6 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
 
 from gear_kinematics.correction.calibration_file import Order
 from gear_kinematics.kinematics import Branch
@@ -88,6 +87,8 @@ def test_wear_takes_from_the_preload_and_then_leaves_play(braced):
 @pytest.mark.parametrize('interference', [5.5e-3, -4e-4])
 def test_statics_are_those_of_the_audited_preload(braced, sign, interference):
     """The output is turned, and what holds it there is the load."""
+    from scipy.optimize import brentq  # noqa: PLC0415, takes long
+
     gear = replace(braced, interference=interference, play=0.1)
     gear = gear if sign > 0.0 else mirrored(gear)
     ks = gear.shaft_stiffness
