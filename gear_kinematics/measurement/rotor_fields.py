@@ -26,6 +26,7 @@ from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import Rejection
 
 _FEWEST = 10
+_MANY = 0.1  # of all readings: so many that are implausible show no single motion
 _MOVED = 1.0  # rad: a rotor that travels as far has certainly moved
 _STEP = Step(0.0, seen=False)
 _EQUAL = 1e-9  # rad: positions that differ by less differ by rounding alone
@@ -72,9 +73,11 @@ def questions(
     if counts:
         yield Observation.COUNTS()
     values[:, 0], (period, _) = _unwrapped(stamp, values[:, 0])
+    found = replace(NodeParameters.load(), rotor_joint=joint, rotor_encoder_range=period)
+    rotor = RotorInput(parameters or found)
     if steps and not counts:
-        found = replace(NodeParameters.load(), rotor_joint=joint, rotor_encoder_range=period)
-        yield from _impossible_steps(data, received, parameters or found, limited=bool(limits))
+        rotor.accept_batch(data, received)
+        yield from _impossible_steps(rotor, limited=bool(limits))
     sizes = np.abs(np.diff(values[:, 0]))
     given = values[np.isfinite(values[:, 1]), 1]
     velocities = VelocityField(float(1 / ratio) if ratio else np.nan)
@@ -85,6 +88,8 @@ def questions(
     absent = len(given) and not given.any() and moved
     if absent:
         yield Condition.VELOCITIES_ARE(meaning=VelocityMeaning.ZERO)
+    elif rotor.rejected[Rejection.IMPLAUSIBLE] > _MANY * len(stamp):
+        pass  # the readings are of no single motion, as of two drivers
     elif meaning := velocities.in_recording:
         yield meaning
     usual, known = float(np.median(np.diff(stamp))) / SECOND, len(given) and not absent
@@ -100,12 +105,8 @@ def questions(
         yield question
 
 
-def _impossible_steps(
-    data: Sequence[bytes], received: Sequence[int], parameters: NodeParameters, *, limited: bool
-) -> Iterator[Observed | Fact]:
+def _impossible_steps(rotor: RotorInput, *, limited: bool) -> Iterator[Observed | Fact]:
     """Yield jumps, faults of the clock, rejected positions; if `limited`, what exceeds limits."""
-    rotor = RotorInput(parameters)
-    rotor.accept_batch(data, received)
     known = {Rejection.JOINT_MISSING, Rejection.ARRAY_SIZES}
     jumped, beyond = rotor.plausibility.jumped, rotor.plausibility.beyond_limits
     if jumped:

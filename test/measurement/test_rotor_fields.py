@@ -152,6 +152,19 @@ def test_motion_beyond_the_limits_of_a_node_is_named(limits):
     assert told == [f'{said}set the limit to that of the motor'] * bool(limits)
 
 
+def test_two_drivers_of_one_joint_do_not_make_their_velocities_wrong():
+    drivers = [(0, 0.0, 20.0), (3_100_000, 3.0, -35.0)]
+    times = [
+        (k * 8_000_000 + late, zero, speed) for k in range(1000) for late, zero, speed in drivers
+    ]
+    data = [
+        rotor_bytes(10**9 + t, position=[zero + 1e-9 * speed * t], velocity=[speed])
+        for t, zero, speed in times
+    ]
+    asked = [*questions(data, [10**9 + t for t, *_ in times], 'rotor', steps=True)]
+    assert [each.condition for each in asked] == [Condition.JUMPED]
+
+
 def test_other_joints_of_the_same_time_repeat_no_stamp():
     """As of an arm and its grippers, whose publishers share a topic."""
     data = [
