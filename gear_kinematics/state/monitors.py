@@ -243,11 +243,12 @@ class EncoderMonitor(DriverMonitor):
 
 
 def _outside(rotor_input: RotorInput) -> Fact | None:
-    """Return how the last output angle contradicts `output_range`, if it does."""
-    parameters, last = rotor_input.parameters, rotor_input.last
-    if not last:
+    """Return how the output angle, by the present zero, contradicts `output_range`, if it does."""
+    parameters, rotor = rotor_input.parameters, rotor_input.turns
+    if not rotor.position:
         return None
-    turns, rest = parameters.gear.gear_ratio.output_angle(*last.position, math)
+    angle = rotor.relative_to(rotor_input.zero, parameters.rotor_direction)
+    turns, rest = parameters.gear.gear_ratio.output_angle(*angle, math)
     return range_fault(parameters, TURN * turns + rest, parameters.transmission_error_limit)
 
 

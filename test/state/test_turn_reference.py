@@ -170,6 +170,9 @@ QUARTERS = {'output_range': (0.0, 1.5 * math.pi)}  # a joint of 0 to 270°
 def test_range_of_the_output_tells_its_turn_or_excludes_it(settings, without):
     for degrees, found in ((250.0, 250.0), (-1e-3, -1e-3), (100.0, 100.0), (270.0, 270.0)):
         bench = Bench(replace(settings, **QUARTERS))
+        for _ in range(ENOUGH):
+            bench.rest(math.radians(degrees), 1)
+            assert not bench.rotor.referenced or bench.facts == []
         assert math.degrees(bench.rest(math.radians(degrees))) == pytest.approx(found, abs=0.01)
         assert bench.facts == []
     unlimited = Bench(settings)
