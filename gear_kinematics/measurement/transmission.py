@@ -82,17 +82,17 @@ def transmission_figures(
     both = Component(math.sqrt(2.0) * resolution(encoders.error_step(ratio).size))
     motion = _Motion(encoders, ratio, travel)
     pairs = sum(1 for _ in motion.runs()) // 2
-    difference = lost_motion = delay = None
+    difference = lost_motion = delay = even = None
     if pairs and (fits := motion.fits(encoders, ratio)):
         difference = replace(fits[0].lost_motion(both, delay=False), repeats=pairs)
         for fit in fits[1:]:
             delay = replace(fit.delay(1.0 if encoders.timed else 1.0 / STEP), repeats=pairs)
-            lost_motion = fit.lost_motion(both, delay=True)
+            lost_motion, even = (fit.lost_motion(both, delay=True, even=e) for e in (False, True))
             if not delay.clear:  # there may be no delay
                 off = abs(lost_motion.value - difference.value) / math.sqrt(3.0)
                 lost_motion = fit.lost_motion(both, Component(off), delay=True)
             lost_motion = replace(lost_motion, repeats=pairs)
-    lost = lost_motion or difference
+    lost = even or difference  # until play is crossed, it seems to vary
     if lost and travel < lost.value < math.inf:
         further = transmission_figures(encoders, ratio, _CROSSED * lost.value)
         if further.reversals:

@@ -9,8 +9,9 @@ that each leave out one block of successive samples.
 """
 
 import math
-from collections.abc import Collection
-from itertools import compress, pairwise
+from collections.abc import Collection, Sequence
+from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -39,6 +40,8 @@ _TO_STANDARD = math.sqrt(-2.0 * math.log(0.05))
 """Amplitude that 95 % do not exceed over the standard deviation of its sine and cosine."""
 _PLAY, _DELAY = 0.1, 0.05
 """Standard deviations expected of play, rad, and delay, s: so large that they hardly matter."""
+_DRIFTS, _WAVES = 3, 4  # columns of lag and drifts, and of play that varies over a turn
+_VARIES = 2.0  # times its ± by which one of four waves is no chance
 _LAG = 6e-5
 """Standard deviation, s², of the lag per acceleration: inertia over stiffness of the output, or
 1/ω² of an output that oscillates at 20 Hz on the springs of its gear, as robot arms do."""
@@ -67,7 +70,7 @@ class EncoderFit:
         Raises:
             RecordingError: if there are too few samples.
         """
-        self._angles = rotor, output, time, sign
+        self._angles, self._late = (rotor, output, time, sign), late
         then = time - late  # when the rotor was at the measured output angle
         signs = sign[np.rint(np.interp(then, time, np.arange(len(time)))).astype(int)]
         kept = np.flatnonzero(signs * (then >= time[0]) * (then <= time[-1]))
@@ -95,7 +98,8 @@ class EncoderFit:
         left = rest = output[kept] - slope * at - np.mean(output[kept] - slope * at)
         course = (then[kept] - np.mean(then[kept])) / np.ptp(then[kept])
         drifts = _PLAY * course, _DELAY * course * speed
-        others = np.column_stack([_LAG * acceleration, *drifts, rest])
+        waves = _PLAY * signs[kept, None] * _waves(slope * at)
+        others = np.column_stack([_LAG * acceleration, *drifts, waves, rest])
         blocks = np.array_split(np.hstack([columns, others]), _BLOCKS)
         self._products = np.array([block.T @ block for block in blocks])
         self._model = list(range(columns.shape[1]))
@@ -135,20 +139,47 @@ class EncoderFit:
 
     def delay(self, unit: float = 1.0) -> Estimate:
         """Estimate the delay of the output's samples, in a unit of 1/`unit` s."""
-        spread = Component(unit * _DELAY * float(self._equations.spreads(self._model)[_LATE]))
-        return jackknife(unit * self._delays, spread)
+        spread = Component(unit * _DELAY * float(self._equations.spreads(self._clear)[_LATE]))
+        fits = self._equations.solve(self._clear)[:, _LATE]
+        return jackknife(unit * (self._late - _DELAY * fits), spread)
 
-    def lost_motion(self, *others: Component, delay: bool) -> Estimate:
+    @cached_property
+    def _even(self) -> list[int]:
+        """Columns of the model, and those of a lag and of drifts that are clear."""
+        lag = len(self._model)
+        return [*self._model, *self._clear_of(self._model, range(lag, lag + _DRIFTS))]
+
+    @cached_property
+    def _clear(self) -> list[int]:
+        """The same columns, and those of play that varies with the angle if it clearly does."""
+        first = len(self._model) + _DRIFTS
+        waves = range(first, first + _WAVES)
+        return [*self._even, *(waves if self._clear_of(self._even, waves, _VARIES) else ())]
+
+    def _clear_of(
+        self, model: Sequence[int], further: Sequence[int], times: float = 1.0
+    ) -> list[int]:
+        """Return those of further columns that exceed their ± so many times if all are fitted."""
+        found = self._equations.first_order([*model, *further])[:, len(model) :].T
+        estimates = map(jackknife, found)
+        return [
+            place
+            for place, estimate in zip(further, estimates, strict=True)
+            if abs(estimate.value) >= times * estimate.expanded
+        ]
+
+    def lost_motion(self, *others: Component, delay: bool, even: bool = False) -> Estimate:
         """Estimate the angle lost on a reversal, rad, separate from a delay or including it.
 
-        Drifts of the zero and, with the delay, of the clocks and a lag that grows with the
-        acceleration, as that of a filter, are fitted, too, where they are clear.
+        Drifts of the zero and, with the delay, of the clocks, a lag that grows with the
+        acceleration, as that of a filter, and, unless play is taken to be `even`, its variation
+        over a turn, as under the weight of an arm, are fitted, too, where they are clear. The
+        value is the mean over the samples.
         """
-        model = [k for k in self._model if delay or k != _LATE]
-        further = [len(self._model) + k for k in ((0, 1, 2) if delay else (1,))]
-        found = self._equations.first_order([*model, *further])[:, len(model) :].T
-        clear = [jackknife(fits).clear for fits in found]
-        chosen = [*model, *compress(further, clear)]
+        chosen = self._even if even else self._clear
+        if not delay:
+            model = [k for k in self._model if k != _LATE]
+            chosen = [*model, *self._clear_of(model, [len(self._model) + 1])]
         fits = -2.0 * _PLAY * self._equations.first_order(chosen)[:, _DIRECTION]
         spread = 2.0 * _PLAY * float(self._equations.spreads(chosen)[_DIRECTION])
         # Both the spread and the scatter of blocks contain the noise: the greater of them counts.
@@ -212,6 +243,13 @@ def _columns(rotor: Array, slope: float, sign: Array, speed: Array) -> Array:
             columns += [size * power.real, size * power.imag]
             power = power * once
     return np.stack(columns, axis=1)
+
+
+def _waves(angle: Array) -> Array:
+    """Return orthogonal combinations of waves once and twice per turn, of mean 0, (n, 4)."""
+    power = np.exp(1j * np.outer(angle, (1, 2)))
+    columns = np.column_stack([np.ones(len(angle)), power.real, power.imag])
+    return np.asarray(math.sqrt(len(angle)) * np.linalg.qr(columns)[0][:, 1:])
 
 
 def _noise(residual: Array) -> float:

@@ -15,6 +15,7 @@ from simulated_encoders import (
     ramped_strokes,
     sine_strokes,
     stamps,
+    with_play,
 )
 
 from gear_kinematics.kinematics import GearRatio
@@ -110,6 +111,24 @@ def test_intervals_hold_for_any_seed():
     # 95 % of 80: fewer than 70 have a probability of less than 1 %.
     assert inside >= 70
     assert np.std(off) < 0.07 * ARC_MINUTE
+
+
+@pytest.mark.parametrize('weight', [0.6, -0.6])
+def test_play_that_varies_under_a_weight_is_no_delay(weight):
+    """The weight of an arm closes the play, but not where it hangs down."""
+    times = np.arange(0.0, 20.0, 0.004)
+    ideal = sine_strokes(1.5, 2.0)(times * (0.6 + times / 40.0)) - 0.75
+    side = with_play(ideal, PLAY) - ideal
+    drive = Drive(0.0, {1: 4.0 * ARC_MINUTE})
+    share = 1.0 + weight * np.cos(2.0 * ideal)
+    output = np.interp(times - 0.003, times, drive.output(ideal) + share * side)
+    output += 0.02 * ARC_MINUTE * np.random.default_rng(1).normal(size=len(times))
+    found = figures(encoders(-19.0 * ideal, output, stamps(times), COUNTS, OUTPUT_COUNTS))
+    trues = PLAY * np.mean(share), 0.003
+    for estimate, true in zip((found.lost_motion, found.delay), trues, strict=True):
+        assert abs(estimate.value - true) <= estimate.uncertainty
+    assert found.lost_motion.uncertainty < ARC_MINUTE
+    assert found.delay.uncertainty < 2e-4
 
 
 # Another ratio
