@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             f'--tolerance-{quantity}',
             type=arguments.between(0.0),
             default=Tolerances().of(unit),
-            metavar=unit.upper(),
+            metavar=unit.upper().replace('·M', '·m'),
             help=f'greatest accepted error of each {quantity} (default: %(default)g)',
         )
     text = (
