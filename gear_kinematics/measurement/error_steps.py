@@ -68,9 +68,9 @@ class IdealMotion(NamedTuple):
         return reverses, after
 
     def lost(self) -> tuple[Array, Array]:
-        """Return by how far the output may lag in a step after a reversal, rad, and the ways.
+        """Return by how far the output may lag in steps after a reversal, rad, and directions.
 
-        The ways, (m - 1,), are the directions of the motion there, and 0 elsewhere.
+        The directions, (m - 1,), are those of the motion there, and 0 elsewhere.
         """
         moved = np.diff(self.ideal)
         near, after = self.reversals(_REVERSAL)

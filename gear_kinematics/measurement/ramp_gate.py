@@ -78,7 +78,7 @@ def _stray(ramps: Loading) -> NDArray[np.bool_]:
 
 
 def _saturated(ramps: Loading) -> NDArray[np.bool_]:
-    """Find rows at the greatest torque of either sign in which the angle comes and goes, (n,)."""
+    """Find rows at the greatest torque of either sign in which the angle moves there and back."""
     found = np.zeros(len(ramps.torque), bool)
     least = _CAME_BACK * float(np.ptp(ramps.angle))
     for sign, greatest in ((1.0, np.max(ramps.torque)), (-1.0, np.min(ramps.torque))):

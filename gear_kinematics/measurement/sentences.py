@@ -16,9 +16,9 @@ NAMED = 3  # moments of a kind that are named
 
 # Parts of several sentences
 _ROWS = '{rows:%d row was|%d rows were} left out: '
-_THINNED = ', as no more are kept in memory: rates and speeds are those of these'
+_THINNED = ', to save memory: rates and speeds are those of what is left'
 _RESTS = 'At zero torque the output rests anywhere within {hysteresis:arcmin}′'
-_PLAY = _RESTS + '; backlash: {low:arcmin.2} to {high:arcmin.2}′, the rest friction'
+_PLAY = _RESTS + '; backlash: {low:arcmin.2} to {high:arcmin.2}′; the rest is friction'
 _DEVIATES = 'In one direction the output deviates by {error:arcmin}′ peak to peak'
 _VALUE, _LIMIT = 'the {figure} of {value} ', 'the limit of {limit}'
 _RATIO = 'the recorded ratio is {measured:si}, not {assumed}'
@@ -57,7 +57,7 @@ class Observation(Enum):
     )
     SATURATED = (
         'the torque sensor is saturated, first {at} {moment:si.6}{unit}: {count} readings left '
-        'out, in which the angle comes and goes'
+        'out, in which the angle moves there and back'
     )
     STOOD_STILL = (
         'an encoder stood still while the other moved, from {spans}'
@@ -83,12 +83,12 @@ class Observation(Enum):
     STATES_THINNED = '{topic}: one state of {every} is used' + _THINNED
     STATES_OUT_OF_ORDER = '{topic}: {count} states out of order'
     ROWS_THINNED = 'one row of {every} is used' + _THINNED
-    ROWS_LEFT_OUT = _ROWS + 'no numbers, or too large'
+    ROWS_LEFT_OUT = _ROWS + 'they have no numbers, or too large ones'
     NO_TIMES = _ROWS + 'no time in {column}'
     TIMES_OUT_OF_ORDER = _ROWS + 'the time in {column} is out of order'
     TIMES_GO_BACK = 'the time in {column} goes back after {rows} rows: the others are left out'
     SAME_TIMES = (
-        '{rows} rows have {times} different times in {column}: those with the same one are taken '
+        '{rows} rows have {times} different times in {column}: rows with the same time are taken '
         'to be evenly spaced'
     )
     NO_RAMPS = '{why}'
@@ -125,13 +125,13 @@ class Observation(Enum):
         'width, as where the angle drifts or slips.'
     )
     PLAY_UNKNOWN = _RESTS + '. How much of it is play is not known; {cause.value}.'
-    PLAY = _RESTS + '. Of it, {play:arcmin}′ is play, the rest friction.'
+    PLAY = _RESTS + '. Of it, {play:arcmin}′ is play; the rest is friction.'
     PLAY_WITHIN = _PLAY + '.'
     PLAY_NOT_SEPARATED = _PLAY + '; {cause.value}.'
     PLAY_BY_SLOW_RAMPS = _PLAY + '; to separate them, repeat slow ramps to ±{torque:si.2} N·m.'
     MEASURED_AT_OUTPUT = (
-        'Measured at the output: the wind-up is that of the gear, if the rotor was measured, too, '
-        'or locked.'
+        'Measured at the output: the wind-up is that of the gear, if the rotor was measured as '
+        'well, or locked.'
     )
     INFERRED = (
         'Inferred: no angle has a name such as output_angle, which tells that its encoder is at '
@@ -177,7 +177,7 @@ class Observation(Enum):
         "The gear has the ratio {ratio} ({evidence}). The rotor's position repeats after "
         '{size:si.6} rad.'
     )
-    FITS_GIVEN_RATIO = _SEEN + ', which the given one fits'
+    FITS_GIVEN_RATIO = _SEEN + ', which the given ratio fits'
     ONLY_FRACTION = _SEEN + ', the only simple fraction'
     NO_RATIO = 'The ratio is undetermined: {why}.'
     OPEN_RATIO = (
@@ -259,7 +259,7 @@ class Observation(Enum):
     )
     # What the loads of a recording show
     NO_PRELOAD = (
-        'The output gave at most {torque:si} N·m in {time}; without the parameter preload, '
+        'The output torque was at most {torque:si} N·m in {time}; without the parameter preload, '
         'nothing is known of the mesh; the ratio is {ratio}, by {source}'
     )
     IN_MESH = 'Both branches stayed in mesh over {time}' + _NEEDED
@@ -272,8 +272,8 @@ class Observation(Enum):
         '{answer}; the loads are unknown for {seconds:si} s, first from {start:.3f} s on'
     )
     LOADS_BEGIN_LATE = (
-        '{answer}; the loads are unknown for {seconds:si} s, first before 0 s, the time of the '
-        'first known load'
+        '{answer}; the loads are unknown for {seconds:si} s, first before the first known load, '
+        'at 0 s'
     )
     BRANCH_OUT_OF_MESH = (
         'branch {branch} was out of mesh for {duration:si} s from {start:.3f} s on: {torque:si} '
@@ -297,7 +297,7 @@ class Observation(Enum):
     )
     BEYOND_LIMITS = '{beyond}: {advice}'
     STAMPS_REPEAT = '{count} of {total} stamps repeat the one before'
-    NO_EFFORT = 'the effort is 0 throughout the motion, and taken as none'
+    NO_EFFORT = 'the effort is 0 throughout the motion, and is taken as absent'
     # What differs between recordings
     TWO_COMPARED = '{second} against {first}: {changes}'
     SEVERAL_COMPARED = 'against {first}: {changes} ({clear} of {count} significant)'

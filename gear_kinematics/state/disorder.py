@@ -29,7 +29,7 @@ class Disorder:
 
     @property
     def clock_fault(self) -> Fact | None:
-        """That stamps are from two clocks, or of another unit, or else the clock's last step back.
+        """Stamps of two clocks, or of another unit, or else the clock's last step back.
 
         The unit is known of batches only.
         """
@@ -55,7 +55,7 @@ class Disorder:
         """Return by how much the clock was set back between two samples, ns; forget the stamps.
 
         It was set back if several messages in a row, in order, were older than the last sample.
-        The first of them was as long after it as the second after the first.
+        The first of them is taken to be as long after that sample as the second after the first.
         """
         stamps, self.stamps = self.stamps, []
         if len(stamps) < 2 or any(a >= b for a, b in pairwise([*stamps, stamp])):  # noqa: PLR2004

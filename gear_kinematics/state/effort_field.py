@@ -10,7 +10,7 @@ from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.wire.batches import Array
 
 _MOTION = 0.05  # rad: noise of any encoder; beyond, the rotor has moved
-_MOTOR = 100.0  # N·m: a motor of more is that of a vehicle, of 10 kg and above
+_MOTOR = 100.0  # N·m: motors of more weigh 10 kg and above, as those of vehicles
 _SHEAR = 5e8  # Pa: where shafts of hardened steel yield
 
 
@@ -18,7 +18,7 @@ class EffortField:
     """Finds meaningless efforts: an effort of 0 throughout a motion was not measured."""
 
     def __init__(self) -> None:
-        self.real = False  # whether there was any but 0: from then on, a 0 is one
+        self.real = False  # whether one was not 0: from then on, 0 is a torque
         self._least, self._greatest = math.inf, -math.inf  # rad: positions with an effort of 0
 
     @property

@@ -20,7 +20,7 @@ from gear_kinematics.wire.joint_reader import Rejection
 
 _BEYOND_ANY_GEAR = 0.1  # rad
 _MOST_REPEATED, _ALL_REPEATED = 0.5, 0.95
-"""Shares of stamps from which repeated ones are a fault: if turns depend on them, or else."""
+"""Shares of repeated stamps that are a fault: where turns depend on stamps, and elsewhere."""
 _SOON = 0.1  # time, s, after a report until which the next one repeats its rates and comparisons
 
 

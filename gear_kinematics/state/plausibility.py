@@ -90,7 +90,7 @@ class Plausibility:
 
     @property
     def beyond_limits(self) -> Fact | None:
-        """How the readings are beyond the rotor's limits or their own, and which these are."""
+        """How the readings exceed the rotor's limits or their own precision, and which of them."""
         which = []
         if self.seen_speed:
             which.append(Condition.BEYOND_SPEED(speed=self.seen_speed))

@@ -99,7 +99,7 @@ class Condition(Enum):
     )
     VELOCITIES_WERE = OK, 'until {time:.3f} s, {doubt}', ''
     EFFORT_TOO_LARGE = OK, _EFFORT, ''
-    EFFORT_IS_ZERO = OK, 'the effort is 0 throughout the motion, and left out', ''
+    EFFORT_IS_ZERO = OK, 'the effort is 0 throughout the motion, and is taken as absent', ''
     UNSTAMPED = OK, '{messages} without a stamp: outputs have the time of reception', ''
     UNREFERENCED_AT_END = OK, 'the turns of the rotor are not known at the end', ''
     BEYOND_LIMITS = WARN, '{which}', '{advice}'
@@ -108,7 +108,7 @@ class Condition(Enum):
     BEYOND_PRECISION = (
         WARN,
         'the positions are numbers of single precision, in steps of {angle:.3g} rad so far from 0',
-        'Let the driver count turns in double precision, or start it anew in time.',
+        'Let the driver count turns in double precision, or restart it in time.',
     )
     ZERO_STAMPS = (
         WARN,
@@ -123,7 +123,7 @@ class Condition(Enum):
     STAMPS_TOO_FAST = (
         WARN,
         'the stamps run {factor:.0f} times as fast as the clock',
-        'Let the driver stamp in s and ns: speeds, gaps and jumps are not judged rightly.',
+        'Let the driver stamp in s and ns: until then, speeds, gaps and jumps are misjudged.',
     )
     SEVERAL_DRIVERS = WARN, '{count} drivers', 'Stop all drivers but one.'
     # The rotor's turns, and the encoder at the output that can tell them

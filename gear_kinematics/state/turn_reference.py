@@ -83,7 +83,7 @@ class Decision(NamedTuple):
 
     @property
     def unambiguous(self) -> bool:
-        """Whether the turns are the true ones: the budget explains their distance, no other's."""
+        """Whether the budget explains the distance of these turns, and that of no others."""
         return abs(self.distance) <= self.budget < self.margin and not self.outside
 
     @property
@@ -183,8 +183,8 @@ class TurnReference:
         self._block = ErrorBlock(self.rotor.parameters)
         self.decision: Decision | None = None  # the latest on the present count
         self.refuted: Decision | None = None
-        """That of the least budget which could tell the turns apart and did not explain the
-        distance: that of faster motion explains more."""
+        """The decision of the least budget that could tell the turns apart and did not explain the
+        distance. In faster motion, the budget explains more."""
         self.disagreement: Fact | None = None
         """How the encoder contradicts the present count; it stays until a block that can tell the
         turns apart agrees, as one in fast motion may agree with anything."""

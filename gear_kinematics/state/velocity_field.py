@@ -35,9 +35,9 @@ _FEW = 4  # velocities between readings, of which the mean is that of an oscilla
 _RELATED = 0.5  # the correlation that a motion has with its velocities, at least
 _FILTERED = 0.5  # share by which what a filter leaves of a motion may differ from a projection
 _LATE, _EXPLAINED = 0.03, 0.9
-"""s, and the square of a correlation, from which a delay is worth a word."""
+"""s, and the square of a correlation, from which a delay is reported."""
 _CHANGES = 4.0
-"""Noises of a reading: least change of the travels from which a delay is told. At a steady speed,
+"""Noises of a reading: least change of the travels that shows a delay. At a steady speed,
 an error of the positions, such as one of each turn, looks like a delay of half of `SPAN`."""
 
 

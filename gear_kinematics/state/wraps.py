@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Recognises positions that repeat, by equal steps back while the rotor turns on, or not as set.
+"""Recognises positions that repeat, or repeat otherwise than set, by equal steps back in a motion.
 
 A wrap shows as a jump only where readings are frequent. Otherwise the rotor could have turned back
 as far between two of them, and only the repetition tells a wrap from a motion. Then no period but

@@ -68,7 +68,7 @@ class FindingCause(Enum):
     ALL_MOVED_BY_HOMING = (
         'from the start, output angles are shifted by {angle:.12g} rad, as by another rotor_zero'
     )
-    HOMED = 'later outputs have the new zero of a node that was homed[, at {moment}]'
+    HOMED = 'the node was homed, and later outputs have the new zero[, at {moment}]'
     LAST_ALONE = 'only the last output is off'
     TURNS_TAKEN = 'the turns of the single-turn encoder are taken from the outputs'
     ENCODER_AGREES = 'the outputs agree with output_encoder'
@@ -125,7 +125,9 @@ class FindingCause(Enum):
     NAN_FOR_ALL = '{field} is NaN for all of {joints}, and should be empty: {messages}' + _FIRST
     # The recorder
     RECORDER_LOST = 'the recorder says that it lost {messages}'
-    ENDED_EARLY = '{output} ends {seconds:.3f} s before {topic}: the node may have ended'
+    ENDED_EARLY = (
+        '{output} ends {seconds:.3f} s before {topic}: the node may have ended, or lagged behind'
+    )
     NO_OUTPUT = (
         '{messages} of {topic} without any output: the node did not receive them, or was blocked'
     )

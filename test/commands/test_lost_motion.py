@@ -40,7 +40,7 @@ def test_a_report_in_a_pipe_is_its_answer_and_with_v_the_figures(recording, caps
     (line,) = capsys.readouterr().out.splitlines()
     said = re.fullmatch(
         r'gear\.csv: At zero torque the output rests anywhere within ([\d.]+) ± [\d.]+′\. '
-        r'Of it, ([\d.]+) ± [\d.]+′ is play, the rest friction\.',
+        r'Of it, ([\d.]+) ± [\d.]+′ is play; the rest is friction\.',
         line,
     )
     assert float(said[1]) == pytest.approx(arcmin, abs=0.1)

@@ -173,7 +173,7 @@ def test_no_recording_passes_whose_loads_are_unknown_for_a_time(
     failed, found = report(capsys, bag, '--config', config)
     assert (failed, found['verdict']) == (code, 'fail' if code else 'pass')
     assert ('the loads are unknown for 4 s' in found['answer']) == bool(code)
-    assert ('first before 0 s' in found['answer']) == (first == 0)
+    assert ('first before the first known load' in found['answer']) == (first == 0)
     assert found['left_out'] == {'effort missing': count}
 
 
@@ -184,7 +184,7 @@ def test_current_in_place_of_a_torque_is_questioned(shared_path, tmp_path, capsy
     assert 'efforts of up to 1000 N·m at the rotor are more' in capsys.readouterr().out
     config.write_text('/**: {ros__parameters: {rotor_effort_factor: 5e-5}}')
     _, found = report(capsys, bag, '--config', config)
-    assert 'The output gave at most 0.95 N·m in ' in found['answer']
+    assert 'The output torque was at most 0.95 N·m in ' in found['answer']
     assert 'rotor_effort_factor' not in found['answer']
 
 

@@ -40,7 +40,7 @@ def recorded(folder, factor, efforts, wrap):
         (180.0 / math.pi, None, [CONTRADICTS + 'deg/s']),
         (-1.0 / 19.0, None, [CONTRADICTS + 'the velocity of the output']),
         (-0.3, None, [CONTRADICTS + 'an unknown quantity, -0.3 times the slope']),
-        (1.0, 0.0 * TIMES, ['the effort is 0 throughout the motion, and taken as none']),
+        (1.0, 0.0 * TIMES, ['the effort is 0 throughout the motion, and is taken as absent']),
         (1.0, 700.0 * np.sin(TIMES), ['efforts of up to 700 N·m at the rotor are more']),
     ],
 )

@@ -178,7 +178,7 @@ FAULTS = {
     ),
     'five poses missing': (five_poses_missing, '5 messages missing'),
     'doubled outputs': (doubled, '10 messages too many'),
-    'node killed': (node_killed, 'the node may have ended'),
+    'node killed': (node_killed, 'the node may have ended, or lagged behind'),
 }
 
 

@@ -548,7 +548,7 @@ def test_homing_during_a_recording_passes_and_is_said(recorded, config, encoder,
     zero = position + 19 * 0.25  # there, the output is at the angle of homing
     [said] = [finding.text for finding in findings(report)]
     time = (rotor[place][1] - rotor[0][1]) / SECOND
-    assert said.endswith(f' of a node that was homed, at {time:+.3f} s')
+    assert said.endswith(f' later outputs have the new zero, at {time:+.3f} s')
     assert not validate(messages, config, strict=True).passed
     # A step to another angle is no homing, nor is one of the output alone.
     assert not validate(messages, replace(config, home_angle=0.2)).passed
