@@ -127,16 +127,6 @@ def test_a_calibration_is_replaced(recording, tmp_path):
     assert Calibration.load(target).gear_ratio == -19
 
 
-@pytest.mark.parametrize(('ratio', 'named'), [('7.29', 'is -19 ±'), ('19', 'counts backwards')])
-def test_a_wrong_ratio_gets_one_line_with_the_right_one(recording, ratio, named, tmp_path):
-    target = tmp_path / 'c.yaml'
-    line = refusal('calibrate', recording, '-o', target, '--ratio', ratio)
-    assert named in line
-    assert '--ratio=-19' in line
-    assert ('gearkin commission' in line) == (ratio != '19')
-    assert not target.exists()
-
-
 def test_bag_without_an_output_encoder_is_refused_in_one_line(tmp_path):
     stamps = 10**18 + np.arange(200) * 1_000_000
     path = write_recording(tmp_path / 'bag', Samples(stamps, np.linspace(0.0, 9.0, 200)))
