@@ -4,8 +4,8 @@
 #
 # A cylinder has a density of 7800 kg/m³. Expected of two of them that are concatenated, and of one of which a part is
 # taken, or which gets more triangles: its density, as that of a copy. What happens: concatenate(), `+`, submesh(),
-# subdivide(), and to_mesh() of a scene, make meshes with a density of 1, without a warning, so that mass and inertia for
-# a URDF are 7800 times too small. The inertia of the scene itself is right. convert_units() from m to mm keeps the
+# subdivide(), and to_mesh() of a scene, make meshes with a density of 1, without a warning, so that mass and inertia
+# for a URDF are 7800 times too small. The inertia of the scene itself is right. convert_units() from m to mm keeps the
 # density of 7800 for a volume in mm³: the cylinder of 6.1 kg weighs 6.1·10⁹.
 # For us: set the density after the last change of a mesh, or take `moment_inertia` of the scene.
 #
