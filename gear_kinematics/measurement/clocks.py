@@ -76,6 +76,16 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
     return clock._replace(unit=unit, scale=TIME_UNITS[unit])
 
 
+def check_steps(clock: Column, times: Array) -> None:
+    """Raise ColumnsError if times said to be in s are whole numbers apart by more than one."""
+    if clock.unit == 's':
+        known = times[np.isfinite(times)].astype(float)
+        step = float(np.median(np.abs(np.diff(known)))) if len(known) > 1 else 0.0
+        if step > _MOST_STEP and not np.any(known % 1.0):
+            cause = f'the times in {clock.name} are {step:.6g} s apart, as if they were ms'
+            raise ColumnsError(cause, 'their unit', time=f'{clock.name} [ms]')
+
+
 def in_nanoseconds(seconds: Array, fraction: Array, name: str) -> Array | None:
     """Add the fractions in a column of a name to whole seconds; None if they are times alone."""
     size = round(1.0 / TIME_UNITS[meaning(name).unit])

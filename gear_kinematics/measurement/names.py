@@ -21,8 +21,8 @@ _VOCABULARY = {
     '扭矩 力矩 转矩 トルク',
     'current': 'current',
     'time': 'time t stamp timestamp timestamps today datetime elapsed zeit uhrzeit messzeit '
-    'prüfzeit temps tempo tiempo tout xtime ts zeitstempel horodatage heure hora ora 时间 时间戳 '
-    '時間 x',
+    'prüfzeit temps tempo tiempo tout xtime ts zeitstempel horodatage heure hora ora czas tijd '
+    'tid время 시간 时间 时间戳 時間 x',
     'filling': 'header receive log dynamic measured meas actual act filtered raw field data value '
     'values feedback state states axis angular rotary present sensor abs side in ist host pi ros '
     'system unix epoch channel ch fb fbk ave estimate scalars signals date datum utc wall '

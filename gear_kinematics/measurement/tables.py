@@ -16,6 +16,7 @@ from gear_kinematics.measurement.assumed_units import against, differ_as_degrees
 from gear_kinematics.measurement.clocks import (
     are_apart,
     are_no_times,
+    check_steps,
     check_units,
     in_nanoseconds,
     stamps,
@@ -171,6 +172,8 @@ class _Samples:
             role = 'rotor' if 'rotor' in self.found else 'angle'
             turned = data[role] * (self.found[role].unit != 'counts')  # whose speed is unknown
             clock = with_unit(clock, raw[clocks[role]], turned, role)
+        elif clock and not sources.time and 'rotor' in self.found:
+            check_steps(clock, raw[clock.name])
         self._clock, self.timed = clock, clock is not None
         self.series: dict[str, _Series] = {}
         for roles, kept in groups:

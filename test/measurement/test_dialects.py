@@ -729,6 +729,8 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         ('time,angle,torque\ns,mil,Nm\n0,1,2\n', 'the unit mil is not known'),
         ('rotor,output\n1.5,20\n359.5,30.5\n', 'rotor has turns of 360'),
         ('Data1,torque\n0,2\n', 'Data1 does not say that it is an angle: .* --angle-unit'),
+        (lambda t, r, o: written([1e3 * t, r, o], 'time_s,rotor,output', '{:.0f}'),
+         r"times in time_s are 40 s apart, as if they were ms: .* --time-column 'time_s \[ms"),
         ('time;rotor;output\nsec;U;U\n0;0;0\n', 'rotor: the unit u is not known'),
         *((f'time,angle,{name}\n0,0,2\n1,0.001,3\n',
            f'{name} does not say that it is a torque: .* --torque-column .{name} .N·m')
