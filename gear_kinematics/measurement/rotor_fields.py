@@ -72,7 +72,8 @@ def questions(
     counts = not np.any(values[:, 0] % 1.0) and len(np.unique(values[:, 0])) >= _FEWEST
     if counts:
         yield Observation.COUNTS()
-    values[:, 0], (period, _) = _unwrapped(stamp, values[:, 0])
+    known_period = parameters.rotor_period if parameters else 0.0
+    values[:, 0], (period, _) = _unwrapped(stamp, values[:, 0], known_period)
     found = replace(NodeParameters.load(), rotor_joint=joint, rotor_encoder_range=period)
     rotor = RotorInput(parameters or found)
     if steps and not counts:
@@ -132,9 +133,14 @@ def kind_of_encoder(data: Sequence[bytes], received: Sequence[int], joint: str) 
     return [*encoder_kind([found], float(np.ptp(turned)) if len(turned) else 0.0)]
 
 
-def _unwrapped(stamp: Array, positions: Array) -> tuple[Array, tuple[float, int]]:
-    """Return positions, rad, without their wraps, and what `find_range` returns for them."""
-    found = find_range(positions, (stamp - stamp[0]) / SECOND, _STEP)
+def _unwrapped(
+    stamp: Array, positions: Array, period: float = 0.0
+) -> tuple[Array, tuple[float, int]]:
+    """Return positions, rad, without their wraps, and what `find_range` returns for them.
+
+    A period that is known, rad, is not looked for.
+    """
+    found = (period, 0) if period else find_range(positions, (stamp - stamp[0]) / SECOND, _STEP)
     return np.unwrap(positions, period=found[0]) if found[0] else positions, found
 
 

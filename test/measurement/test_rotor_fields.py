@@ -3,6 +3,7 @@
 
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from gear_kinematics.bag import Bag
 from gear_kinematics.commands.cli import main
 from gear_kinematics.measurement.rotor_fields import questions, recorded_questions
 from gear_kinematics.measurement.sentences import Observation
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.statuses import Condition
 
 TIMES = np.arange(0.0, 8.0, 0.01)
@@ -163,6 +165,20 @@ def test_two_drivers_of_one_joint_do_not_make_their_velocities_wrong():
     ]
     asked = [*questions(data, [10**9 + t for t, *_ in times], 'rotor', steps=True)]
     assert [each.condition for each in asked] == [Condition.JUMPED]
+
+
+def test_a_known_range_of_the_positions_is_used():
+    """In readings at 40 Hz that come in bursts, wraps after 25 rad are no equal steps."""
+    n = np.arange(320)
+    turned = 2.5 * n + 3.0 * np.sin(n / 40)
+    received = [10**9 + 55_000_000 * (-(-5 * k // 11)) + 1000 * k for k in n.tolist()]
+    data = [
+        rotor_bytes(t, position=[math.remainder(x, 25.0)], velocity=[100.0])
+        for t, x in zip(received, turned, strict=True)
+    ]
+    parameters = replace(NodeParameters.load(), rotor_joint='rotor', rotor_encoder_range=25.0)
+    parameters = replace(parameters, max_rotor_speed=200.0)
+    assert not [*questions(data, received, 'rotor', steps=True, parameters=parameters)]
 
 
 def test_other_joints_of_the_same_time_repeat_no_stamp():
