@@ -1,7 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Compares the fields of each output topic with recomputed ones, sample by sample."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Mechanism, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.diagnosis import AngleFit, FactorFit, diagnose
 from gear_kinematics.validation.fields import FieldSamples, Occurrences, Window, as_slice
@@ -104,9 +105,12 @@ class OutputState(JointStateTopic):
         self._absent_velocities = Occurrences()
         self._only_zeros = True  # whether all given velocities were 0, and no output had one
 
-    def why_none(self, *, recorded: bool) -> str:
-        """Say why no message is of this joint, where messages of the topic are recorded or not."""
-        if recorded:
+    def why_none(self, parameters: NodeParameters, recorded: Collection[str]) -> str:
+        """Say why no message is of this joint, by the topics that are recorded."""
+        turns_open = parameters.rotor_period or parameters.absolute
+        if turns_open and parameters.unreferenced_outputs == 'withhold':
+            return 'no outputs in it: the node withholds them while the turns are not known'
+        if self.name in recorded:
             return f'{self.name} has only other joints: give the parameters of its node'
         return 'no outputs in it: gearkin compute writes a bag with them'
 

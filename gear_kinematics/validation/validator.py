@@ -158,7 +158,7 @@ class Validator:
         if error is None and not rotor.valid:
             error = f'no usable rotor states: {self._state.input.why_rejected or "no messages"}'
         elif error is None and not any(topic.messages for topic in topics):
-            error = self.output.why_none(recorded=self.given.output in self._begun)
+            error = self.output.why_none(self._parameters, self._begun)
         checked = [finding for check in input_health.CHECKS for finding in check(rotor)]
         proof = self._proof.report() if self._proof and error is None else None
         findings = *self._found(proof), *checked

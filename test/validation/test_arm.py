@@ -37,9 +37,9 @@ PAIR, WRIST, ALL = 40, 41, 42
 """Numbers of the messages of two drivers with the same stamp, and of one with all joints."""
 
 
-def judged(path, messages, size: int = 10_000):
+def judged(path, messages, size: int = 10_000, **values):
     """The report on messages that come in batches of a size."""
-    actuators = load_actuators(config(path / 'arm.yaml'))
+    actuators = load_actuators(config(path / 'arm.yaml', **values))
     task = of_arm([Task(path, each) for each in actuators.values()])
     arm = ArmValidator([Validator(each) for each in task.actuators])
     feed(arm, messages, size)
@@ -205,6 +205,10 @@ def test_actuators_with_the_same_error_are_named_in_one_clause(tmp_path):
     assert judged(tmp_path, recording(edit=wrist)).error == f'shoulder, elbow: {others}'
     none = 'no outputs in it: gearkin compute writes a bag with them'
     assert judged(tmp_path, recording(edit=lambda *_: [])).error == none
+    unknown = {'shoulder.rotor_encoder': 'single_turn', 'unreferenced_outputs': 'withhold'}
+    withheld = 'no outputs in it: the node withholds them while the turns are not known'
+    report = judged(tmp_path, recording(edit=wrist), **unknown)
+    assert report.error == f'shoulder: {withheld}; elbow: {others}'
 
 
 def test_corrected_outputs_that_are_not_judged_are_those_of_their_joints(tmp_path):
