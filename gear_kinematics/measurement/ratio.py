@@ -32,8 +32,8 @@ _BEYOND = 0.05  # share of such recordings: a coincidence must be as much less l
 _CANDIDATES = 10
 _UNITS = {'degrees': math.degrees(1.0), 'turns': 1.0 / TURN}  # per rad, of a rotor by mistake
 _MOST_ERROR = 0.5
-"""Greatest error of a gear without a delay over its motion, rms. It is about 1 or more where the
-output is the angle of another joint, a time, a current or a temperature."""
+"""Greatest error of a gear without a delay, play and noise over its motion, rms. It is about 1 or
+more where the output is the angle of another joint, a time, a current or a temperature."""
 _MULTIPLE = 1e-3  # from a whole multiple of the assumed ratio, as by wrong counts per turn
 
 
@@ -98,8 +98,13 @@ def not_followed(angle: Array, error: Array, assumed: Fraction) -> Observed | No
     """Return that the ratio is wrong if the error is too large for so little motion.
 
     Both are (n,), rad: the output angle that the ratio implies, and the error without a delay.
+    Play and white noise do not count, however large they are.
     """
-    if np.std(error) <= _MOST_ERROR * np.std(angle):
+    sides = directions(angle, min(_SETTLED * float(np.ptp(angle)), _MOST_PLAY))
+    columns = np.column_stack([np.ones(len(error)), sides])
+    left = error - columns @ np.linalg.lstsq(columns, error, rcond=None)[0]
+    changes = np.diff(error, 2, prepend=error[:1], append=error[-1:])  # six times as much noise
+    if np.var(left) - np.mean(changes**2) / 6.0 <= _MOST_ERROR**2 * np.var(angle):
         return None
     return Observation.NOT_THE_RATIO(assumed=assumed, why=Observation.NOT_FOLLOWED())
 

@@ -17,7 +17,7 @@ from gear_kinematics.measurement.calibration import fit
 from gear_kinematics.measurement.columns import Sources
 from gear_kinematics.measurement.commissioning.analysis import Channel, Request, commission
 from gear_kinematics.measurement.lost_motion import measure
-from gear_kinematics.measurement.ratio import estimate_ratio, wrong_ratio
+from gear_kinematics.measurement.ratio import estimate_ratio, not_followed, wrong_ratio
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import Recording, RecordingError
 from gear_kinematics.measurement.sentences import Observation
@@ -336,6 +336,15 @@ def test_an_output_that_the_rotor_does_not_move_is_neither_calibrated_nor_measur
     else:
         with pytest.raises(RecordingError, match=r'gear: .* not have the ratio -19: .*too little'):
             fit([recording], Fraction(-19))
+
+
+@pytest.mark.parametrize('sampled', [1, 10])
+@pytest.mark.parametrize('play', [0.0, 0.45])
+def test_an_output_with_much_play_and_noise_follows_its_rotor(sampled, play):
+    noise = 0.2 * np.random.default_rng(1).normal(size=len(JOINT))
+    error = with_play(JOINT, play) + noise - JOINT
+    assert not_followed(JOINT[::sampled], error[::sampled], Fraction(-19)) is None
+    assert not_followed(JOINT[::sampled], noise[::sampled] - JOINT[::sampled], Fraction(-19))
 
 
 def test_a_given_ratio_is_not_confirmed_by_a_temperature():
