@@ -23,6 +23,7 @@ _MIN_ROWS = 25  # least number of rows of a half cycle
 _MIN_SIGNAL_TO_NOISE = 5.0  # least peak of a half cycle, in standard deviations of the noise
 _MIN_SHARE = 0.01  # share of the largest torque that a half cycle has to exceed
 _EQUAL_TORQUES = 3.0  # standard deviations of the noise within which torques count as equal
+_STRAIGHT = 3.0  # standard deviations of the noise up to which the end of a ramp is straight
 _SMOOTHED = 0.01  # share of a ramp's amplitude to which a moving mean reduces the noise
 ALIKE = 1.5  #: ratio up to which amplitudes of ramps count as equal
 _ROUNDING = 1e-9  # relative differences of torques by rounding, as of a constant torque
@@ -312,9 +313,13 @@ def _smooth(torque: Array, noise: float) -> Array:
     sums = np.concatenate([[0.0], np.cumsum(torque)])
     smooth = torque.copy()
     smooth[edge : len(torque) - edge] = (sums[rows:] - sums[:-rows]) / rows
-    if noise:
-        smooth[: tenth // 2] = _line(torque[:tenth])[: tenth // 2]
-        smooth[-tenth // 2 :] = _line(torque[-tenth:])[-tenth // 2 :]
+    for end, half in (
+        (slice(tenth), slice(tenth // 2)),
+        (slice(-tenth, None), slice(-tenth // 2, None)),
+    ):
+        line = _line(torque[end])
+        if noise and np.std(torque[end] - line) <= _STRAIGHT * noise:  # not the end of a staircase
+            smooth[half] = line[half]
     return smooth
 
 

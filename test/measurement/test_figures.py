@@ -163,6 +163,14 @@ def test_figures_between_the_steps_of_a_staircase_are_within_their_uncertainty(s
     assert abs(lowest.value - expected) <= lowest.uncertainty < 0.5 * expected
 
 
+def test_the_ends_of_a_noisy_staircase_are_no_straight_ramp():
+    steps = np.repeat(np.round(ramps(*[(LARGE, 80)] * 5) / 8.0) * 8.0, 8)
+    noisy = steps + 0.02 * np.random.default_rng(1).standard_normal(len(steps))
+    found = measured(noisy, steps / 2500.0, step=0.0)
+    for stiffness in (found.overall, found.stiffness[-1].slope):
+        assert stiffness.value == pytest.approx(2500.0, rel=1e-3)
+
+
 @pytest.mark.parametrize('step', [0.0, math.radians(0.2)])
 def test_the_overall_stiffness_is_within_its_uncertainty(step):
     """The peak of a hardening spring lies between samples, or between steps of the encoder."""
