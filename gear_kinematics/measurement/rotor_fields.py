@@ -67,15 +67,19 @@ def questions(
     if unstamped := int(np.count_nonzero(states.joint_found & (states.stamp == 0))):
         yield Condition.UNSTAMPED(messages=counted(unstamped, 'message'))
     stamp, values = _in_order(states, stamp)
+    found = replace(NodeParameters.load(), rotor_joint=joint)
     if len(stamp) < _FEWEST:
+        if steps:
+            rotor = RotorInput(parameters or found)
+            rotor.accept_batch(data, received)
+            yield from _impossible_steps(rotor, limited=False)
         return
     counts = not np.any(values[:, 0] % 1.0) and len(np.unique(values[:, 0])) >= _FEWEST
     if counts:
         yield Observation.COUNTS()
     known_period = parameters.rotor_period if parameters else 0.0
     values[:, 0], (period, _) = _unwrapped(stamp, values[:, 0], known_period)
-    found = replace(NodeParameters.load(), rotor_joint=joint, rotor_encoder_range=period)
-    rotor = RotorInput(parameters or found)
+    rotor = RotorInput(parameters or replace(found, rotor_encoder_range=period))
     if steps and not counts:
         rotor.accept_batch(data, received)
         yield from _impossible_steps(rotor, limited=bool(limits))

@@ -118,6 +118,16 @@ def test_rejected_positions_and_a_clock_that_is_set_back_are_named():
     ]
 
 
+def test_a_motor_that_only_sends_nan_is_named():
+    """As one without power on the topic of an arm."""
+    received = stamps(TIMES).tolist()
+    data = [rotor_bytes(stamp, ['m1', 'm2'], [0.0, math.nan]) for stamp in received]
+    asked = {
+        joint: [*map(str, questions(data, received, joint, steps=True))] for joint in ('m1', 'm2')
+    }
+    assert asked == {'m1': [], 'm2': ['rejected: position not finite 800']}
+
+
 def test_stamps_of_milliseconds_as_seconds_are_named():
     received = stamps(TIMES)
     data = [
