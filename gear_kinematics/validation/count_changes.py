@@ -103,6 +103,7 @@ class CountChanges:
             if whole:
                 more_turns, more = repeated(round(rotor_angle / (period or TURN)), period or TURN)
             sample = {name: samples[name][row] for name in ('segment', 'stamp', 'number')}
+            sample['output'] = angle[k]
             number = self._explain(
                 sample, before, angle_before, jump, whole=whole, constant=constant
             )
@@ -153,6 +154,10 @@ class CountChanges:
             self._notes.append(Finding(cause, values={'angle': jump}))
             return 0
         at_home = abs(angle + jump - self._parameters.home_angle) <= self._tolerance
+        if segment != before and self._parameters.unreferenced_outputs == 'withhold':
+            # Outputs were withheld before homing: the angle of the first one is somewhat later.
+            later = self._parameters.home_max_speed * self._parameters.input_timeout
+            at_home = abs(sample['output'] - self._parameters.home_angle) <= later
         if self._homing and at_home:
             self.homed = True
             self._notes.append(Finding(FindingCause.HOMED, stamp=int(sample['stamp'])))

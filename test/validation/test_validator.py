@@ -19,6 +19,7 @@ from validating import feed, field_of, texts, topic_of, validate
 
 from gear_kinematics.bag import Message
 from gear_kinematics.report.document import Verdict
+from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.document import moving
 from gear_kinematics.validation.findings import findings, sentence
@@ -571,6 +572,26 @@ def test_turns_that_a_loss_hid_after_homing_are_taken_from_the_outputs(config):
     assert report.verdict == Verdict.PASS
     assert 'the turns of the single-turn encoder are taken from the outputs' in texts(report)
     assert not validate(messages, replace(config, home_angle=0.2)).passed
+
+
+def test_homing_that_ends_a_time_of_withheld_outputs_passes_and_is_said(config):
+    """The turns are lost in a gap of 0.5 s, in which the rotor turns on at 2 rad/s."""
+    config = replace(
+        config, rotor_encoder='single_turn', unreferenced_outputs='withhold', home_angle=0.25
+    )
+    driver = []
+    for k in [*range(300), *range(550, 900)]:
+        stamp = 1_700_000_000 * SECOND + k * SECOND // 500
+        position = [(3.0 + 0.004 * min(max(k - 150, 0), 500)) % math.tau]
+        driver.append((ROTOR, stamp, rotor_bytes(stamp, position=position)))
+    gear = GearState(config)
+    messages = answered(config, driver[:400], home_after=100, gear=gear)
+    messages += answered(config, driver[400:], home_after=500, gear=gear)
+    report = validate(messages, config)
+    assert report.verdict == Verdict.PASS
+    assert topic_of(report, OUTPUT).compared == 200 + 150
+    assert any(text.startswith('later outputs have the new zero') for text in texts(report))
+    assert not validate(messages, replace(config, home_angle=0.15)).passed
 
 
 def test_nothing_to_validate_is_unusable(recorded, config):
