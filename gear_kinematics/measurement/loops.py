@@ -243,8 +243,7 @@ def _ramps(
 def _isotonic(values: Array) -> NDArray[np.intp]:
     """Find where the levels of the nearest non-decreasing sequence begin, and the end of the last.
 
-    Neighbours in the wrong order are pooled (M. Ayer et al., Annals of Mathematical Statistics 26
-    (1955) 641).
+    Neighbours in the wrong order are pooled (M. Ayer et al., Ann. Math. Statist. 26 (1955) 641).
     """
     least = _ROUNDING * float(np.max(np.abs(values)))
     levels: list[tuple[float, int]] = []  # mean and rows of each
