@@ -51,7 +51,7 @@ class HeldUp(NamedTuple):
         if 7 * span >= 4 * length or length <= self.length - since:
             return self
         if since - length < 2 * self.length:  # the stamps of the burst before tell no speed
-            usual = max(former[3], self.usual) or self.length
+            usual = max(former[3], self.usual)
             return HeldUp(end, length, usual if self.usual or usual > _CLOSE else 0)
         speed = abs(former[2]) / former[3] * 1e9 if former[3] else math.inf
         # Bursts that came before while the rotor stood did not show.
@@ -62,7 +62,7 @@ class HeldUp(NamedTuple):
         """Take the stamp of a reading that repeats the position of the one before, ns."""
         pause = stamp - last
         regular = self.end == last and pause <= 2 * max(self.length, self.usual)
-        return HeldUp(stamp, pause, pause if regular else 0)
+        return HeldUp(stamp, 0, pause) if regular else HeldUp(stamp, pause)
 
 
 def _stale(last: Reading, former: Reading, late: float) -> float:

@@ -350,29 +350,12 @@ def test_a_driver_that_always_sends_in_bursts_is_believed_from_the_first_reading
         assert judge.judge(angle, stamp) is BELIEVED
 
 
-@pytest.mark.parametrize(('period', 'start', 'motion'), [
-    (50, 0, lambda t: 599.97 * t),
-    *((25, first, lambda t: 4.0 - 4.0 * np.cos(25.0 * t)) for first in range(20, 26)),
-])  # fmt: skip
-def test_a_driver_that_sends_each_30_ms_what_there_is_is_believed(period, start, motion):
-    """From a slower encoder: the times between its messages are 30 or 60 ms, or none."""
-    judge, n = Plausibility(*LIMITS), np.arange(60)
-    stamps = START + 30_000_000 * -(-period * n // 30) + 1000 * n
-    angles = np.round(motion(1e-3 * period * (n - start).clip(0)), 4)
-    assert judge.judge(0.001, START - SECOND) is BELIEVED
-    for stamp, angle in zip(stamps.tolist(), angles.tolist(), strict=True):
-        assert judge.judge(angle, stamp) is BELIEVED
-
-
-def test_a_reading_soon_after_a_burst_behind_a_rotor_at_rest_is_believed():
-    """At rest, the readings at 60 Hz differ by a count at most, and then come 65 ms late."""
-    times = [*(16_700_000 * k for k in range(21)), 398_000_000, 398_100_000, 398_200_000]
-    times += [401_000_000, 417_700_000, 434_400_000]
-    angles = [0.0001 * (k % 3 > 0) for k in range(21)]
-    angles += [0.2, 1.1, 2.6, 5.0, 7.8, 11.3]
+def test_a_driver_that_sends_each_30_ms_what_there_is_is_believed():
+    """From an encoder at 20 Hz: the times between its messages are 30 or 60 ms."""
     judge = Plausibility(*LIMITS)
-    for stamp, angle in zip(times, angles, strict=True):
-        assert judge.judge(angle, START + stamp) is BELIEVED
+    for k in range(60):
+        stamp = START + 30_000_000 * -(-5 * k // 3)
+        assert judge.judge(round(599.97 * 0.05 * k, 4), stamp) is BELIEVED
 
 
 @pytest.mark.parametrize('start', [0.1, 0.203, 0.505])
