@@ -13,6 +13,7 @@ from gear_kinematics.validation.recorder import AFTER, BACK, BEFORE, LOST, NO_IN
 from gear_kinematics.validation.report import BagReport, FieldReport, Finding, TopicReport
 from gear_kinematics.validation.task import QUANTITIES
 
+_LONGEST = 1e8  # s: longer than a recording, so that the stamps are of two clocks
 _WHY_LEFT_OUT = {
     BEFORE: 'the recording had just begun',
     AFTER: 'the recording ended first',
@@ -64,7 +65,8 @@ def sentence(found: Finding, report: BagReport | None = None) -> str:
     if found.stamp is not None:
         text += of_moment
         time = report.seconds(found.stamp) if report else None
-        moment = f'stamp {found.stamp}' if time is None else f'{time:+.3f} s'
+        known = time is not None and abs(time) < _LONGEST
+        moment = f'{time:+.3f} s' if known else f'stamp {found.stamp}'
     nouns = {'messages': 'message', 'items': 'value', 'gaps': 'gap'}
     values = {name: counted(found.count, noun) for name, noun in nouns.items()}
     values |= {name: _in_words(value) for name, value in found.values.items()}

@@ -48,6 +48,9 @@ def test_every_cause_has_its_sentence():
 def test_time_of_a_finding_is_that_since_the_start_where_both_are_known():
     found, report = Finding(FindingCause.MISSING, count=1, stamp=2 * 10**9), unusable(Path(), '')
     assert sentence(found, report) == '1 message missing, the first at stamp 2000000000'
+    # The inputs had no stamps, and the outputs those of a simulated clock.
+    apart = replace(report, rotor=replace(ROTOR, first_stamp=1_700_000_000 * 10**9))
+    assert sentence(found, apart) == '1 message missing, the first at stamp 2000000000'
     assert sentence(Finding(FindingCause.MISSING, count=1), report) == '1 message missing'
 
 
