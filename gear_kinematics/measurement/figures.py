@@ -210,18 +210,19 @@ def _stiffness(ramps: Ramps, rated: float) -> tuple[MeasuredStiffness, ...]:
             break
         pulls = [pull for pull in ramps.pulls if all(_loads(half, low, ramps) for half in pull)]
         compliances, early, late = (
-            [
-                0.5 * sum(_compliance(h, low + by, min(high, abs(h.end)) + by) for h in p)
-                for p in pulls
-            ]
+            np.array(
+                [[_compliance(h, low + by, min(high, abs(h.end)) + by) for h in p] for p in pulls]
+            )
             for by in (0.0, -0.5 * spacing, 0.5 * spacing)
         )
         # Otherwise friction holds the gear throughout.
-        if compliances and float(np.mean(compliances)) * (high - low) > still:
+        if len(compliances) and float(np.mean(compliances)) * (high - low) > still:
             steps = Component(math.sqrt(2.0) * resolution(ramps.step) / (high - low))
             # The torque at which play is crossed lies between two samples.
             between = Component(resolution(abs(float(np.mean(late) - np.mean(early)))))
-            slope = Estimate.of_mean(compliances, steps, between).inverse()
+            # By chance, two pairs often scatter far too little; both signs seldom do.
+            sides = [(0.5, side) for side in compliances.T]
+            slope = Estimate.of_sum(sides, steps, between).inverse()
             found.append(MeasuredStiffness(low, high, slope))
     return tuple(found)
 

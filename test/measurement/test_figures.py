@@ -163,6 +163,17 @@ def test_figures_between_the_steps_of_a_staircase_are_within_their_uncertainty(s
     assert abs(lowest.value - expected) <= lowest.uncertainty < 0.5 * expected
 
 
+def test_scatter_of_either_sign_of_torque_is_not_hidden_by_the_other():
+    """The compliances of both signs change from loop to loop, but their means do not."""
+    torque = ramps(*[(40.0, 800)] * 4)
+    change = np.repeat([0.01, -0.01, 0.01, -0.01], len(torque) // 4 + 1)[: len(torque)]
+    found = measured(torque, torque / 200.0 * (1.0 + change * np.sign(torque)), step=0.0)
+    scatter = 0.01 / math.sqrt(2.0)  # of a mean compliance with independent signs
+    for stiffness in found.stiffness:
+        assert stiffness.slope.value == pytest.approx(200.0, rel=1e-3)
+        assert stiffness.slope.uncertainty / 200.0 > scatter / math.sqrt(4.0)
+
+
 def test_the_ends_of_a_noisy_staircase_are_no_straight_ramp():
     steps = np.repeat(np.round(ramps(*[(LARGE, 80)] * 5) / 8.0) * 8.0, 8)
     noisy = steps + 0.02 * np.random.default_rng(1).standard_normal(len(steps))
