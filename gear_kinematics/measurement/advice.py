@@ -26,7 +26,8 @@ from gear_kinematics.measurement.recording import Array
 _TRIED, _FEWEST, _ROWS = 12, 10, 10_000
 """Number of columns and examples that are tried; least and most rows that are compared."""
 _FIRST = 4  # number of columns among which the times are
-_ALIKE = 0.3  # least correlation of the steps of both encoders
+_ALIKE, _COPIED = 0.3, 1.0 - 1e-6
+"""Least correlation of the steps of both encoders; that of one angle in two units."""
 _LISTED = 600  # characters of the list of columns
 _WANTED = r'target|action|goal|desire|cmd|command|setpoint|demand|(?<![a-z])(ref|des)(?![a-z])'
 """Words in names of columns of what was commanded, not measured."""
@@ -173,6 +174,8 @@ def _alike(
         if pair.shape[1] > _FEWEST and (spread := np.std(pair, axis=1))[0] > spread[1] > 0.0:
             likeness = abs(np.corrcoef(pair)[0, 1])
             named = not (meaning(rotor).on_output or meaning(output).on_rotor)
+            if likeness > _COPIED:
+                likeness = 0.0  # comes last
             pairs[named and likeness > _ALIKE, likeness] = rotor, output
     for sure, likeness in sorted(pairs, reverse=True)[:_FEWEST]:
         yield sure, *pairs[sure, likeness]

@@ -731,6 +731,9 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         ('Data1,torque\n0,2\n', 'Data1 does not say that it is an angle: .* --angle-unit'),
         (lambda t, r, o: written([1e3 * t, r, o], 'time_s,rotor,output', '{:.0f}'),
          r"times in time_s are 40 s apart, as if they were ms: .* --time-column 'time_s \[ms"),
+        (lambda t, r, o: written([t, *in_counts(r, o), in_counts(r)[0] / 4096 * 360],
+                                 'time,mot_ang,ank_ang,mot_ang_deg', ('{:.2f}', *3 * ['{:.7f}'])),
+         'for example: .* --output-column .?ank_ang'),
         ('time;rotor;output\nsec;U;U\n0;0;0\n', 'rotor: the unit u is not known'),
         *((f'time,angle,{name}\n0,0,2\n1,0.001,3\n',
            f'{name} does not say that it is a torque: .* --torque-column .{name} .N·m')
