@@ -52,7 +52,7 @@ def measured(config):
         ('twist [arcsec]', 'torque', 648_000.0 / math.pi, [], {}),
         ('POSITION', 'TORQUE', 1.0 / TURN, ['Q_CURRENT', 'CONTROL_TORQUE'], {}),
         ('a', 'b', 1.0 / TURN, ['angle', 'torque'],
-         {'angle': 'a', 'torque': 'b', 'unit': 'rev'}),
+         {'angle': 'a', 'torque': 'b [N·m]', 'unit': 'rev'}),
         ('angle_urad', 'torque', 1e3, [], {'angle': 'angle_urad', 'unit': 'mrad'}),
         ('angle', 'output_torque', -19.0, [], {'on_rotor': True}),
         ('Output angle (rad)', 'torque', 1.0, [], {}),
