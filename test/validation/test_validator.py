@@ -246,7 +246,7 @@ def test_zeros_for_velocities_may_have_been_known_from_before_a_short_recording(
 
 
 @pytest.mark.parametrize(('effort', 'named'), [
-    (0.0, 'the effort is 0 throughout the motion, and left out'),
+    (0.0, 'the effort is 0 throughout the motion, and is taken as absent'),
     (-1500.0, 'efforts of up to 1500 N·m at the rotor'), (5.0, ''),
 ])  # fmt: skip
 def test_efforts_that_are_no_torques_are_named(recorded, config, effort, named):
