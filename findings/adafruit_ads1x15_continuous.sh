@@ -4,11 +4,11 @@
 # inputs.
 #
 # An analog encoder, a torque sensor and the current of the motor are at the inputs of an ADS1115. Expected in
-# continuous mode, as in versions before 3.0: each AnalogIn reads its own input. What happens: the input that is asked
-# for is thrown away, and the one that the chip has is written back to it. After the power came on this is the
-# difference between the inputs 0 and 1, so that all three are read as 1.5 V of 2.0 V, 0.5 V and 1.0 V; after one
-# reading in single mode, it is that input for good. Nothing warns. It is known from a bench as well (issue 112 of the
-# project). A simulated chip takes the place of the bus.
+# continuous mode, as in version 3.0.4 and before: each AnalogIn reads its own input. What happens: the input that is
+# asked for is thrown away, and the one that the chip has is written back to it. After the power came on this is the
+# difference between the inputs 0 and 1, so that 2.0 V, 0.5 V and 1.0 V are all read as 1.5 V; after one reading in
+# single mode, it is that input for good. Nothing warns. It was seen on real chips, too (issue 112 of the project). A
+# simulated chip takes the place of the bus.
 # For us: use Mode.SINGLE; continuous mode is right for one input alone that was read in single mode before.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -5,7 +5,7 @@
 #
 # An HX711 gives the signal of a bridge as a number of 24 bits with a sign, so that a torque sensor gives negative
 # numbers for one direction. Expected: -1000. What happens: the bits above the 24 are set as for a number of 32 bits
-# with a sign, but a number of Python has no sign there, so that 2^32 is added to each negative value. Where the zero
+# with a sign, but an integer of Python has no sign bit, so that 2^32 is added to each negative value. Where the zero
 # of the bridge is at -100 counts and what read() gives is set as the tare, a torque of 1000 counts is -4294966296,
 # while those of the other direction are right. A simulated HX711 takes the place of the pins.
 # For us: take the sign yourself, as (value + 2**31) % 2**32 - 2**31, before a tare is subtracted.

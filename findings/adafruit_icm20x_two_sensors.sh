@@ -6,7 +6,7 @@
 # An ICM20649 sits at the motor and an ICM20948 at the output. Expected: each is read by the scale of its own type.
 # What happens: the scales stand in classes that both share, AccelRange and GyroRange, and each sensor that is opened
 # puts its own in the place of the other's. So the first IMU reads half of its speed and of its acceleration from then
-# on, 4.9 m/s² at rest, and a gear of 1:1 seems to have the ratio 2; opened in the other order, it reads twice. A
+# on, 4.9 m/s² at rest, and a gear of 1:1 seems to double the speed; opened in the other order, it reads twice. A
 # range that is chosen later by its name is another one too: RANGE_4G sets 8 g in the first. Nothing warns. Two IMUs
 # of one type, and each in a process of its own, are right. A simulated bus takes the place of the sensors.
 # For us: use one type of IMU per process.
@@ -85,4 +85,8 @@ assert alone == (100.0, 9.81) and both == ((50.0, 4.9), (100.0, 9.81))
 motor.accelerometer_range = AccelRange.RANGE_4G
 assert bus.imus[0x68].banks[2][0x14] >> 1 & 3 == 1  # 8 g in an ICM20649
 print('range of 4 g: bits 1, which are 8 g in an ICM20649')
+first = ICM20948(Bus())
+ICM20649(Bus())
+print('opened in the other order', reading(first))
+assert reading(first) == (199.7, 19.61)
 PYTHON
