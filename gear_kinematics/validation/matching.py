@@ -214,6 +214,7 @@ class OutputTopic:
         self._late_received = np.zeros(0, np.int64)
         self.unstamped = False  # whether the node gave its own time to inputs without a stamp
         self.shared = False  # whether messages have joints of several actuators, NaN if absent
+        self._own = False  # whether a message had one of the joints
 
     def take(
         self,
@@ -231,11 +232,10 @@ class OutputTopic:
             if not isinstance(messages, JointStateBatch):
                 messages = JointStateBatch(messages)
             having, own = messages.having(self.joints)
-            if having is not None and not self.shared:
-                # The only message of an input's stamp can be its output under another name.
-                stamps = messages.heads[0]
-                named_otherwise = np.isin(stamps, window['stamp']) & ~np.isin(stamps, own.heads[0])
-                having = np.union1d(having, np.flatnonzero(named_otherwise))
+            self._own = self._own or self.shared or len(own) > 0
+            if having is not None and not self._own:
+                # Before the first, those of an input's stamp can be outputs under another name.
+                having = np.flatnonzero(np.isin(messages.heads[0], window['stamp']))
                 own = JointStateBatch([messages[row] for row in having.tolist()])
             if having is not None:
                 messages, times = own, times[having]
