@@ -3,11 +3,12 @@
 # gpiozero 2.0.1: an encoder of 360 steps, read as an angle by wrap=True and max_steps=180, is off by 1° more each
 # turn.
 #
-# Expected of RotaryEncoder(a, b, wrap=True, max_steps=180), whose value goes from -1 to 1 and "wraps around": 180 *
-# value is the angle of a shaft whose encoder has 360 steps per turn. What happens: the counter goes from -180 to 180,
-# which are 361 positions, as both ends are counted although they are the same angle. So after one turn the angle is
-# -1°, after 100 turns -100°, and with 20 steps per turn and max_steps=10 it is off by 18° per turn. No choice of
-# max_steps fits, as the number of positions is odd. The pins are those that gpiozero has for tests.
+# By the documentation of RotaryEncoder(a, b, wrap=True, max_steps=180), the count "wraps around by negation" when it
+# "reaches" 180, where its value is 1. Expected: 180 * value is the angle of a shaft whose encoder has 360 steps per
+# turn. What happens: only the step after 180 leads to -180, which is the same angle, so that there are 361 positions.
+# So after one turn the angle is -1°, after 100 turns -100°, and with 20 steps per turn and max_steps=10 it is off by
+# 18° per turn. No max_steps fits an even number of steps, as the number of positions is odd. The pins are those that
+# gpiozero has for tests.
 # For us: take max_steps=0, which does not limit steps, and compute the angle from them.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
