@@ -5,8 +5,9 @@
 # yaw_pitch_roll is documented to give the intrinsic angles z, y', x'', which ROS and URDF call yaw, pitch and roll.
 # Expected of a quaternion made of yaw 60°, pitch 40° and roll 30° in this order: these angles. What happens: the
 # formulas are those of the order x, y', z'', so that the three angles are those of another convention under the names
-# of this one. Where only one of the angles is not 0, they are right, so that a test with one rotation passes; with 0.1
-# rad each the error is 10 mrad.
+# of this one. The documentation gives the matrix of that order, Rx Ry Rz, two lines below the names, and so says both.
+# Where only one of the angles is not 0, they are right, so that a test with one rotation passes; with 0.1 rad each the
+# error is 10 mrad.
 # For us: take the angles from rotation_matrix, as below, or use scipy.spatial.transform.Rotation.as_euler('ZYX').
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
