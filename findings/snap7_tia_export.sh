@@ -3,11 +3,11 @@
 # python-snap7 3.3.0: by a TIA Portal export, each variable of a data block is at byte 0, and of two axes one is left.
 #
 # load_tia_xml() makes tags of the XML that TIA Portal exports of a data block. There a variable has its place, in
-# bits, as an IntegerAttribute named Offset, and a structure has its members inside. Expected: the speed of the second
-# axis at byte 20. What happens: an attribute Offset of the variable itself is looked for, which such a file does not
-# have, and 0 is taken in its place: the first position, 12.5 rad, is read as the speed, and a goal overwrites that
-# position. The members of both axes have the same names, without their axis, so that the second axis replaces the
-# first. Nothing warns. The server of the package answers here.
+# bits, as an IntegerAttribute named Offset if read-only attributes are exported, and a structure has its members
+# inside. Expected: the speed of the second axis at byte 20, or an error. What happens: an attribute Offset of the
+# variable itself is looked for, which such a file does not have, and 0 is taken in its place: the first position,
+# 12.5 rad, is read as the speed, and a goal overwrites that position. The members of both axes have the same names,
+# without their axis, so that the second axis replaces the first. Nothing warns. The server of the package answers here.
 # For us: write the tags into a .csv for load_csv(), with their bytes, and check one value that is known.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
