@@ -4,10 +4,11 @@
 #
 # A joint's command interface is limited to ±0.5 rad, its state begins at 0.2 rad, and a transmission inside of the
 # <ros2_control> has a mechanical reduction of 19. Expected: they are there after a way through URDFParser and
-# URDFGenerator. What happens: the transmission is gone, so that a controller drives the joint at 19 times its angle;
-# so are the limits and the initial value, without a warning. Each number is rounded to six decimals, also a ratio: a
-# mimic of -1/19 becomes -0.052632, and after 1000 turns of the rotor its output is off by 2.6 mrad. Masses, inertias,
-# limits, damping, friction and a <transmission> outside of <ros2_control> are kept.
+# URDFGenerator, which the package calls lossless. What happens: the transmission, the limits and the initial value are
+# gone without a warning, so that a drive that should turn 19 times as far as the joint turns only as far as the joint.
+# Numbers are rounded to six decimals, but for those near 0, and a ratio as well: a mimic of -1/19 becomes -0.052632,
+# and after 1000 turns of the rotor its output is off by 2.6 mrad. But for the rounding, masses, inertias, limits,
+# damping, friction and a <transmission> outside of <ros2_control> are kept.
 # For us: keep the <ros2_control> part in a file of its own, and compare the URDF that was written with the one before.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
