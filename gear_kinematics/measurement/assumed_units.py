@@ -29,6 +29,8 @@ _TORQUES = re.compile(
     r'(mN\W?m|N\W?[cm]m|kgf?\W?c?m|(oz|lb)f?s?\W?(in|ft)|(in|ft)\W?(oz|lb)f?s?)\b(?!/)'
 )
 """Units of torque there other than N·m."""
+_COMPOUND = re.compile(r'(?i)torque|moment(?!um)')
+"""What names of torques such as Bremsmoment and TorqueSensor contain."""
 _FEWEST, _ROWS = 10, 10_000  # least number of samples of a part; greatest number in all
 
 
@@ -56,7 +58,8 @@ def against(
     if not step:
         if whole and len(np.unique(values)) > _WHOLE:
             return 'has whole numbers', 'Nmm'
-        if not any(meaning(word).role == 'torque' for word in says.words):
+        known = any(meaning(word).role == 'torque' for word in says.words)
+        if not (known or _COMPOUND.search(column.name)):
             return 'does not say that it is a torque', 'N·m'
         return ('is raw', 'N·m') if 'raw' in says.words else None
     if not (says.role or column.unit):

@@ -761,6 +761,13 @@ def test_what_speaks_against_a_unit_is_said(tmp_path, gear, reference, table, wr
     assert '\n' not in str(caught.value)
 
 
+@pytest.mark.parametrize('name', ['Bremsmoment', 'torquemeter_2'])
+def test_compound_words_say_that_they_are_torques(tmp_path, gear, reference, name):
+    path = saved(tmp_path, written(reference('ramps'), f'time,angle,{name}', '{:.5f}'))
+    recording = read(path, gear, Sources(angle='angle', torque=name))
+    assert f'torque at the output [N·m, assumed] from {name}' in recording.columns
+
+
 UNTOLD = {
     'counts': lambda t, r, o: written([t, *in_counts(r, o)], 'time,motor_inc,load_inc'),
     'counts without unit': lambda t, r, o: written([t, *in_counts(r, o)],
