@@ -78,7 +78,7 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
 
 def check_steps(clock: Column, times: Array) -> None:
     """Raise ColumnsError if times said to be in s are whole numbers apart by more than one."""
-    if clock.unit == 's':
+    if clock.unit == 's' and times.dtype.kind != 'M':  # dates
         known = times[np.isfinite(times)].astype(float)
         step = float(np.median(np.abs(np.diff(known)))) if len(known) > 1 else 0.0
         if step > _MOST_STEP and not np.any(known % 1.0):

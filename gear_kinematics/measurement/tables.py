@@ -209,8 +209,9 @@ class _Samples:
             empty = not (filled.any() or table.first.get(clock.name, clock.name))
             clock = None if empty or are_no_times(clock.name, clock.unit, times[filled]) else clock
         both = in_nanoseconds(raw[clock.name], raw[rest], rest) if clock and rest else None
-        if clock and both is not None:
-            raw[clock.name], clock = both, clock._replace(unit='ns', scale=1.0 / SECOND)
+        if clock and rest and both is not None:
+            raw[clock.name] = raw[rest] = both  # so that neither is the time of one encoder
+            clock = clock._replace(unit='ns', scale=1.0 / SECOND)
         return raw, clock
 
     def _own(

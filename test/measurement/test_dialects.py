@@ -285,8 +285,10 @@ ENCODERS = {
     'times in ns beside those in s': lambda t, r, o: written(
         [t, 1e9 * t, r, o], 'time_s,time_ns,rotor,output',
         ('{:.2f}', '{:.0f}', '{:.5f}', '{:.5f}')),
-    'whole seconds and their µs': lambda t, r, o: written(
-        [t // 1, 1e6 * (t % 1.0), r, o], 'sec,usec,rotor,output',
+    'dates in a column of seconds': lambda t, r, o: written(
+        [t, r, o], 'time_s,rotor,output', (moment(), '{:.5f}', '{:.5f}')),
+    'whole seconds, one of them missing, and their µs': lambda t, r, o: written(
+        [np.where(t == t[7], np.nan, t // 1), 1e6 * (t % 1.0), r, o], 'sec,usec,rotor,output',
         ('{:.0f}', '{:.0f}', '{:.5f}', '{:.5f}')),
     'FAMOS, with Grad below the names': plain(
         'Zeit;Motorwinkel;Abtriebswinkel\ns;Grad;Grad', ';', '{:.5f}', angle=DEG, german=True),
