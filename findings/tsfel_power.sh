@@ -3,11 +3,12 @@
 # tsfel 0.2.0: a vibration of 2 g has the same greatest power as one of 1 g, and 50 Hz a median frequency of 188 Hz.
 #
 # A vibration at 50 Hz has an amplitude of 1 g and 2 % of its power in noise, at 1000 Hz for 2 s. Expected: an average
-# power of 0.5 g², a median frequency of 50 Hz, and four times the greatest density of power for 2 g. What happens:
-# max_power_spectrum() divides the signal by its standard deviation first, so that it does not depend on the amplitude,
-# but grows with the length of the record. average_power() is 500, and 1000 at 2000 Hz, as its sum is not multiplied by
-# the interval. median_frequency() and spectral_centroid() weigh amplitudes instead of powers, so that the median is 188
-# Hz in 2 s and 239 Hz in 50 s, as noise counts the more the longer the record is. abs_energy() and rms() are right.
+# power of 0.5 g², four times the greatest density of power for 2 g, and a median frequency of 50 Hz, which halves the
+# power. What happens: average_power() is 500, and 1000 at 2000 Hz, as the sum of the squares is divided by the time
+# instead of the number of samples. max_power_spectrum(), the "maximum power spectrum density of the signal", divides
+# the signal by its standard deviation first, so that it does not depend on the amplitude. median_frequency() halves
+# the sum of the amplitudes instead, so that it is 188 Hz in 2 s and 239 Hz in 50 s, as noise counts the more the longer
+# the record is. spectral_centroid() weighs amplitudes too, as is usual for sound. rms() is right.
 # For us: compute powers and frequencies from scipy.signal.welch().
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
@@ -26,22 +27,18 @@ def vibration(rate=1000, seconds=2, amplitude=1.0, noise=0.0):
     return amplitude * np.sin(2 * np.pi * 50 * times) + noise * np.random.default_rng(0).normal(size=len(times))
 
 
-powers = {
-    '1 g': tsfel.max_power_spectrum(vibration(), 1000),
-    '2 g': tsfel.max_power_spectrum(vibration(amplitude=2.0), 1000),
-    '1 g for 10 s': tsfel.max_power_spectrum(vibration(seconds=10), 1000),
-}
-print('greatest density of power', powers)
-assert abs(powers['2 g'] / powers['1 g'] - 1) < 1e-6 and abs(powers['1 g for 10 s'] / powers['1 g'] - 5) < 1e-6
+powers = [tsfel.max_power_spectrum(vibration(amplitude=amplitude), 1000) for amplitude in (1.0, 2.0)]
+print('greatest density of power of 1 g and 2 g', powers)
+assert abs(powers[1] / powers[0] - 1) < 1e-6
 averages = [tsfel.average_power(vibration(rate), rate) for rate in (1000, 2000)]
 print('average power at 1000 and 2000 Hz', averages, 'right', np.mean(vibration() ** 2))
-assert abs(np.mean(vibration() ** 2) - 0.5) < 1e-6
+assert abs(np.mean(vibration() ** 2) - 0.5) < 1e-6 and abs(tsfel.rms(vibration()) ** 2 - 0.5) < 1e-6
 assert abs(averages[0] - 500) < 1 and abs(averages[1] - 1000) < 1
-for seconds, median, centre in ((2, 187.5, 210), (50, 238.7, 241)):
+for seconds, median in ((2, 187.5), (50, 238.7)):
     noisy = vibration(seconds=seconds, noise=0.1)
-    found = tsfel.median_frequency(noisy, 1000), tsfel.spectral_centroid(noisy, 1000)
+    found = tsfel.median_frequency(noisy, 1000)
     power = np.abs(np.fft.rfft(noisy)) ** 2
     right = np.fft.rfftfreq(len(noisy), 1e-3)[np.searchsorted(np.cumsum(power), power.sum() / 2)]
-    print(seconds, 's: median frequency and centroid', found, 'median of the power', right)
-    assert abs(right - 50) < 1e-6 and abs(found[0] - median) < 1 and abs(found[1] - centre) < 1
+    print(seconds, 's: median frequency', found, 'median of the power', right)
+    assert abs(right - 50) < 1e-6 and abs(found - median) < 1
 PYTHON
