@@ -5,9 +5,9 @@
 # An INA228 at a shunt of 15 mΩ is to raise its alert above 10 A, which are 150 mV. Expected of
 # shunt_voltage_overlimit = 0.15: the chip compares with 150 mV; by its data sheet a step of that register is 5 µV, or
 # 1.25 µV in the smaller range. What happens: the value is written in steps of 312.5 µV, or 78.125 µV, so that the
-# chip compares with 2.4 mV, 62.5 times less, and what is read back is 0.15. After power came on, when no limit is
-# set, 10.24 V are read as the upper limit and +10.24 V as the lower one, which has a sign; a limit for currents in
-# the other direction is an error. A simulated bus takes the place of the chip.
+# chip compares with 2.4 mV, 62.5 times less, and what is read back is 0.15. After power came on, when the limits are
+# ±163.84 mV, both are read as +10.24 V, as the sign of the lower one is lost too; setting a negative one is an error.
+# A simulated bus takes the place of the chip.
 # For us: give 62.5 times the voltage of the shunt.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

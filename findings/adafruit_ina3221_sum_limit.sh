@@ -5,9 +5,9 @@
 # An INA3221 measures the currents of three motors and raises an alert where their sum, as the voltage of the shunts,
 # exceeds a limit. Expected of shunt_voltage_sum_limit = 0.05: register 0x0E has 50 mV. What happens: the value goes
 # to register 0x10, the upper limit of the supply's voltage, which is 2.496 V then instead of 10.0 V, while 0x0E keeps
-# the 655.32 mV that it has after power came on. So the motors are not guarded, and the pin that says that the supply
-# is up says so at 2.5 V. What is read back is 0.65532, if it is looked at. The limits of the single channels are
-# right. A simulated bus takes the place of the chip.
+# the 655.32 mV that it has after power came on, as reading the limit back shows. So the motors are not guarded, and
+# the pin that says that the supply is up says so at 2.5 V. The limits of the single channels are right. A simulated bus
+# takes the place of the chip.
 # For us: write the limit by _write_register(0x0E, ...), and read back each limit that was set.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

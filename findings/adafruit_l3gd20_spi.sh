@@ -4,9 +4,9 @@
 #
 # Expected of gyro, which is documented in rad/s: 1.745 rad/s over either bus. What happens: over I2C, gyro_raw gives
 # the counts of the chip, and gyro turns them into degrees and then into radians. Over SPI, gyro_raw has turned the
-# counts into radians already, so that they are turned a second time, and each speed is too small by 57.3 times;
+# counts into radians already, so that they are turned a second time, and each speed is 57.3 times too small;
 # gyro_raw itself, "in units rad/s", is in neither unit, 199.47 here. So one sensor at the motor over SPI and one at
-# the output over I2C give a ratio that is wrong by 57.3. Simulated buses take the place of the sensor.
+# the output over I2C give a ratio that is wrong by a factor of 57.3. Simulated buses take the place of the sensor.
 # For us: multiply what is read over SPI by 180/π, and check a slow turn of 90° by its integral.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
