@@ -1,7 +1,7 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# gpiozero 2.0.1: an encoder of 360 steps, read as an angle by wrap=True and max_steps=180, is off by 1° more each
-# turn.
+# gpiozero 2.0.1.post3: an encoder of 360 steps, read as an angle by wrap=True and max_steps=180, is off by 1° more
+# each turn.
 #
 # By the documentation of RotaryEncoder(a, b, wrap=True, max_steps=180), the count "wraps around by negation" when it
 # "reaches" 180, where its value is 1. Expected: 180 * value is the angle of a shaft whose encoder has 360 steps per
