@@ -149,12 +149,36 @@ class Encoders:
         before = values[self.before]
         return np.asarray(before + self.share * (values[self._after] - before))
 
+    @property
+    def bend(self) -> Array:
+        """Rotor angle at the measured angles beyond the line between two samples, (n,), rad.
+
+        It is that of the cubic through the four nearest samples, and 0 where these do not belong
+        to one motion, or are so uneven in time that steps of the encoder would be magnified.
+        """
+        rotor, seconds = self.rotor, self.rotor.seconds
+        first = np.clip(self.before - 1, 0, max(len(seconds) - 4, 0))
+        at = np.minimum(first + np.arange(4)[:, np.newaxis], len(seconds) - 1)
+        spans = np.diff(seconds[at], axis=0)
+        sound = (first == self.before - 1) & (rotor.segment[at[0]] == rotor.segment[at[3]])
+        sound &= (spans[1] > 0.0) & (np.minimum(spans[0], spans[2]) >= 0.25 * spans[1])
+        spans = np.where(sound, spans, 1.0)
+        speeds = np.diff(rotor.turned[at], axis=0) / spans
+        # Half of the accelerations before and after, which the cubic weights by the time.
+        early, late = np.diff(speeds, axis=0) / (spans[:-1] + spans[1:])
+        weight = (spans[0] + self.share * spans[1]) / spans.sum(axis=0)
+        half = early + weight * (late - early)
+        bend = -self.share * (1.0 - self.share) * spans[1] ** 2 * half
+        # Less than this may come from rounding the four samples alone, and would add noise.
+        sound &= np.abs(bend) > self.rotor_step.size / 8.0
+        return np.where(sound, bend, 0.0)
+
     def position(self) -> tuple[Array, Array]:
         """Rotor angle at the measured angles: whole turns, and the remainder, rad."""
         turns, angle = self.rotor.turns[self.before], self.rotor.angle[self.before]
         step = (self.rotor.turns[self._after] - turns) * TURN
         step += self.rotor.angle[self._after] - angle
-        rest = angle + self.share * step
+        rest = angle + self.share * step + self.bend
         wraps = np.round(rest / TURN)
         return turns + wraps, rest - TURN * wraps
 

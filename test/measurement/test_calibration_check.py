@@ -4,16 +4,19 @@
 import re
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
 from calibrating import LIMITED, MECHANISM, halves, recorded
 from calibrations import calibration
+from gear_recordings import encoders
 from simulated_gear import GearSet, gears, simulate, strokes, wandering
 
+from gear_kinematics.correction.calibration_file import Order
 from gear_kinematics.correction.calibration_fit import CalibrationFit
 from gear_kinematics.measurement.calibration import fit, judge
-from gear_kinematics.measurement.recording import RecordingError
+from gear_kinematics.measurement.recording import Recording, RecordingError
 
 
 def two_halves(setting, seed, motion=wandering, duration=31.0, *, timed=True):
@@ -56,6 +59,25 @@ def test_delay_of_each_recording_is_estimated_like_its_zero():
     assert after == pytest.approx(np.hypot(found.rms_after, 2e-3 * speed), rel=0.1)
     assert before > found.rms_before
     assert found.rms_after < 0.15 * after
+
+
+@pytest.mark.parametrize('cycles', [1, 2])
+def test_orders_between_fast_samples_are_corrected(cycles):
+    """Where its phase changes by up to 2 rad from sample to sample."""
+    time, late = np.arange(3000) / 100.0, 4e-3
+    order = Order('rotor', Fraction(cycles), 1e-3, 0.0)
+    alone = calibration(orders=(order,), constant=0.0, hysteresis=(), compliance=None)
+
+    def ideal(time):
+        return 2.0 * np.sin(2.6 * time)
+
+    output = ideal(time - late)
+    output = output + 1e-3 * np.cos(cycles * 19.0 * output)
+    both = encoders(-19.0 * ideal(time), output, np.round(1e9 * time).astype(np.int64))
+    judged = judge(Recording(Path(__file__), 'fast', (), len(time), both), alone)
+    assert judged.delay.value == pytest.approx(late, abs=1e-5)
+    assert judged.rms_before == pytest.approx(1e-3 / np.sqrt(2.0), rel=0.05)
+    assert judged.rms_after < 0.03 * judged.rms_before
 
 
 def test_without_times_there_is_no_delay():

@@ -64,9 +64,9 @@ def test_states_are_those_of_the_definition_after_thousands_of_reversals():
 
 
 def test_state_between_two_samples_of_the_rotor():
-    x = np.array([0.0, 1.0, 0.9, 0.5])
+    x = np.array([0.0, 1.0, 1.0, 0.9, 0.9, 0.5])
     between = replace(
-        encoders(x, x), before=np.array([1, 2]), share=np.array([0.5, 0.25]), measured=x[:2]
+        encoders(x, x), before=np.array([2, 4]), share=np.array([0.5, 0.25]), measured=x[:2]
     )
     middle, known = followed(between)
     # From the bound 0.25 at 1.0, back by 0.05, and by 0.1 + 0.1.

@@ -2,6 +2,7 @@
 """A delay between the stamps of both encoders is no lost motion, and another ratio no error."""
 
 import math
+from dataclasses import replace
 from itertools import accumulate
 
 import numpy as np
@@ -173,3 +174,62 @@ def test_right_ratio_is_not_doubted(profile, eccentricity):
     for seed in range(5):
         drive = Drive(PLAY, ERRORS | {1: eccentricity}, 2e-3, 0.2 * ARC_MINUTE, **STEPS)
         assert not check_ratio(recorded(drive, profile, 16.0, 100.0, seed), RATIO)
+
+
+LATE = 4e-3
+"""Delay of the output, s, whose encoder is read at about 100 Hz."""
+
+
+def fast(time):
+    """Output angle at times, s: sines of up to 13 rad/s²."""
+    return 2.0 * np.sin(2.6 * time)
+
+
+def without_delay(time, **changes) -> Encoders:
+    """Both encoders, read at the same times, after the delay of the output is removed."""
+    both = encoders(-19.0 * fast(time), fast(time - LATE), np.round(1e9 * time).astype(np.int64))
+    rotor = both.rotor._replace(**changes)
+    return replace(both, rotor=rotor).earlier(LATE)
+
+
+def turned(both: Encoders) -> np.ndarray:
+    turns, angle = both.position()
+    return turns * TURN + angle
+
+
+@pytest.mark.parametrize('jitter', [0.0, 2e-3])
+def test_the_rotor_between_its_samples_accelerates(jitter):
+    """The line between two samples is off by 3.2e-3 rad of the rotor."""
+    time = np.arange(1000) / 100.0
+    time += jitter * np.random.default_rng(1).uniform(-1.0, 1.0, len(time))
+    both = without_delay(np.sort(time))
+    inside = both.chosen(np.flatnonzero((both.before > 0) & (both.before < len(time) - 2)))
+    np.testing.assert_allclose(turned(inside), -19.0 * inside.measured, rtol=0, atol=4e-6)
+
+
+@pytest.mark.parametrize('unknown', ['ends', 'segment', 'one time', 'gap'])
+def test_the_rotor_moves_evenly_where_samples_around_are_missing(unknown):
+    time, changes = np.arange(12) / 100.0, {}
+    if unknown == 'segment':
+        changes['segment'] = np.repeat([0, 1], [6, 6])
+    if unknown == 'one time':
+        time[6] = time[5]
+    if unknown == 'gap':
+        time[6:] += 0.05
+    both = without_delay(time, **changes)
+    before = {'ends': [0, 10], 'segment': [4, 5, 6], 'one time': [4, 6], 'gap': [5]}[unknown]
+    rows = np.flatnonzero(np.isin(both.before, before))
+    assert set(both.before[rows].tolist()) == set(before)
+    even = np.interp(both.seconds, both.rotor.seconds, -19.0 * fast(time))
+    np.testing.assert_allclose(turned(both)[rows], even[rows], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize('speed', [0.01, 0.1, 1.0])
+def test_coarse_readings_of_the_rotor_are_hardly_noisier_than_on_a_line(speed):
+    time, step = np.arange(6000) / 100.0, TURN / 256
+    motion = speed * np.sin(time)
+    rotor = step * np.round(-19.0 * motion / step)
+    output = speed * np.sin(time - LATE)
+    both = encoders(rotor, output, np.round(1e9 * time).astype(np.int64)).earlier(LATE)
+    line = np.interp(both.seconds, time, rotor) + 19.0 * both.measured
+    assert np.std(turned(both) + 19.0 * both.measured) < 1.05 * np.std(line)

@@ -73,7 +73,7 @@ def judge(recording: Recording, calibration: Calibration) -> Judgement:
     )
 
     def samples_of(shift: float) -> Samples:
-        return Samples(recording, ratio, shift, correction.deviation)
+        return Samples(recording, ratio, shift, correction)
 
     model, (delay,) = without_delays(lambda shifts: GearModel([samples_of(*shifts)], []), 1)
     delayed, (samples,) = samples_of(0.0), model.samples

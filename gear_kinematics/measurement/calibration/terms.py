@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gear_kinematics.correction.calibration_file import Compliance, Order, Stop
-from gear_kinematics.correction.corrector import MAX_GAP
+from gear_kinematics.correction.corrector import MAX_GAP, Correction
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.recording import Array, Recording
@@ -56,25 +56,30 @@ class Samples:
         recording: Recording,
         ratio: Fraction,
         shift: float = 0.0,
-        deviation: Array | None = None,
+        correction: Correction | None = None,
     ) -> None:
         """Take the samples as measured earlier than their stamps by a shift, s.
 
-        A known `deviation` at the rotor's samples, rad, is subtracted from the error.
+        A known correction at the rotor's samples is subtracted from the error.
         """
         encoders = recording.both.earlier(shift) if shift else recording.both
         self.recording, self.encoders, self.shift = recording, encoders, shift
         self.turns, self.angle = encoders.position()
-        self.known = 0.0 if deviation is None else encoders.at_measured(deviation)
-        self.error = encoders.error(ratio) - self.known
+        ideal, bend = encoders.ideal(ratio), encoders.bend / float(ratio)
+        self._travel = encoders.at_measured(ideal) + bend
+        self.known: Array | float = 0.0
+        if correction:
+            self.known = encoders.at_measured(correction.deviation)
+            # The tangents at both rotor samples are off as far as the line, to the other side.
+            tangents = encoders.at_measured(correction.slope) * self._travel
+            self.known += 0.5 * (tangents - encoders.at_measured(correction.slope * ideal))
+        self.error = encoders.error(ratio) - bend - self.known
         self.offset = float(np.median(self.error))
         self.error -= self.offset
         self.speed = encoders.speed(ratio)
         self.torque = encoders.torque(ratio)
-        ideal = encoders.ideal(ratio)
         first_output = TURN * float(encoders.rotor.turns[0]) / float(ratio)
         # Otherwise, the outputs of recordings would count from different whole turns.
-        self._travel = encoders.at_measured(ideal)
         self.output = self._travel + first_output
         self.rotor_turns: Array = self.turns - self.turns[0] + self.angle / TURN
         self.used = np.arange(len(self.error))
