@@ -151,7 +151,7 @@ class EncoderFit:
 
     @cached_property
     def _clear(self) -> list[int]:
-        """The same columns, and those of play that varies with the angle if it clearly does."""
+        """Columns as in `_even`, and those of play that varies with the angle if it does."""
         first = len(self._model) + _DRIFTS
         waves = range(first, first + _WAVES)
         return [*self._even, *(waves if self._clear_of(self._even, waves, _VARIES) else ())]
