@@ -41,7 +41,7 @@ _TO_STANDARD = math.sqrt(-2.0 * math.log(0.05))
 _PLAY, _DELAY = 0.1, 0.05
 """Standard deviations expected of play, rad, and delay, s: so large that they hardly matter."""
 _DRIFTS, _WAVES = 3, 4  # columns of lag and drifts, and of play that varies over a turn
-_VARIES = 2.0  # times its ± by which one of four waves is no chance
+_VARIES = 3.0  # times its ± by which one of four waves is no chance
 _LAG = 6e-5
 """Standard deviation, s², of the lag per acceleration: inertia over stiffness of the output, or
 1/ω² of an output that oscillates at 20 Hz on the springs of its gear, as robot arms do."""

@@ -132,6 +132,13 @@ def test_play_that_varies_under_a_weight_is_no_delay(weight):
     assert found.delay.uncertainty < 2e-4
 
 
+def test_even_play_does_not_seem_to_vary_by_chance():
+    play = 8.45075 * ARC_MINUTE
+    drive = Drive(play, ERRORS, -0.0033903, 0.27887 * ARC_MINUTE, **STEPS)
+    found = figures(recorded(drive, sine_strokes(1.42020, 1.64483), 12.0, 250.0, 17))
+    assert abs(found.lost_motion.value - play) <= found.lost_motion.uncertainty < 0.2 * ARC_MINUTE
+
+
 # Another ratio
 
 
