@@ -37,7 +37,7 @@ def test_of_a_recording_mostly_rejected_compute_tells_and_gives_code_1(bad, code
 
 
 def test_compute_says_that_stamps_are_missing(tmp_path, capsys):
-    messages = [(ROTOR, 5 + k, rotor_bytes(9 * (k < 8), position=[1.0])) for k in range(10)]
+    messages = [(ROTOR, 5 + k, rotor_bytes((5 + k) * (k < 8), position=[1.0])) for k in range(10)]
     source = write_bag(tmp_path / 'source', messages, {ROTOR: JOINT_STATE})
     assert main(['compute', str(source), str(out := tmp_path / 'out')]) == 0
     told = '2 messages without a stamp: outputs have the time of reception'
