@@ -312,12 +312,14 @@ def _smooth(torque: Array, noise: float) -> Array:
     sums = np.concatenate([[0.0], np.cumsum(torque)])
     smooth = torque.copy()
     smooth[edge : len(torque) - edge] = (sums[rows:] - sums[:-rows]) / rows
+    if not noise:
+        return smooth
     for end, half in (
         (slice(tenth), slice(tenth // 2)),
         (slice(-tenth, None), slice(-tenth // 2, None)),
     ):
         line = _line(torque[end])
-        if noise and np.std(torque[end] - line) <= _STRAIGHT * noise:  # not the end of a staircase
+        if np.std(torque[end] - line) <= _STRAIGHT * noise:  # not the end of a staircase
             smooth[half] = line[half]
     return smooth
 

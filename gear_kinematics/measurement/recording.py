@@ -103,7 +103,7 @@ def locked_shaft(
     return Loading(torque, angle, moment, stamp is not None, step, measured)
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, eq=False)
 class Encoders:
     """Measured output angles, and the motion of the rotor around each of them."""
 
@@ -149,7 +149,7 @@ class Encoders:
         before = values[self.before]
         return np.asarray(before + self.share * (values[self._after] - before))
 
-    @property
+    @cached_property
     def bend(self) -> Array:
         """Rotor angle at the measured angles beyond the line between two samples, (n,), rad.
 

@@ -93,9 +93,10 @@ def questions(
     absent = len(given) and not given.any() and moved
     if absent:
         yield Condition.VELOCITIES_ARE(meaning=VelocityMeaning.ZERO)
-    elif rotor.rejected[Rejection.IMPLAUSIBLE] > _MANY * len(stamp):
-        pass  # the readings are of no single motion, as of two drivers
-    elif meaning := velocities.in_recording:
+    # Otherwise the readings are of no single motion, as of two drivers.
+    elif rotor.rejected[Rejection.IMPLAUSIBLE] <= _MANY * len(stamp) and (
+        meaning := velocities.in_recording
+    ):
         yield meaning
     usual, known = float(np.median(np.diff(stamp))) / SECOND, len(given) and not absent
     known = bool(known and not velocities.contradicts)
@@ -104,7 +105,7 @@ def questions(
     field = EffortField()
     field.all_believed(values[:, 0], values[:, 2])
     if field.absent:
-        yield Observation.NO_EFFORT()
+        yield Condition.EFFORT_IS_ZERO()
     efforts = values[np.isfinite(values[:, 2]), 2]
     if question := questioned(float(np.max(np.abs(efforts), initial=0.0))):
         yield question

@@ -297,7 +297,6 @@ class Observation(Enum):
     )
     BEYOND_LIMITS = '{beyond}: {advice}'
     STAMPS_REPEAT = '{count} of {total} stamps repeat the one before'
-    NO_EFFORT = 'the effort is 0 throughout the motion, and is taken as absent'
     # What differs between recordings
     TWO_COMPARED = '{second} against {first}: {changes}'
     SEVERAL_COMPARED = 'against {first}: {changes} ({clear} of {count} significant)'

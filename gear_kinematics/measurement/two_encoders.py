@@ -109,11 +109,11 @@ class EncoderFit:
             left = rest - columns @ self._equations.solve(self._model, slice(1))[0]
         self._terms = self._equations.solve(self._model)
         self.slope = slope + self._terms[:, _SLOPE] / self.travel
-        self._delays = late - _DELAY * self._terms[:, _LATE]
 
     def refined(self) -> 'EncoderFit':
         """Fit again, from the slope and the delay found."""
-        return EncoderFit(*self._angles, float(self.slope[0]), float(self._delays[0]))
+        late = self._late - _DELAY * float(self._terms[0, _LATE])
+        return EncoderFit(*self._angles, float(self.slope[0]), late)
 
     def slope_estimate(self, period: float) -> Estimate:
         """Estimate the slope, output angle over rotor angle.
