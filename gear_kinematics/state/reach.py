@@ -14,7 +14,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 STALEST = 0.01  # s; a reading is so much, or an interval, older than its stamp says, at most
 HELD_UP_AT_FIRST = 50_000_000  # ns: a pause that there may have been before a first reading
 FLOOR = 0.05  # rad: noise of any encoder, and what two successive steps may always differ by
-REGULAR = 1.0 / 3.0  # share of the usual time by which one may vary in `RotorLimits.even_step`
+REGULAR = 0.3  # share of the usual time by which one may vary; with a lost message it is 1/3
 _ROUNDING = 1e-6  # of a step of single precision, by a conversion of units in double precision
 _UNEVEN = 0.25  # of a speed: what it may differ by, as readings are older than their stamps
 _FASTEST = 250_000  # ns between the readings of a driver; those of a burst can be closer

@@ -8,7 +8,7 @@ from unittest.mock import ANY
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from live import SECOND, rotor_bytes
 
@@ -659,6 +659,7 @@ def test_a_motor_that_exceeds_its_speed_little_by_little_is_named(at_once):
 
 @settings(max_examples=50)
 @given(st.integers(0, 2**32), st.lists(st.integers(1, 99), max_size=4), st.sampled_from(KINDS))
+@example(109, [], 'gaps')  # intervals of exactly one and two periods
 def test_batches_are_judged_as_one_by_one(seed, bad, kind):
     generator = np.random.default_rng(seed)
     rate = int(generator.choice([50, 500]))
