@@ -56,6 +56,7 @@ def run(options: argparse.Namespace) -> ExitCode:
             found = (lambda _: None) if files else ask
             recorder = Recorder(node, bag, options.node, loads=loads, found=found)
             show_recording(recorder, Console(), stopped)
+            recorder.end(lambda: print('waiting for the outputs of the last inputs', flush=True))
             gears = sorted(recorder.gears)
             running = {
                 gear: answers[gear].result() or parameters_of(node, gear)

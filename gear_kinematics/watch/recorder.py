@@ -1,8 +1,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Records what gear nodes hear and publish, as their topics are named."""
 
+import time
 from collections.abc import Callable
 from contextlib import suppress
+from itertools import count
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
@@ -13,15 +15,19 @@ from gear_kinematics.bag import Message
 from gear_kinematics.parameters import NODE
 from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.ros.graph import Graph
+from gear_kinematics.ros.live import POLL
 from gear_kinematics.ros.outputs import message_type
 from gear_kinematics.watch.polled import Polled
 from gear_kinematics.wire import topics
+from gear_kinematics.wire.cdr import header_stamp
 from gear_kinematics.wire.nearest import among
 
 if TYPE_CHECKING:
     from gear_kinematics.bag.writing import BagWriter  # needs an extra
 
 _TYPES = {topic.type for topic in topics.TOPICS.values() if topic.part != 'display'}
+_STAMPED = {topics.JOINT_STATE, topics.POSE_ARRAY, topics.WRENCHES}  # as their input is
+_SILENCE, _LONGEST = 2.0, 10.0  # s without such outputs, and in all, after which none is awaited
 
 _BEST_EFFORT, _VOLATILE = ReliabilityPolicy.BEST_EFFORT, DurabilityPolicy.VOLATILE
 
@@ -55,6 +61,7 @@ class Recorder:
         # In addition to a reliable subscription, until the driver is known: this one hears every
         # driver, and if it were made only then, it would miss the first messages.
         self._best_effort: dict[str, Polled] = {}
+        self._inputs_of: dict[str, set[str]] = {}  # by topics of outputs
         self._least: dict[str, int] = {}  # ns from the dispatch to the reception of a message
 
     def poll(self) -> None:
@@ -69,6 +76,10 @@ class Recorder:
                     self.gears.add(gear)
                     self._found(gear)
                 self._look(*gear.rpartition('/')[::2])
+        self._take()
+
+    def _take(self) -> None:
+        """Write the messages that have arrived."""
         messages: list[Message] = []
         for topic, (kind, polled) in self._open.items():
             for data, received, sent in polled.take():
@@ -82,12 +93,50 @@ class Recorder:
                 self._bag.keeps = True  # what was heard cannot be heard again
         self._bag.write_all(sorted(messages, key=itemgetter(1)))
 
+    def end(self, waiting: Callable[[], None]) -> None:
+        """Record no more inputs, but the outputs of those recorded, which a busy node sends late.
+
+        `waiting` is called if they take longer. None may come, as a node can withhold outputs.
+        """
+        self._take()
+        last = {
+            output: max(map(self._stamp, inputs))
+            for output, (kind, _) in self._open.items()
+            if output in self.heard and kind in _STAMPED
+            if (inputs := self._inputs_of.get(output, set()) & self.heard.keys())
+        }
+        for topic in self.inputs - self._inputs_of.keys():
+            if opened := self._open.pop(topic, None):
+                opened[1].close()
+        begun = heard = time.monotonic()
+        before: dict[str, int] = {}
+        for looked in count():
+            late = {
+                topic: self.heard[topic].count
+                for topic, stamp in last.items()
+                if self._stamp(topic) < stamp
+            }
+            now = time.monotonic()
+            if late != before:
+                before, heard = late, now
+            if not late or now > min(heard + _SILENCE, begun + _LONGEST):
+                return
+            if looked == 1:
+                waiting()
+            time.sleep(POLL)
+            self._take()
+
+    def _stamp(self, topic: str) -> int:
+        """Return the stamp of the last message on a topic, ns."""
+        last = self.heard[topic].last
+        return header_stamp(last.data) if last else -1
+
     def _look(self, namespace: str, name: str) -> None:
         with suppress(RuntimeError):  # the node has ended meanwhile
             place = name, namespace or '/'
             inputs = self._node.get_subscriber_names_and_types_by_node(*place)
             outputs = self._node.get_publisher_names_and_types_by_node(*place)
-            self.inputs |= {
+            heard = {
                 topic
                 for topic, types in inputs
                 if topics.JOINT_STATE in types
@@ -96,6 +145,8 @@ class Recorder:
                     or self._node.get_publishers_info_by_topic(topic)
                 )
             }
+            self.inputs |= heard
+            self._inputs_of |= {topic: heard for topic, _ in outputs}
             for topic, [kind, *_] in inputs + outputs:
                 if kind not in _TYPES or topics.base_name(topic) in self._left_out:
                     continue

@@ -36,6 +36,7 @@ from gear_kinematics.watch import gear
 from gear_kinematics.watch import recorder as module
 from gear_kinematics.watch.polled import Taken
 from gear_kinematics.watch.recorder import Recorder
+from gear_kinematics.wire.cdr import JointStateTemplate
 from gear_kinematics.wire.topics import JOINT_STATE
 
 
@@ -231,3 +232,49 @@ def test_a_message_that_the_middleware_repeats_is_recorded_at_its_time(monkeypat
         ('/rotor_state', 10 * millisecond), ('/output_state', 10 * millisecond),
         ('/rotor_state', 20 * millisecond),
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ('arrivals', 'last_input', 'recorded', 'waited', 'told'),
+    [
+        ({0.0: [1, 2, 3]}, 3, [1, 2, 3], 0.0, 0),
+        ({0.0: [1], 0.05: [2, 3]}, 3, [1, 2, 3], 0.1, 0),
+        ({0.0: [1], 1.5: [2], 3.0: [4]}, 3, [1, 2, 4], 3.0, 1),  # the node rejects the last input
+        ({0.0: [1], 2.5: [2, 3]}, 3, [1], 2.0, 1),  # it withholds its outputs, or has ended
+        ({float(s): [s] for s in range(20)}, 19, [*range(11)], 10.0, 1),  # it never catches up
+    ],
+)
+def test_the_outputs_of_a_busy_node_are_recorded_to_the_last_input(
+    arrivals, last_input, recorded, waited, told, monkeypatch
+):
+    clock, template = [0.0], JointStateTemplate(['m1'], velocity=False, effort=False)
+    ticking = {'monotonic': lambda: clock[0], 'sleep': lambda s: clock.append(clock.pop() + s)}
+    monkeypatch.setattr(module, 'time', SimpleNamespace(**ticking))
+
+    def opened(arrivals):
+        polled = SimpleNamespace(last=None, count=0, close=lambda: None)
+
+        def take():
+            due = [stamp for time in [*arrivals] if time <= clock[0] + 1e-9
+                   for stamp in arrivals.pop(time)]  # fmt: skip
+            new = [Taken(template.encode(stamp, [0.0]), stamp, stamp) for stamp in due]
+            polled.last = new[-1] if new else polled.last
+            polled.count += len(new)
+            return new
+
+        polled.take = take
+        return JOINT_STATE, polled
+
+    bag = SimpleNamespace(written=[], add_topic=lambda *_: None)
+    bag.write_all = bag.written.extend
+    recorder, said = Recorder(None, bag), []
+    recorder.inputs, recorder._inputs_of = {MOTOR}, {'/output_state': {MOTOR}}
+    recorder._open = {
+        MOTOR: opened({0.0: [1, last_input], 0.1: [50]}),
+        '/output_state': opened(dict(arrivals)),
+    }
+    recorder.end(lambda: said.append('waiting'))
+    outputs = [received for topic, received, _ in bag.written if topic == '/output_state']
+    assert (outputs, len(said)) == (recorded, told)
+    assert clock[0] == pytest.approx(waited, abs=0.11)  # s, of one look
+    assert [received for topic, received, _ in bag.written if topic == MOTOR] == [1, last_input]
