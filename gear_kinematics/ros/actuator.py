@@ -10,6 +10,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.loads import PreloadMonitor
+from gear_kinematics.state.velocity_field import VelocityMeaning
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.cdr import SECOND
 
@@ -63,6 +64,18 @@ class Actuator:
         self._due = sample.stamp + _SPEED_SPAN
 
     @property
+    def _present_speed(self) -> float:
+        """Speed of the rotor, rad/s, by velocities only where they were found right in motion."""
+        state, sample, before = self.state, self.state.sample, self._before
+        given, finding = sample.velocity, state.input.velocity_field.finding
+        if given is not None and finding is VelocityMeaning.RIGHT:
+            return abs(given)
+        same = state.segment == self._origin + self._gaps
+        moved = sample.position.since(before.position) if same else 0.0
+        span = max(sample.stamp - before.stamp, _SPEED_SPAN) / SECOND
+        return max(abs(given or 0.0), abs(self._speed), abs(moved) / span)
+
+    @property
     def rotor_angle(self) -> float:
         """The angle of the rotor at `home_angle`, rad."""
         parameters = self.state.parameters
@@ -84,8 +97,7 @@ class Actuator:
         if (age := time.monotonic() - self._seen) > parameters.input_timeout:
             last = f'the last valid {topics.ROTOR_STATE} came {age:.1f} s ago'
             raise RefusedError(last, '; check that the driver is running')
-        given = self.state.sample.velocity
-        if (speed := abs(ratio.output_rate(self._speed if given is None else given))) > limit:
+        if (speed := abs(ratio.output_rate(self._present_speed))) > limit:
             too_fast = f', faster than home_max_speed, {limit:g} rad/s; stop it and home it again'
             raise RefusedError(f'the shaft turns at {speed:.3g} rad/s', too_fast)
         whole, rest = ratio.output_angle(*before, math)

@@ -75,6 +75,8 @@ def test_log_says_at_the_start_that_the_turns_are_unknown(homing, capfd, encoder
         ([0.0], MILLISECOND, (), ''),
         ([0.0, 1.9], SECOND, (), '0.1'),
         ([2e-3 * k for k in range(500)], MILLISECOND, (), '0.105'),
+        ([2e-3 * k for k in range(500)], MILLISECOND, [0.0], '0.105'),  # zeros are no velocities
+        ([*[0.0] * 280, *(4e-3 * k for k in range(80))], MILLISECOND, (), '0.124'),  # started
         ([3.0, *(2e-4 * k for k in range(500))], MILLISECOND, (), ''),  # has come to rest
         ([1.5e-3 * (k % 2) for k in range(500)], MILLISECOND, (), ''),  # a count of 4096
         ([0.0, 0.0], 0, (), ''),
