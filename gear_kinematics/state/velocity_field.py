@@ -33,9 +33,9 @@ _FEWEST = 10  # turns between readings in a comparison of an unsteady motion
 _ALIGNED = 0.95  # the square of a correlation from which a factor explains the velocities
 _FEW = 4  # velocities between readings, of which the mean is that of an oscillation
 _RELATED = 0.5  # the correlation that a motion has with its velocities, at least
+_IMPOSSIBLE = 30.0  # times the travel: any more between two readings is no velocity
 _FILTERED = 0.5  # share by which what a filter leaves of a motion may differ from a projection
-_LATE, _EXPLAINED = 0.03, 0.9
-"""s, and the square of a correlation, from which a delay is reported."""
+_LATE, _EXPLAINED = 0.03, 0.9  # s, square of a correlation, from which a delay is reported
 _CHANGES = 4.0
 """Noises of a reading: least change of the travels that shows a delay. At a steady speed,
 an error of the positions, such as one of each turn, looks like a delay of half of `SPAN`."""
@@ -67,6 +67,7 @@ class VelocityField:
     def __init__(self, output_factor: float) -> None:
         """Start without readings; the rotor's velocity times a factor is that of the output."""
         self._factors = {
+            VelocityMeaning.ZERO: 0.0,
             VelocityMeaning.RPM: 30.0 / math.pi,
             VelocityMeaning.TURNS: 0.5 / math.pi,
             VelocityMeaning.DEGREES: 180.0 / math.pi,
@@ -122,8 +123,7 @@ class VelocityField:
             return Condition.POSITIONS_STAND()
         if self.finding is VelocityMeaning.UNKNOWN and not math.isnan(self.factor):
             return Condition.VELOCITIES_UNKNOWN(meaning=self.finding, factor=self.factor)
-        positions = self.finding in _POSITIONS
-        which = Condition.POSITIONS_ARE if positions else Condition.VELOCITIES_ARE
+        which = Condition.POSITIONS_ARE if self.finding in _POSITIONS else Condition.VELOCITIES_ARE
         return which(meaning=self.finding)
 
     @property
@@ -173,8 +173,8 @@ class VelocityField:
         self.due = stamp + SPAN
         readings = self._readings
         self.add(velocity)
-        if self._stuck(stamp, position, velocity):
-            self._decide(math.inf, certain=True)
+        if not math.isnan(factor := self._impossible(stamp, position, velocity)):
+            self._decide(factor, certain=True)
         if stamp < self._pause_until:
             readings[:] = [(stamp, position, 0.0)]
             self._last, self._total, self._count = velocity, 0.0, 0
@@ -199,17 +199,20 @@ class VelocityField:
                 break
         self.quiet_until = 0 if self.contradicts else self.due
 
-    def _stuck(self, stamp: int, position: float, velocity: float | None) -> bool:
-        """Return whether velocities that were right go on while the position does not change.
+    def _impossible(self, stamp: int, position: float, velocity: float | None) -> float:
+        """Return the factor of velocities that are too great, or go on at a standstill, or NaN.
 
         Behind a stop, those of a filter fall.
         """
-        if self.finding is not VelocityMeaning.RIGHT or not self._readings:
-            return False
-        (since, before, _), mean = self._readings[-1], self._total / max(1, self._count)
+        since, before, _ = self._readings[-1] if self._readings else (stamp, position, 0.0)
+        mean, turn = self._total / max(1, self._count), position - before
+        expected = abs(mean) * (stamp - since) * 1e-9
         last, now = (math.copysign(v or 0.0, (v or 0.0) * mean) for v in (self._last, velocity))
         goes_on = min(last, now) >= 0.5 * abs(mean) and now >= (1.0 - _STEADY) * last
-        return position == before and goes_on and abs(mean) * (stamp - since) * 1e-9 >= _TRAVEL
+        stuck = goes_on and not turn and self.finding is VelocityMeaning.RIGHT
+        if (stuck and expected >= _TRAVEL) or expected > _IMPOSSIBLE * (abs(turn) + _TRAVEL):
+            return math.copysign(expected, mean) / turn if turn else math.inf
+        return math.nan
 
     def _follow(self, travel: float, noise: float) -> None:
         """Decide on a motion of more than `travel`, rad, however unsteady, of the latest readings.
@@ -339,8 +342,6 @@ class VelocityField:
 
     def _meaning_of(self, factor: float) -> VelocityMeaning:
         """Return what velocities are that are a multiple of the right ones."""
-        if factor == 0.0:
-            return VelocityMeaning.ZERO
         if abs(factor - 1.0) <= _AGREES:
             return VelocityMeaning.RIGHT
         for name, known in self._factors.items():

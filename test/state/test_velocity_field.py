@@ -72,6 +72,15 @@ def test_velocities_that_become_wrong_are_found_after_a_pause_of_a_second(right)
     assert rotor.velocity_field.contradicts
 
 
+@pytest.mark.parametrize('bits', [16, 32])
+def test_negative_velocities_that_are_sent_as_unsigned_are_found_at_once(bits):
+    """As from the register of a servo, in steps of 0.229 rpm."""
+    whole = 2.0**bits * 0.229 * math.pi / 30.0
+    rotor, samples = heard(lambda t: (9.0 * math.cos(t), -9.0 * math.sin(t) % whole), 100, 0.3)
+    assert rotor.velocity_field.contradicts
+    assert samples[-1].velocity is None
+
+
 def test_velocities_that_become_right_are_named_in_a_recording():
     """As of a driver that sends zeros until it has measured for a while."""
     rotor, _ = heard(lambda t: (50.0 * t, 50.0 * (t >= 2.0)), 100, 4.0)
