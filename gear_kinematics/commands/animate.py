@@ -22,7 +22,7 @@ _MOST_FRAMES = 2000  # greatest number, all in memory until the last one is draw
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     drawing.add_image(parser, '.gif')
     arguments.group(parser, 'motion').add_argument(
-        '--rate', type=arguments.positive, default=1.0, help='playback speed (default: 1)'
+        '--rate', type=arguments.RATE, default=1.0, help='playback speed (default: 1)'
     )
 
 

@@ -13,14 +13,6 @@ from gear_kinematics.parameters import NODE, PARAMETERS, NodeParameters, default
 from gear_kinematics.parameters.arm import chosen, load_actuators
 
 
-def positive(text: str) -> float:
-    """Parse a number greater than 0."""
-    number = float(text)
-    if not (number > 0.0 and math.isfinite(number)):
-        raise argparse.ArgumentTypeError(f'must be greater than 0, not {text}')
-    return number
-
-
 def finite(text: str) -> float:
     """Parse a finite number."""
     if not math.isfinite(number := float(text)):
@@ -41,6 +33,10 @@ def between(
 
     number.__name__ = kind.__name__
     return number
+
+
+RATE = between(1e-3, 1e3)  #: parser of the speed of a playback
+TORQUE = between(-1e6, 1e6)  #: parser of a torque, N·m, within the bounds of the node's parameter
 
 
 def group(parser: argparse.ArgumentParser, title: str) -> argparse._ArgumentGroup:

@@ -26,13 +26,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     arguments.add_config(parser, actuator=arguments.ALL)
     add_columns(parser, 'rotor', 'output', 'angle', 'torque')
     gear = arguments.group(parser, 'gear')
-    for name, unit, text in (
-        ('cam-rating', 'N', "dynamic load rating C of a cam's ball bearing, for its L10 life"),
-        ('slot-friction', 'MU', 'coefficient of friction of the slots, to estimate their loss'),
+    for name, unit, bounds, text in (
+        ('cam-rating', 'N', (1.0, 1e8), "dynamic load rating C of a cam's bearing, for its life"),
+        ('slot-friction', 'MU', (1e-4, 1.0), 'coefficient of friction of the slots, for its loss'),
     ):
-        gear.add_argument(
-            f'--{name}', type=arguments.positive, default=math.nan, metavar=unit, help=text
-        )
+        number = arguments.between(*bounds)
+        gear.add_argument(f'--{name}', type=number, default=math.nan, metavar=unit, help=text)
     way = arguments.group(parser, 'several recordings').add_mutually_exclusive_group()
     bags.add_jobs(way)
     add_report_forms(parser)

@@ -48,18 +48,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         ('preload', 'torque in both branches without load; negative: turn in the other direction'),
         ('threshold', 'load up to which both branches stay in mesh'),
     ):
-        turns.add_argument(f'--wanted-{name}', type=float, metavar='N·m', help=text)
+        turns.add_argument(f'--wanted-{name}', type=arguments.TORQUE, metavar='N·m', help=text)
     text = 'recording of loads under which both branches have to stay in mesh'
     turns.add_argument('--from', dest='recording', type=Path, metavar='RECORDING', help=text)
     turn = arguments.group(parser, 'turn of a ring gear')
     text = 'safety factor of the least preload for a recording (default: %(default)g)'
     turn.add_argument(
-        '--margin', type=arguments.positive, default=1.2, metavar='FACTOR', help=text
+        '--margin', type=arguments.between(0.01, 100.0), default=1.2, metavar='FACTOR', help=text
     )
     group = parser.add_argument_group('stiffness', 'torsional, at the output')
     group.add_argument(
         '--branch-stiffness',
-        type=float,
+        type=arguments.between(1e-3),
         nargs='+',
         required=True,
         metavar='N·m/rad',
@@ -68,7 +68,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     group.add_argument(
         '--shaft-stiffness',
-        type=float,
+        type=arguments.between(1e-3),
         required=True,
         metavar='N·m/rad',
         help='stiffness of the shaft between the arms',
@@ -114,10 +114,13 @@ def _answer(options: argparse.Namespace) -> _Answer:
         pins = pinning.at_setting(options, pair)
     else:
         pins = pinning.find(options, pair, _wanted(options, pair, stiffness))
-    preload, pinned = (
-        Preload.from_ring_turn(pair, stiffness, angle - (pins.phase or 0.0), backlash)
-        for angle in (pins.ring_turn, pins.nearest.ring_turn)
-    )
+    turns = [angle - (pins.phase or 0.0) for angle in (pins.ring_turn, pins.nearest.ring_turn)]
+    if not abs(turns[0]) < (pitch := TURN / pair.ring_teeth):
+        raise ValueError(
+            f'at a ring turn of {math.degrees(turns[0]):.4g}° other teeth would mesh: '
+            f'the tooth pitch is {math.degrees(pitch):.4g}°'
+        )
+    preload, pinned = (Preload.from_ring_turn(pair, stiffness, turn, backlash) for turn in turns)
     return _Answer(pair, (a.name, b.name), backlash, preload, pins, pinned)
 
 

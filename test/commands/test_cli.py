@@ -170,6 +170,26 @@ def test_unusable_arguments_get_one_clear_line_and_code_2(arguments, cause):
     assert cause in refusal(*arguments.split())
 
 
+IMPOSSIBLE = {
+    'preload': 'wanted-preload 1e7, wanted-threshold -1e7, margin 200, branch-stiffness 1e-300',
+    'plot': 'torque -1e7, speed 1e18, degrees 1e7, duration -1e-3, start-offset -inf',
+    'animate': 'rate 1e-300, rate 1e300',
+    'replay': 'rate nan, rate -1e-3',
+    'loads': 'cam-rating 0.3, slot-friction 15',
+    'lost-motion': 'rated-torque 1e-300, max-backlash 1e300, min-stiffness 1e-300',
+    'validate': 'tolerance-angle 1, tolerance-position 0.1, tolerance-effort inf',
+}
+"""Options that cannot be true, some of which are in mm or percent."""
+
+
+@pytest.mark.parametrize('command', IMPOSSIBLE)
+def test_an_impossible_number_is_refused_and_named(command):
+    for given in IMPOSSIBLE[command].split(', '):
+        option, value = given.split()
+        said = refusal(command, f'--{option}', value)
+        assert re.match(rf'argument --{option}: must be .*, not {value}; see gearkin', said), said
+
+
 @pytest.mark.parametrize('command', ['', *COMMANDS])
 def test_help_is_everywhere(command):
     done = gearkin_here(*command.split(), '--help')

@@ -93,7 +93,7 @@ SCHEME, OUTPUT = ['plot', 'scheme', 'a.png'], ['plot', 'output', 'a.png']
 @pytest.mark.parametrize(('arguments', 'cause'), [
     (['plot', 'scheme', 'a.xyz'], 'a.xyz: the suffix must be .png or '),
     (['plot', 'scheme', 'none/a.png'], 'none/a.png: No such file or directory'),
-    ([*SCHEME, '--degrees', 'nan'], 'must be a finite number, not nan'),
+    ([*SCHEME, '--degrees', 'nan'], 'must be between -1e+06 and 1e+06, not nan'),
     ([*SCHEME, '--speed', '1'], '--speed is for slides, not for scheme'),
     ([*SCHEME, '--module', '0'], '--module must be between 1e-06 and 0.1'),
     ([*SCHEME, '--config', 'none.yaml'], 'none.yaml'),

@@ -189,8 +189,14 @@ TURN = ('preload', '--degrees', '1')
             [*TURN, *SOFT, '--backlash', '0.1'],
             '--backlash must be less than a tooth pitch, 0.0827 rad',
         ),
+        (
+            ['preload', '--degrees', '200', *SOFT],
+            'at a ring turn of 200° other teeth would mesh: the tooth pitch is 4.5°',
+        ),
+        (['preload', '--setting', '0', '1', '1', *SOFT], 'at a ring turn of 8.835°'),
+        (['preload', '--wanted-preload', '50', *SOFT], 'other teeth would mesh'),
         ([*TURN, *SOFT, '--plot', 'plot.xyz'], 'plot.xyz: the suffix'),
-        (['preload', '--wanted-preload', '1e9', *SOFT], 'at most a whole turn'),
+        (['preload', '--wanted-preload', '1e6', *SOFT], 'at most a whole turn'),
     ],
 )
 def test_unusable_input_gets_one_clear_line_and_no_file(arguments, cause, tmp_path, monkeypatch):

@@ -28,7 +28,7 @@ def test_a_replay_tells_what_it_did(bags):
     [
         (['missing.mcap'], 'missing.mcap: no such file or folder'),
         (['garbage.mcap'], 'garbage.mcap: not a bag of a known kind'),
-        (['good', '--rate', '0'], 'rate must be positive'),
+        (['good', '--rate', '0'], '--rate: must be between 0.001 and 1000, not 0'),
         (['good', '--as', '/x y'], 'Invalid topic name'),
     ],
 )
