@@ -26,8 +26,7 @@ if TYPE_CHECKING:
     from gear_kinematics.bag.writing import BagWriter  # needs an extra
 
 _TYPES = {topic.type for topic in topics.TOPICS.values() if topic.part != 'display'}
-_STAMPED = {topics.JOINT_STATE, topics.POSE_ARRAY, topics.WRENCHES}  # as their input is
-_SILENCE, _LONGEST = 2.0, 10.0  # s without such outputs, and in all, after which none is awaited
+_LONGEST = 5.0  # s for which outputs are awaited at the end
 
 _BEST_EFFORT, _VOLATILE = ReliabilityPolicy.BEST_EFFORT, DurabilityPolicy.VOLATILE
 
@@ -96,30 +95,21 @@ class Recorder:
     def end(self, waiting: Callable[[], None]) -> None:
         """Record no more inputs, but the outputs of those recorded, which a busy node sends late.
 
-        `waiting` is called if they take longer. None may come, as a node can withhold outputs.
+        `waiting` is called if they take longer. A node that has ended is awaited for some seconds.
         """
         self._take()
         last = {
-            output: max(map(self._stamp, inputs))
-            for output, (kind, _) in self._open.items()
-            if output in self.heard and kind in _STAMPED
-            if (inputs := self._inputs_of.get(output, set()) & self.heard.keys())
+            output: max(map(self._stamp, heard))
+            for output, inputs in self._inputs_of.items()
+            if (heard := inputs & self.heard.keys())
         }
         for topic in self.inputs - self._inputs_of.keys():
             if opened := self._open.pop(topic, None):
                 opened[1].close()
-        begun = heard = time.monotonic()
-        before: dict[str, int] = {}
+        until = time.monotonic() + _LONGEST
         for looked in count():
-            late = {
-                topic: self.heard[topic].count
-                for topic, stamp in last.items()
-                if self._stamp(topic) < stamp
-            }
-            now = time.monotonic()
-            if late != before:
-                before, heard = late, now
-            if not late or now > min(heard + _SILENCE, begun + _LONGEST):
+            late = any(0 <= self._stamp(output) < stamp for output, stamp in last.items())
+            if not late or time.monotonic() > until:
                 return
             if looked == 1:
                 waiting()
@@ -127,8 +117,8 @@ class Recorder:
             self._take()
 
     def _stamp(self, topic: str) -> int:
-        """Return the stamp of the last message on a topic, ns."""
-        last = self.heard[topic].last
+        """Return the stamp of the last message on a topic, ns; -1 if there is none."""
+        last = self.heard[topic].last if topic in self.heard else None
         return header_stamp(last.data) if last else -1
 
     def _look(self, namespace: str, name: str) -> None:

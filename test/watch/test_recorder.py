@@ -240,8 +240,7 @@ def test_a_message_that_the_middleware_repeats_is_recorded_at_its_time(monkeypat
         ({0.0: [1, 2, 3]}, 3, [1, 2, 3], 0.0, 0),
         ({0.0: [1], 0.05: [2, 3]}, 3, [1, 2, 3], 0.1, 0),
         ({0.0: [1], 1.5: [2], 3.0: [4]}, 3, [1, 2, 4], 3.0, 1),  # the node rejects the last input
-        ({0.0: [1], 2.5: [2, 3]}, 3, [1], 2.0, 1),  # it withholds its outputs, or has ended
-        ({float(s): [s] for s in range(20)}, 19, [*range(11)], 10.0, 1),  # it never catches up
+        ({float(s): [s] for s in range(9)}, 8, [*range(6)], 5.0, 1),  # it does not catch up
     ],
 )
 def test_the_outputs_of_a_busy_node_are_recorded_to_the_last_input(
