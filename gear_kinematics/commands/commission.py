@@ -19,10 +19,10 @@ from gear_kinematics.commands.encoders import (
 from gear_kinematics.commands.joints import choose_joint
 from gear_kinematics.commands.output import (
     Console,
+    announce_ros,
     complain,
     message_progress,
     stopped_by_signals,
-    warn_of_shared_memory,
 )
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.measurement.commissioning import analysis
@@ -121,7 +121,7 @@ def _chosen(joints: list[analysis.Channel], request: analysis.Request) -> analys
 
 def _hear(request: analysis.Request) -> analysis.Commissioning:
     """Listen to both encoders until all values are known, or the user ends it."""
-    warn_of_shared_memory(participants=1)
+    announce_ros(participants=1)
     # These need ROS, unlike most commands.
     from gear_kinematics.watch.commissioning import LiveCommissioning  # noqa: PLC0415
     from gear_kinematics.watch.drivers import listen  # noqa: PLC0415

@@ -11,7 +11,7 @@ from gear_kinematics.bag import Bag, Message
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.bag.schedule import count_due
 from gear_kinematics.commands import ExitCode
-from gear_kinematics.commands.output import Console, progress, warn_of_shared_memory
+from gear_kinematics.commands.output import Console, announce_ros, progress
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import number
 from gear_kinematics.report.text import render
@@ -30,7 +30,7 @@ def add_arguments(_parser: argparse.ArgumentParser) -> None:
 
 
 def run(_options: argparse.Namespace) -> ExitCode:
-    warn_of_shared_memory(participants=2)
+    announce_ros(participants=2)
     # Needs ROS, unlike most commands.
     from gear_kinematics.ros.live import ReplayError, live_messages  # noqa: PLC0415
 

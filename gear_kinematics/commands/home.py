@@ -4,7 +4,7 @@
 import argparse
 
 from gear_kinematics.commands import ExitCode, arguments
-from gear_kinematics.commands.output import complain, warn_of_shared_memory
+from gear_kinematics.commands.output import announce_ros, complain
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -13,7 +13,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Home the node, and print where the shaft was and is; a refusal fails."""
-    warn_of_shared_memory(participants=1)
+    announce_ros(participants=1)
     from gear_kinematics.watch.homing import home  # noqa: PLC0415, needs ROS
 
     answer = home(options.node, options.actuator)

@@ -20,8 +20,13 @@ def complain(error: object) -> None:
         print(f'gearkin: {printable(" ".join(str(error).split()))}', file=sys.stderr)
 
 
-def warn_of_shared_memory(participants: int) -> None:
-    """Warn before ROS is imported if shared memory is low; SharedMemoryError if it is too low."""
+def announce_ros(participants: int) -> None:
+    """Say on a terminal that ROS starts, which can take seconds, and warn of low shared memory.
+
+    Raises SharedMemoryError if the memory is too low for the import of ROS.
+    """
+    if sys.stderr.isatty():
+        print('starting ROS ...', file=sys.stderr)
     if warning := check_shared_memory(participants):
         complain(warning)
 

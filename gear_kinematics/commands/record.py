@@ -8,7 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from gear_kinematics.commands import ExitCode, arguments, bags
-from gear_kinematics.commands.output import Console, stopped_by_signals, warn_of_shared_memory
+from gear_kinematics.commands.output import Console, announce_ros, stopped_by_signals
 from gear_kinematics.parameters import NODE, NodeParameters
 from gear_kinematics.report.document import counted, hertz
 from gear_kinematics.wire.nearest import listed
@@ -32,7 +32,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         raise ValueError('--actuator chooses in --config FILE: running arms are recorded whole')
     configs = arguments.load_configs(options) if options.config else {}
     files = bags.files_of(options, configs, None) if configs else {}
-    warn_of_shared_memory(participants=1)
+    announce_ros(participants=1)
     # These need ROS, unlike most commands, and the last one rosbags.
     from gear_kinematics.ros.live import replay_node  # noqa: PLC0415
     from gear_kinematics.watch.gear import parameters_of  # noqa: PLC0415

@@ -10,9 +10,9 @@ from gear_kinematics.bag.roles import find_rotor_topic, joints_on
 from gear_kinematics.bag.schedule import count_due
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import (
+    announce_ros,
     message_progress,
     stopped_by_signals,
-    warn_of_shared_memory,
 )
 from gear_kinematics.report.document import counted
 from gear_kinematics.wire.nearest import among
@@ -46,7 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    warn_of_shared_memory(participants=1)
+    announce_ros(participants=1)
     # Needs ROS, unlike most commands.
     from gear_kinematics.ros.replay import play  # noqa: PLC0415
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.commands import ExitCode, arguments, bags
-from gear_kinematics.commands.output import complain, warn_of_shared_memory
+from gear_kinematics.commands.output import announce_ros, complain
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.parameters import NODE
 from gear_kinematics.validation.document import document
@@ -73,7 +73,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     for task in tasks:
         arguments.check_of_one(options, [t.parameters.actuator for t in task.actuators], 'plot')
     if options.live and tasks:
-        warn_of_shared_memory(participants=2)
+        announce_ros(participants=2)
     judged = {path: unusable(path, fault) for path, fault in faults.items()}
     judged |= _validated(options, tasks)
     reports = [judged[path] for path in (*found.bags, *found.faults)]

@@ -4,7 +4,7 @@
 import argparse
 
 from gear_kinematics.commands import ExitCode, arguments
-from gear_kinematics.commands.output import Console, stopped_by_signals, warn_of_shared_memory
+from gear_kinematics.commands.output import Console, announce_ros, stopped_by_signals
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -15,7 +15,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Watch until interrupted; then raises KeyboardInterrupt, once everything is closed."""
-    warn_of_shared_memory(participants=1)
+    announce_ros(participants=1)
     # These need ROS, unlike most commands.
 
     if options.text:

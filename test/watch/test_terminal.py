@@ -95,6 +95,7 @@ def test_lines_in_a_pipe_say_what_there_is(tmp_path):
 
 def test_init_lists_the_joints_and_asks_in_a_terminal(tmp_path):
     with Person(tmp_path, 'init', '--topic', MOTOR, '-o', 'mine.yaml') as terminal:
+        terminal.wait_for('starting ROS')  # before all that takes seconds on a busy computer
         terminal.wait_for(rf'{MOTOR}: brake, m1 at [1-9]\d+ Hz')
         choice = terminal.wait_for(rf'\d  m1 on {MOTOR}')
         terminal.wait_for('Number of the joint of the rotor; gearkin init --arm sets up all: ')
