@@ -14,9 +14,10 @@ from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.commands.cli import main
-from gear_kinematics.kinematics import RotorSample, split_turns
 from gear_kinematics.parameters.arm import load_actuators
-from gear_kinematics.state.state_messages import state_messages
+from gear_kinematics.state.arm_state import ArmState
+from gear_kinematics.state.gear_state import GearState
+from gear_kinematics.wire.cdr import JointStateTemplate
 
 ROOT = Path(__file__).resolve().parents[2]
 ARM = 'examples/two_joint_arm.urdf.xacro'
@@ -124,19 +125,53 @@ def test_joints_of_an_arm_have_the_names_of_its_messages(capsys, tmp_path):
     assert 'gear_ratio is -101: only the ratio' in refusal('urdf', '--config', config)
 
 
+def transforms(pin, urdf: str, state: JointState) -> dict[str, tuple]:
+    """Give parent and transform of each link on /tf and /tf_static.
+
+    By the source of robot_state_publisher 3.3.3: a message of unequal lengths is ignored, a fixed
+    joint is always published, and another one if the message names it, with the pose of KDL.
+    """
+    positions = dict(zip(state.name, state.position, strict=True))
+    found = {}
+    for joint in ET.fromstring(urdf).iterfind('joint'):  # noqa: S314, our own
+        name, kind = joint.get('name'), joint.get('type')
+        if kind == 'fixed' or name in positions:
+            origin, axis = (
+                {} if element is None else element.attrib
+                for element in (joint.find('origin'), joint.find('axis'))
+            )
+            xyz, rpy, along = (
+                np.array([float(each) for each in text.split()])
+                for text in (
+                    *(origin.get(part, '0 0 0') for part in ('xyz', 'rpy')),
+                    axis.get('xyz', '1 0 0'),
+                )
+            )
+            position = positions.get(name, 0.0)
+            slides = kind == 'prismatic'
+            moved = pin.SE3(pin.exp3((not slides) * position * along), slides * position * along)
+            child = joint.find('child').get('link')
+            pose = pin.SE3(pin.rpy.rpyToMatrix(*rpy), xyz) * moved
+            found[child] = joint.find('parent').get('link'), pose
+    return found
+
+
 def test_output_state_of_the_node_moves_the_arm(xacro, tmp_path):
-    """As robot_state_publisher does: a joint of the URDF moves as that of its name in messages."""
+    """By robot_state_publisher from one message, and by Pinocchio from its joints."""
     pin = pytest.importorskip('pinocchio', reason='Pinocchio is not installed')
-    model = pin.buildModelFromXML(xacro.process_file(str(ROOT / ARM)).toxml())
+    text = xacro.process_file(str(ROOT / ARM)).toxml()
+    model = pin.buildModelFromXML(text)
     assert len(model.names) - 1 == 2 * 6  # joints that turn or slide, all of them in one tree
     data = model.createData()
-    config = write_arm(tmp_path, {'shoulder': {}, 'elbow': {}})
-    rotors, outputs = {'shoulder': 19.0 * 0.3, 'elbow': -19.0 * 1.1}, {}
-    for name, parameters in load_actuators(config).items():
-        sample = RotorSample(5, split_turns(rotors[name]), None, None)
-        [(_, message)] = state_messages(parameters).encode(sample, ['output_state'])
-        state = deserialize_message(message, JointState)
-        outputs |= zip(state.name, state.position, strict=True)
+    gears = {name: {'rotor_joint': f'{name}_motor'} for name in ('shoulder', 'elbow')}
+    actuators = load_actuators(write_arm(tmp_path, gears))
+    arm = ArmState({name: GearState(each) for name, each in actuators.items()})
+    arm.choose(['output_state', 'mechanism_joint_states'])
+    rotors = JointStateTemplate(['shoulder_motor', 'elbow_motor'], velocity=False, effort=False)
+    answered, _ = arm.rotor(rotors.encode(5, [19.0 * 0.3, -19.0 * 1.1]), lambda: 5)
+    states = {topic: deserialize_message(m, JointState) for topic, m in arm.encode(answered)}
+    state = states['output_state']
+    outputs = dict(zip(state.name, state.position, strict=True))
     assert outputs == pytest.approx({'shoulder': -0.3, 'elbow': 1.1}, abs=1e-12)
     still = dict.fromkeys(model.names[1:], 0.0)
     pin.framesForwardKinematics(model, data, pinocchio_configuration(model, still | outputs))
@@ -149,6 +184,16 @@ def test_output_state_of_the_node_moves_the_arm(xacro, tmp_path):
     np.testing.assert_allclose(tip.rotation[:, 2], [cosine, sine, 0.0], rtol=0.0, atol=1e-5)
     # Turned by 1.1 rad about it, x of the tip is off the downward direction by as much.
     np.testing.assert_allclose(tip.rotation[2, 0], -math.cos(1.1), rtol=0.0, atol=1e-5)
+
+    moving = transforms(pin, text, state)
+    assert {*moving} == {f'{name}_{link}' for name in gears for link in ('stator', 'output_shaft')}
+    parent, pose = moving['elbow_output_shaft']
+    while parent != 'base':
+        parent, before = moving[parent]
+        pose = before * pose
+    np.testing.assert_allclose(pose.homogeneous, tip.homogeneous, rtol=0.0, atol=1e-12)
+    every = {link.get('name') for link in ET.fromstring(text).iterfind('link')}  # noqa: S314
+    assert {*transforms(pin, text, states['mechanism_joint_states'])} == every - {'base'}
 
 
 @pytest.mark.parametrize('prefix', ['', 'left_'])
