@@ -35,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     for unit, quantity in QUANTITIES.items():
         limits.add_argument(
             f'--tolerance-{quantity}',
-            type=arguments.between(0.0, 1e-3 if unit == 'm' else 0.1),  # beyond, all would pass
+            type=arguments.between(0.0, 1e6),
             default=Tolerances().of(unit),
             metavar=unit.upper().replace('·M', '·m'),
             help=f'greatest accepted error of each {quantity} (default: %(default)g)',

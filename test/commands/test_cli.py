@@ -177,7 +177,7 @@ IMPOSSIBLE = {
     'replay': 'rate nan, rate -1e-3',
     'loads': 'cam-rating 0.3, slot-friction 15',
     'lost-motion': 'rated-torque 1e-300, max-backlash 1e300, min-stiffness 1e-300',
-    'validate': 'tolerance-angle 1, tolerance-position 0.1, tolerance-effort inf',
+    'validate': 'tolerance-angle -1e-9, tolerance-effort inf',
 }
 """Options that cannot be true, some of which are in mm or percent."""
 

@@ -128,7 +128,7 @@ def test_all_shipped_bags_pass_each_with_its_own_config():
 
 @pytest.mark.parametrize(('name', 'options', 'code'), [
     ('wrong', ['--tolerance-angle', '1.9e-9'], 1), ('wrong', ['--tolerance-angle', '2.1e-9'], 0),
-    ('wrong', ['--tolerance-position', '1e-3'], 1),
+    ('wrong', ['--tolerance-position', '1'], 1),
     ('good', ['--tolerance-angle', '0', '--tolerance-position', '0'], 0), ('shifted', [], 1),
     ('namespaced', [], 0), ('good', ['--ratio', '-19'], 0), ('good', ['--ratio', '-39/2'], 1),
     ('good', ['--rotor-topic', '/rotor_state', '--output-topic', '/output_state'], 0),
@@ -140,8 +140,8 @@ def test_options_decide(name, options, code, bags, capsys):
 
 
 @pytest.mark.parametrize(('options', 'cause'), [
-    (['--tolerance-effort=-1e-9'], '--tolerance-effort: must be between 0 and 0.1, not -1e-9'),
-    (['--tolerance-position', 'nan'], '--tolerance-position: must be between 0 and 0.001, '),
+    (['--tolerance-effort=-1e-9'], '--tolerance-effort: must be between 0 and 1e+06, not -1e-9'),
+    (['--tolerance-position', 'nan'], '--tolerance-position: must be between 0 and 1e+06, not nan'),
     (['--tolerance-angle', 'small'], "must be a number, not 'small'; see gearkin validate"),
     (['--poses-topic', '/output_state'], 'good: topic /output_state is of type sensor_msgs'),
     (['--output-topic', '/nope'], 'good: no topic /nope of type sensor_msgs'),
