@@ -90,12 +90,14 @@ def checked(column: Any, name: str, names: Sequence[str], unit: str) -> Any:
         return column
     text, (words, own, *_) = column.astype(str).str.strip(), meaning(name)
     units = {usual_unit(unit), own}
-    for cell in text[text.str.match(r'[^\W\d]{2}')].unique()[:_NAMES]:
+    cells = text[text.str.match(r'[^\W\d]{2}')].unique()[:_NAMES].tolist()
+    footer = {'max', 'min'} <= {cell.lower() for cell in cells}  # which says no minutes
+    for cell in cells:
         says = meaning(cell)
         if cell != name and (
             cell in names
             or (says.words == words and says.unit not in units)
-            or not units.issuperset(known_units([cell]))
+            or not (footer or units.issuperset(known_units([cell])))
         ):
             raise ValueError(f'{name} goes on below as {cell}: divide the file there')
     return column
@@ -135,7 +137,7 @@ def may_be_divided(column: Any) -> bool:
     """Return whether numbers may be whole ones with a mark between thousands: 1.024 for 1024."""
     if column.dtype.kind != 'f':
         return False
-    values = np.abs(column.dropna().to_numpy())
+    values = np.abs(column[np.isfinite(column)].to_numpy())
     small, rest = values[values > 0.0].min(initial=1.0) < 1.0, np.round(1000.0 * values, 6) % 1.0
     large = values.max(initial=0.0) >= 1000.0  # noqa: PLR2004, as said above
     return bool((values % 1.0).any() and not (small or large or rest.any()))

@@ -89,6 +89,8 @@ def check_steps(clock: Column, times: Array) -> None:
 def in_nanoseconds(seconds: Array, fraction: Array, name: str) -> Array | None:
     """Add the fractions in a column of a name to whole seconds; None if they are times alone."""
     size = round(1.0 / TIME_UNITS[meaning(name).unit])
+    if seconds.dtype.kind == 'M':
+        seconds = np.where(np.isnat(seconds), np.nan, seconds.astype(np.int64) / SECOND)
     known = (seconds == seconds) & (fraction == fraction)  # noqa: PLR0124, no NaN
     if np.any(seconds[known] % 1.0) or np.any(fraction[known] >= size):
         return None

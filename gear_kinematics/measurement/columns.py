@@ -234,7 +234,8 @@ def described(role: str, column: Column) -> str:
 
 
 def fraction_of(name: str, names: Sequence[str]) -> str | None:
-    """Return the column of ns, µs or ms that may belong to one of whole seconds, as in ROS."""
+    """Return the column of ns, µs or ms that may belong to one of whole seconds, or dates."""
     words, unit, *_ = meaning(name)
     likely = [(words, other) for other in ('ns', 'us', 'ms') if unit == 's']
+    likely += [((), 'ms')] * (not unit)  # Millisecond beside Time
     return next((other for other in names if meaning(other)[:2] in likely), None)

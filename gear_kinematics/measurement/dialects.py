@@ -39,6 +39,8 @@ _SEPARATORS = ';', '\t', ',', '|', ' '
 _COMMENT = ('#', '//', '%', 'sep=', 'SEP=')
 _WRAPPED = re.compile(r'(?<![^,;\t\n])"[^"\n]*(\n[^"\n]*){1,3}"(?=[,;\t\n])')
 """Cells with line breaks, as of names in workbooks."""
+_LOGGED = re.compile(r'(?m)^(?:\[([^]\n]*\d:\d\d[^]\n]*)\]|(\d\d:\d\d:\d\d[.]\d+) -?>)[ \t]*')
+"""Stamps that terminals, such as the Arduino IDE and Tera Term, write before each line."""
 _PADDED = re.compile(r'(?<=[,;|\t]) +(?=")')  # which would hide quotation marks
 _TYPES = re.compile(r'(?i)[iuf]\d+|(float|double|u?int)\d*|(type|interp|blockpath|portindex): *.+')
 """Cells of rows that give types, as INCA and Simulink write them."""
@@ -117,7 +119,12 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
     decoded = partial(opened, mode='r', compression='infer', encoding=encoding, errors='replace')
     text = codecs.getincrementaldecoder(encoding)('replace').decode(head)
     text = _WRAPPED.sub(lambda name: name[0].replace('\n', '\v'), text.replace('\r\n', '\n'))
-    lines = [*io.StringIO(text, newline=None)]
+    plain: Callable[[str], str] = str
+    if 2 * len(_LOGGED.findall(text)) > text.count('\n'):
+        inner = _LOGGED.sub('', text)
+        mark = max(_SEPARATORS, key=inner.count)
+        plain = partial(_LOGGED.sub, lambda at: (at[1] or at[2]).replace(' ', 'T') + mark)
+    lines = [*io.StringIO(plain(text), newline=None)]
     if size > _HEAD and not (lines := lines[:-1]):
         raise ValueError(f'the first row is longer than {_HEAD} characters')
     if lines and lines[0].startswith(_CODESYS):
@@ -136,7 +143,7 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
             for _ in range(start):  # pandas would heed quotation marks in them
                 file.handle.readline()
             return pd.read_csv(
-                Rows(file.handle, every),
+                Rows(file.handle, every, plain),
                 sep=r'\s+' if layout.separator == ' ' else layout.separator,
                 decimal=layout.point,
                 header=None,
@@ -240,6 +247,10 @@ def _layout(lines: Sequence[str]) -> _Layout:
         found = _names(above, separator, max(map(len, samples)), 1 + max(numeric), begin)
         if not found[0][0]:  # the index of pandas
             found[0][0] = 'time' if MOMENT.fullmatch(row[0]) else '1'
+        elif MOMENT.fullmatch(found[0][0]):
+            found[0][0] = 'time of the line'  # rather than which, others are used
+        beside = zip(found[0], found[0][1:], row[1:], strict=False)
+        found[1].update({k: one for k, of, one in beside if re.fullmatch('(?i)units?', of)})
     else:
         found = _joint_state(row) or ([str(k + 1) for k in range(len(row))], {}, {})
     titles = (line for line in above if len(cells_of(line.lstrip('#%/ '), separator)) < len(row))

@@ -25,7 +25,7 @@ _VOCABULARY = {
     'tid время 시간 时间 时间戳 時間 x',
     'filling': 'header receive log dynamic measured meas actual act filtered raw field data value '
     'values feedback state states axis angular rotary present sensor abs side in ist host pi ros '
-    'system unix epoch channel ch fb fbk ave estimate scalars signals date datum utc wall '
+    'system unix epoch tv channel ch fb fbk ave estimate scalars signals date datum utc wall '
     'application main plc prg gvl',
 }
 """Words in names by kind, the likeliest first. The input is the rotor if a quantity is said, too.
@@ -77,7 +77,7 @@ _SIZES: Mapping[str, Mapping[str, Any]] = {
     },
     'time': {
         's sec secs second seconds': 1.0,
-        'ms msec millis millisecond milliseconds': 1e-3,
+        'ms msec millis millitm millisecond milliseconds': 1e-3,
         'us µs usec micros microseconds': 1e-6,
         'ns nsec nsecs nanosec nanosecs nanoseconds': 1e-9,
         'minutes minute': 60.0,
@@ -107,7 +107,7 @@ _PLAINER = {
     r'(?i)joint[ _]?(states?)': r'\1',  # in names of topics
     r'(?i)(?<![a-z])(time(?:stamp)?|zeit|elapsed|t)[ _,]+(min|h)$': r'\1 [\2]',
     r'((?i:moment|torque)) M(?![^\W_])': r'\1',  # the symbol, and no motor
-    r'^M(?=[ _]*[\[(]?[mckµ]?N)': 'moment',
+    r'^M(?=[ _/\[(]*[mckµ]?N)': 'moment',
     r'(?i)[ _]?milli(?=(nm|rad|deg)(?![a-z]))': '_m',
     r'(?i)(winkel.*[^a-z])grad(?![a-z])': r'\1deg',  # gradians elsewhere
     r'(?i)[ _]?(deg|rad|rev)[ _]?x10$': r'_d\1',
@@ -217,6 +217,8 @@ def usual_unit(text: str) -> str:
 def known_units(cells: Sequence[str], others: Collection[str] = (), fewest: int = 2) -> list[str]:
     """Return the units in a row if the fewest or most are known, or among others; or nothing."""
     units = [usual_unit(cell) for cell in cells]
+    if any(re.match(r'[-+]?[\d.]+$', unit) for unit in units):  # such as a row of the least values
+        return []
     known = len([unit for unit in units if unit in _UNITS or unit in others])
     return units if known >= fewest or 2 * known > len([*filter(None, units)]) else []
 
@@ -237,7 +239,7 @@ def _words(name: str) -> tuple[tuple[str, ...], str]:
         return ' ' if not inner.isdigit() and usual_unit(inner) in {unit, ''} else f' {inner} '
 
     words: list[str] = []
-    for token in re.split(r'[\s_/.:,-]+', _BRACKETS.sub(put, name)):
+    for token in re.split(r'[\s_/.:,;{}<>|=-]+', _BRACKETS.sub(put, name)):
         small = token.lower().replace('μ', 'µ')
         words += [small] if small in _UNITS else [w.lower() for w in _CAMEL.findall(token)]
     pairs = ((word, _COMPOUND.fullmatch(word)) for word in words)

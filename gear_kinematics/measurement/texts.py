@@ -4,6 +4,7 @@
 import codecs
 import io
 import re
+from collections.abc import Callable
 from typing import IO
 
 BLOCK = 2**17  # characters that are read at a time
@@ -18,14 +19,15 @@ _EASTERN = {
 class Rows(io.TextIOBase):
     """Passes on one row in `every`, so that pandas need not parse the others."""
 
-    def __init__(self, file: IO[str], every: int) -> None:
-        self._file, self._every, self._skip = file, every, 0
+    def __init__(self, file: IO[str], every: int, plain: Callable[[str], str] = str) -> None:
+        """Read a file, of which `plain` rewrites several lines at once."""
+        self._file, self._every, self._plain, self._skip = file, every, plain, 0
 
     def read(self, _size: int | None = None) -> str:
         """Return some of the chosen rows, or nothing at the end."""
         chosen: list[str] = []
         while not chosen and (text := self._file.read(BLOCK) + self._file.readline()):
-            *rows, last = io.StringIO(text, newline=None)
+            *rows, last = io.StringIO(self._plain(text), newline=None)
             if last.endswith('\n') or len(last) + 1 >= min(map(len, rows), default=0):
                 rows.append(last)  # otherwise it was cut
             chosen = rows[self._skip :: self._every]

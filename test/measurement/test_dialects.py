@@ -191,6 +191,20 @@ ENCODERS = {
         [t, r * DEG, o * DEG], WITH_DEG, 3 * [grouped("'")], ';'),
     'sep=': plain('sep=;\ntime;rotor;output', ';', german=True),
     'meta lines': plain(f'Bench 3\nRate,100,Hz\n\ndevice,SN,fw\nA,17,2.1\n{NAMES}'),
+    'stamps of Tera Term, and a footer': lambda t, r, o: (
+        written([t, t, r, o], '[26 Nov 2026 9:59:40.000] time,rotor,output', (
+            lambda v: f'[{moment()(v)[:-3]}]', ' {:.2f}', '{:.5f}', '{:.5f}')).replace('],', ']')
+        + 'Min,-99,-9\nMax,99,9\n'),
+    'stamps of the Arduino IDE alone': lambda t, r, o: written(
+        [t, r, o], '09:59:40.000 -> rotor,output', (
+            lambda v: f'{moment()(v)[11:-3]} ->', '{:.5f}', '{:.5f}')).replace('>,', '> '),
+    'milliseconds in a column of their own': lambda t, r, o: written(
+        [t, t, r, o], 'Number,Date&Time,ms,Motor angle,Output angle\nNO.,Time,ms,rad,rad', (
+            lambda v: f'7,{moment(" ")(v)[:19]}', lambda v: moment()(v)[20:23],
+            '{:.5f}', '{:.5f}')),
+    'tv_sec and tv_usec, below the least values': lambda t, r, o: written(
+        [*split_time(t), r, o], 'tv_sec,tv_nsec,rotor,output\nMin,0,-219.1,-9.2',
+        2 * ['{:.0f}'] + 2 * ['{:.5f}']),
     'comments and names again in the body': lambda t, r, o: (
         written([t[:600], r[:600], o[:600]], f'// bench\n{NAMES}') + f'# paused\n\n{NAMES}\n'
         + written([t[600:], r[600:], o[600:]], '')),
@@ -529,6 +543,13 @@ RAMPS = {
     'a row of units in German': lambda t, a, q: in_german(written(
         [t, q, a * DEG], 'Zeit;Drehmoment;Winkel\ns;Nm;Grad', 3 * ['{:.6f}'], ';')),
     'τ and φ': lambda t, a, q: written([t, a, q], 't,φ,τ', 3 * ['{:.6f}']),
+    'units in columns of their own': lambda t, a, q: written(
+        [t, a * DEG, q * 1e3], 'Time,Angle,Units,Torque,Units',
+        ('{:.2f}', '{:.6f},deg', '{:.3f},mNm')),
+    'units behind other signs': lambda t, a, q: written(
+        [t, a * DEG, q * 1e3], 'time=s,angle<deg>,torque{mNm}', 3 * ['{:.6f}']),
+    'a symbol by DIN 1313': lambda t, a, q: written(
+        [t, a * DEG, q], 't / s;φ / °;M / Nm', 3 * ['{:.6f}'], ';'),
     'moteus': lambda t, a, q: written(
         [t, a * REV, q, t], '# bench\n#time,position,torque,q_current', 4 * ['{:.9f}']),
     'time in ms': lambda t, a, q: written([t * 1e3, a, q], 'time,angle,torque', 3 * ['{:.6f}']),
