@@ -13,13 +13,6 @@ from gear_kinematics.parameters import NODE, PARAMETERS, NodeParameters, default
 from gear_kinematics.parameters.arm import chosen, load_actuators
 
 
-def finite(text: str) -> float:
-    """Parse a finite number."""
-    if not math.isfinite(number := float(text)):
-        raise argparse.ArgumentTypeError(f'must be a finite number, not {text}')
-    return number
-
-
 def between(
     low: float, high: float = math.inf, kind: Callable[[str], float] = float
 ) -> Callable[[str], float]:
@@ -36,7 +29,7 @@ def between(
 
 
 RATE = between(1e-3, 1e3)  #: parser of the speed of a playback
-TORQUE = between(-1e6, 1e6)  #: parser of a torque, N·m, within the bounds of the node's parameter
+MAGNITUDE = between(-1e6, 1e6)  #: parser of torques, N·m, of speeds, rad/s, and of angles, deg
 
 
 def group(parser: argparse.ArgumentParser, title: str) -> argparse._ArgumentGroup:

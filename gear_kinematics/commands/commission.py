@@ -141,6 +141,6 @@ def _hear(request: analysis.Request) -> analysis.Commissioning:
 
 def _moment(text: str) -> float | str:
     try:
-        return text if text in {'START', 'END'} else arguments.finite(text)
+        return text if text in {'START', 'END'} else arguments.between(0.0, 1e12)(text)
     except ValueError as error:
         raise argparse.ArgumentTypeError(f'must be START, END or a number, not {text}') from error

@@ -20,21 +20,14 @@ def add_image(parser: argparse.ArgumentParser, formats: str) -> None:
     bags.add_rotor(parser)
     recording = arguments.group(parser, 'recording')
     recording.add_argument('--bag', type=Path, metavar='BAG', help='recorded motion of the rotor')
-    recording.add_argument(
-        '--start-offset',
-        type=arguments.finite,
-        metavar='S',
-        help='time in the recording to start at',
-    )
-    recording.add_argument(
-        '--duration',
-        type=arguments.between(1e-6, 1e9),
-        metavar='S',
-        help='time to show (default: all)',
-    )
+    start, span = arguments.between(0.0, 1e9), arguments.between(1e-6, 1e9)
+    text = 'time in the recording to start at'
+    recording.add_argument('--start-offset', type=start, metavar='S', help=text)
+    text = 'time to show (default: all)'
+    recording.add_argument('--duration', type=span, metavar='S', help=text)
     motion = arguments.group(parser, 'motion')
     text = 'torque that the branches give the output; draws the forces on the satellite'
-    motion.add_argument('--torque', type=arguments.TORQUE, metavar='N·m', help=text)
+    motion.add_argument('--torque', type=arguments.MAGNITUDE, metavar='N·m', help=text)
     arguments.add_mechanism(parser, sizes=True)
     add_force(parser)
     arguments.add_quiet(parser)

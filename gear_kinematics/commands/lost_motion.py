@@ -25,9 +25,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_recordings(parser, 'angle', 'torque', 'rotor', 'output')
     gear = arguments.group(parser, 'gear')
     text = 'rated torque at the output (default: the amplitude of the largest ramps)'
-    gear.add_argument(
-        '--rated-torque', type=arguments.between(1e-6, 1e6), metavar='N·m', help=text
-    )
+    torque, stiffness = arguments.between(1e-6, 1e6), arguments.between(1e-3, 1e12)
+    gear.add_argument('--rated-torque', type=torque, metavar='N·m', help=text)
     limits = parser.add_argument_group(
         'limits', 'exit code 1 if a limit is exceeded, or cannot be shown to hold'
     )
@@ -35,10 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         text = f'greatest {name.replace("-", " ")}'
         limits.add_argument(f'--max-{name}', type=_arc_minutes, metavar='ARCMIN', help=text)
     limits.add_argument(
-        '--min-stiffness',
-        type=arguments.between(1e-3, 1e12),
-        metavar='N·m/rad',
-        help='least stiffness',
+        '--min-stiffness', type=stiffness, metavar='N·m/rad', help='least stiffness'
     )
     several = parser.add_argument_group('several recordings')
     text = 'glob of the names of a group of recordings to compare (repeat the option for each)'

@@ -28,12 +28,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('figure', choices=_FIGURES, help=text)
     drawing.add_image(parser, '.png, .svg or .pdf')
     motion = arguments.group(parser, 'motion')
-    number = arguments.between(-1e6, 1e6)
     for name, unit, text in (
         ('degrees', 'DEG', f'rotor angle in the figure scheme (default: {_DEGREES:g})'),
         ('speed', 'RAD/S', 'rotor speed in the figure slides (default: 3000 rpm)'),
     ):
-        motion.add_argument(f'--{name}', type=number, metavar=unit, help=text)
+        motion.add_argument(f'--{name}', type=arguments.MAGNITUDE, metavar=unit, help=text)
 
 
 def run(options: argparse.Namespace) -> ExitCode:

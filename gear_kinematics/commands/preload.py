@@ -48,7 +48,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         ('preload', 'torque in both branches without load; negative: turn in the other direction'),
         ('threshold', 'load up to which both branches stay in mesh'),
     ):
-        turns.add_argument(f'--wanted-{name}', type=arguments.TORQUE, metavar='N·m', help=text)
+        turns.add_argument(f'--wanted-{name}', type=arguments.MAGNITUDE, metavar='N·m', help=text)
     text = 'recording of loads under which both branches have to stay in mesh'
     turns.add_argument('--from', dest='recording', type=Path, metavar='RECORDING', help=text)
     turn = arguments.group(parser, 'turn of a ring gear')
@@ -116,10 +116,8 @@ def _answer(options: argparse.Namespace) -> _Answer:
         pins = pinning.find(options, pair, _wanted(options, pair, stiffness))
     turns = [angle - (pins.phase or 0.0) for angle in (pins.ring_turn, pins.nearest.ring_turn)]
     if not abs(turns[0]) < (pitch := TURN / pair.ring_teeth):
-        raise ValueError(
-            f'at a ring turn of {math.degrees(turns[0]):.4g}° other teeth would mesh: '
-            f'the tooth pitch is {math.degrees(pitch):.4g}°'
-        )
+        limit = f'the tooth pitch is {arc(pitch)}'
+        raise ValueError(f'at a ring turn of {arc(turns[0])} other teeth would mesh: {limit}')
     preload, pinned = (Preload.from_ring_turn(pair, stiffness, turn, backlash) for turn in turns)
     return _Answer(pair, (a.name, b.name), backlash, preload, pins, pinned)
 

@@ -23,9 +23,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('bag', type=Path, metavar='BAG', help='file or folder')
     bags.add_rotor(parser, configured=False)
     playing = arguments.group(parser, 'motion')
-    playing.add_argument(
-        '--rate', type=arguments.RATE, default=1.0, help='playback speed (default: 1)'
-    )
+    text = 'playback speed (default: 1)'
+    playing.add_argument('--rate', type=arguments.RATE, default=1.0, help=text)
     playing.add_argument('--loop', action='store_true', help='repeat until stopped')
     playing.add_argument(
         '--no-wait', action='store_true', help='do not wait for a subscriber before the start'

@@ -78,7 +78,6 @@ class Recorder:
         self._take()
 
     def _take(self) -> None:
-        """Write the messages that have arrived."""
         messages: list[Message] = []
         for topic, (kind, polled) in self._open.items():
             for data, received, sent in polled.take():

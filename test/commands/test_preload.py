@@ -191,9 +191,9 @@ TURN = ('preload', '--degrees', '1')
         ),
         (
             ['preload', '--degrees', '200', *SOFT],
-            'at a ring turn of 200° other teeth would mesh: the tooth pitch is 4.5°',
+            'at a ring turn of 200° 00′ 00.000″ other teeth would mesh: the tooth pitch is 4° 30′',
         ),
-        (['preload', '--setting', '0', '1', '1', *SOFT], 'at a ring turn of 8.835°'),
+        (['preload', '--setting', '0', '1', '1', *SOFT], 'at a ring turn of 8° 50′ 04.878″'),
         (['preload', '--wanted-preload', '50', *SOFT], 'other teeth would mesh'),
         ([*TURN, *SOFT, '--plot', 'plot.xyz'], 'plot.xyz: the suffix'),
         (['preload', '--wanted-preload', '1e6', *SOFT], 'at most a whole turn'),
