@@ -207,7 +207,18 @@ class GearNode:
         self.homing.call_async(Trigger.Request()).add_done_callback(take)
 
     def set(self, values: Mapping[str, Any], done: str, answer: 'futures.Future[Answer]') -> None:
-        """Set all or none of some parameters; answer with success or the reason of the failure."""
+        """Set all or none of some parameters; answer with success or the reason of the failure.
+
+        They are left alone if someone else has changed them since they were read.
+        """
+
+        def check(answered: Future) -> None:
+            present = self.parameters.values() if self.parameters else {}
+            if _values(answered) == [present.get(name) for name in values]:
+                self._client.set_parameters_atomically(parameters, take)
+            else:
+                self._due = 0.0
+                answer.set_result(Answer('Nothing was done: the node has changed.', done=False))
 
         def take(answered: Future) -> None:
             result = answered.result().result
@@ -219,16 +230,14 @@ class GearNode:
             Parameter(full_name(self.actuator, name), value=value)
             for name, value in values.items()
         ]
-        self._client.set_parameters_atomically(parameters, take)
+        self._client.get_parameters([each.name for each in parameters], check)
 
     def _ask(self, listed: Future) -> None:
         names = [n for n in listed.result().result.names if n.rpartition('.')[2] in _KNOWN]
 
         def take(answered: Future) -> None:
-            values = [parameter_value_to_python(each) for each in answered.result().values]
+            values = _values(answered)
             if len(values) == len(names):  # else it has started again with other names
-                # ROS drops the type of an empty list, as `actuators: []` in a file.
-                values = [[] if each is None else each for each in values]
                 self._take_parameters(dict(zip(names, values, strict=True)))
 
         self._client.get_parameters(names, take)
@@ -238,7 +247,7 @@ class GearNode:
         try:
             if faults := faults_in(given):
                 raise ValueError('; '.join(faults))
-            arm = actuators_of(given)  # of whose values an older node can lack some
+            self.arm = arm = actuators_of(given)  # of whose values an older node can lack some
             if (actuator := self.actuator or next(iter(arm))) not in arm:
                 raise ValueError(f'it has no actuator {actuator!r}{among(actuator, arm)}')
             parameters = arm[actuator]
@@ -257,4 +266,10 @@ class GearNode:
                 self.earlier, self.revision = changed, next(_revisions)
             if 'rotor_zero' in changed:
                 self.homed_zero = parameters.rotor_zero
-        self.parameters, self.fault, self._due, self.arm = parameters, '', math.inf, arm
+        self.parameters, self.fault, self._due = parameters, '', math.inf
+
+
+def _values(answered: Future) -> list[Any]:
+    """Return parameters; ROS drops the type of an empty list, as `actuators: []` in a file."""
+    values = [parameter_value_to_python(each) for each in answered.result().values]
+    return [[] if each is None else each for each in values]

@@ -121,6 +121,12 @@ class Watcher:
             known = {other.actuator for other in self._gears if other.name == gear.name}
             others = [GearNode(self._node, gear.name, own) for own in gear.arm if own not in known]
             self._gears += others
+        # A node that starts again may have other actuators; a mistyped one is kept, as a fault.
+        self._gears = [
+            gear
+            for gear in self._gears
+            if not gear.arm or gear.actuator in {'', self._actuator, *gear.arm}
+        ]
         self._gears.sort(key=_place)
         running = [gear for gear in self._gears if gear.name in graph.gears]
         going_on = self._gear if self._gear in running else None

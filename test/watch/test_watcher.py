@@ -141,6 +141,16 @@ def unconnected(name, actuator=''):
         return GearNode(None, name, actuator)
 
 
+def client(zero, asked):
+    """Stand in for the client of a node with a rotor_zero, and note what it is asked to set."""
+    values = [ParameterValue(type=3, double_value=zero)]
+    response = SimpleNamespace(result=lambda: SimpleNamespace(values=values))
+    return SimpleNamespace(
+        get_parameters=lambda _, take: take(response),
+        set_parameters_atomically=lambda parameters, _: asked.extend(parameters),
+    )
+
+
 def test_values_are_those_of_the_topics():
     assert list(values_of(gear_node())) == [
         Entry('output angle', '-370.000°', '-6.45772 rad'),
@@ -291,6 +301,12 @@ def test_another_node_is_shown_when_chosen_or_when_the_first_has_ended(monkeypat
     assert [gear.label for gear in watcher._gears] == ['/a', '/b shoulder', '/b elbow']
     watcher._do({'do': 'show', 'node': '/b elbow'}, Future())
     assert (watcher._gear.name, watcher._gear.actuator) == ('/b', 'elbow')
+    # The node starts again with another file, in which nothing has the name of before.
+    for gear in watcher._gears[1:]:
+        gear.arm = {'wrist': None}
+    look('/b')
+    assert [gear.label for gear in watcher._gears] == ['/a', '/b wrist']
+    assert watcher._gear.label == '/b wrist'
 
 
 def test_all_angles_of_an_arm_are_in_a_row():
@@ -386,13 +402,27 @@ def test_an_actuator_of_an_arm_has_its_own_parameters_and_service():
         node._take_parameters(given)
         assert (node.label, node.fault) == (f'/arm {actuator or "shoulder"}', '')
         assert (node.parameters.gear_ratio, node.parameters.rotor_zero) == (ratio, 1.0)
-        node._client = SimpleNamespace(set_parameters_atomically=lambda p, _: asked.extend(p))
+        node._client = client(1.0, asked)
         node.set({'rotor_zero': 2.0}, 'done', Future())
     assert made == ['/arm/shoulder/home']
     assert [each.name for each in asked] == ['shoulder.rotor_zero', 'elbow.rotor_zero']
     node.actuator = 'elbo'
     node._take_parameters(given)
     assert node.fault.startswith("it has no actuator 'elbo'; did you mean `elbow`?")
+    assert node.arm.keys() == {'shoulder', 'elbow'}
+
+
+@pytest.mark.parametrize(('zero', 'done'), [(1.5, True), (3.5, False)])
+def test_only_the_present_zero_is_undone(zero, done):
+    """Another `gearkin watch` may have homed the node since the diagnostics told its zero."""
+    node, asked, answered = unconnected('/gear'), [], Future()
+    for known in (0.5, 1.5):
+        node._take_parameters({'rotor_zero': known})
+    node._client = client(zero, asked)
+    node.set(node.earlier, 'Undone.', answered)
+    assert [(each.name, each.value) for each in asked] == [('rotor_zero', 0.5)] * done
+    assert answered.done() != done
+    assert done or answered.result().text == 'Nothing was done: the node has changed.'
 
 
 @pytest.mark.parametrize(
