@@ -87,3 +87,13 @@ def order(stamps: Array) -> tuple[bool, int]:
     """Return whether stamps never fall and none is 0, and how many repeat the one before."""
     steps = np.diff(stamps)
     return bool((steps >= 0).all() and stamps.all()), int(np.count_nonzero(steps == 0))
+
+
+@once_for_joints
+def spaced(stamps: Array, due: int, span: int) -> Array:
+    """Return rows at least a span apart, ns, as early as possible, the first not before `due`."""
+    rows, row = list[int](), -1
+    while (row := row + 1 + int(stamps[row + 1 :].searchsorted(due))) < len(stamps):
+        rows.append(row)
+        due = int(stamps[row]) + span
+    return np.array(rows, np.intp)

@@ -12,6 +12,7 @@ from operator import mul
 
 import numpy as np
 
+from gear_kinematics.state.disorder import spaced
 from gear_kinematics.state.reach import FLOOR
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.wire.batches import Array
@@ -139,29 +140,28 @@ class VelocityField:
         NaN.
         """
         velocity, start, noted = values[:, 1].copy(), 0, 0
-        stamps = stamps[: len(values)]
-        while (row := noted + int(stamps[noted:].searchsorted(self.due))) < len(values):
-            self._add(values[noted:row, 1])
+        given = ~np.isnan(velocity)
+        terms = np.where(given, velocity, 0.0)
+        rows = spaced(stamps, self.due, SPAN)
+        rows = rows[rows < len(values)]
+        readings = zip(rows.tolist(), stamps[rows].tolist(), values[rows].tolist(), strict=True)
+        for row, stamp, (position, last, _) in readings:
+            self._add(terms[noted:row], given[noted:row])
             if self.contradicts:
                 velocity[start:row] = np.nan
             start, noted = row, row + 1
-            position, given, _ = values[row].tolist()
-            self.note(int(stamps[row]), position, None if math.isnan(given) else given, noise)
-        self._add(values[noted:, 1])
+            self.note(stamp, position, None if math.isnan(last) else last, noise)
+        self._add(terms[noted:], given[noted:])
         if self.contradicts:
             velocity[start:] = np.nan
         return velocity
 
-    def _add(self, velocities: Array) -> None:
-        """Add velocities of messages between readings, NaN for none, with the result of `add`."""
-        if not self._total and len(velocities):
-            total = float(velocities.cumsum()[-1])
-            if not math.isnan(total):  # as nearly always; -0.0 becomes 0.0, as in a sum
-                self._total, self._count = total + 0.0, self._count + len(velocities)
-                return
-        given = velocities[~np.isnan(velocities)]
-        self._total = float(np.cumsum(np.append(self._total, given))[-1])
-        self._count += len(given)
+    def _add(self, terms: Array, given: Array) -> None:
+        """Add velocities of messages, (n,), 0 where none is given, with the result of `add`."""
+        if len(terms):
+            terms[0] += self._total
+            self._total = float(terms.cumsum()[-1])
+            self._count += int(np.count_nonzero(given))
 
     def add(self, velocity: float | None) -> None:
         """Take the velocity of a message, rad/s, without comparing it yet."""
@@ -209,8 +209,9 @@ class VelocityField:
         expected = abs(mean) * (stamp - since) * 1e-9
         last, now = (math.copysign(v or 0.0, (v or 0.0) * mean) for v in (self._last, velocity))
         goes_on = min(last, now) >= 0.5 * abs(mean) and now >= (1.0 - _STEADY) * last
-        stuck = goes_on and not turn and self.finding is VelocityMeaning.RIGHT
-        if (stuck and expected >= _TRAVEL) or expected > _IMPOSSIBLE * (abs(turn) + _TRAVEL):
+        right = self.finding is VelocityMeaning.RIGHT
+        stuck = right and goes_on and not turn and expected >= _TRAVEL
+        if stuck or expected > _IMPOSSIBLE * (abs(turn) + _TRAVEL):
             return math.copysign(expected, mean) / turn if turn else math.inf
         return math.nan
 
@@ -296,18 +297,20 @@ class VelocityField:
         readings = self._readings[-count:]
         if not self._moved:  # 0 throughout a motion, however unsteady, which is not one jump
             positions = [position for _, position, _ in readings]
+            if max(positions) - min(positions) < travel:
+                return False
             steps = [abs(q - p) for p, q in pairwise(positions)]
-            if min(max(positions) - min(positions), sum(steps) - max(steps)) >= travel:
+            if sum(steps) - max(steps) >= travel:
                 self._decide(0.0)
                 return True
-        (first, start, _), *_, (last, end, _) = readings
+        (first, start, _), (last, end, _) = readings[0], readings[-1]
         time, slow, far = (last - first) * 1e-9, stride > 1, abs(end - start) >= travel
-        stands = all(abs(position - end) <= FLOOR for _, position, _ in readings)
-        if slow and not (far or stands):
-            return False
         velocities = [velocity for _, _, velocity in readings[1:]]
         mean = sum(velocities) / len(velocities)
         if not far and abs(mean) * time < travel:
+            return False
+        stands = all(abs(position - end) <= FLOOR for _, position, _ in readings)
+        if slow and not (far or stands):
             return False
         slope = 0.0 if stands else (end - start) / time
         if not stands and any(
@@ -344,7 +347,6 @@ class VelocityField:
         """Return what velocities are that are a multiple of the right ones."""
         if abs(factor - 1.0) <= _AGREES:
             return VelocityMeaning.RIGHT
-        for name, known in self._factors.items():
-            if abs(factor - known) <= _ALIKE * abs(known):
-                return name
-        return VelocityMeaning.UNKNOWN
+        factors = self._factors.items()
+        alike = (name for name, known in factors if abs(factor - known) <= _ALIKE * abs(known))
+        return next(alike, VelocityMeaning.UNKNOWN)
