@@ -125,13 +125,7 @@ def summarise(
 
 
 def _summary(
-    name: str,
-    kind: str,
-    part: str,
-    joints: list[str],
-    times: Array,
-    followed: str,
-    others: int,
+    name: str, kind: str, part: str, joints: list[str], times: Array, followed: str, others: int
 ) -> TopicSummary:
     stamped, received = np.diff(times)
     repeated = 2 * np.count_nonzero(stamped) < len(stamped)  # as without their nanoseconds

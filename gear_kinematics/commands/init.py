@@ -24,12 +24,7 @@ from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.arm import faults_in
 from gear_kinematics.parameters.arm_file import add_actuators, check_new
 from gear_kinematics.parameters.files import write_config
-from gear_kinematics.parameters.new_config import (
-    arm_head,
-    new_actuator,
-    new_config,
-    start_command,
-)
+from gear_kinematics.parameters.new_config import arm_head, new_actuator, new_config, start_command
 from gear_kinematics.report.document import printable
 from gear_kinematics.wire.batches import JointStateBatch
 from gear_kinematics.wire.nearest import among

@@ -9,14 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gear_kinematics.measurement.loops import (
-    ANGLES,
-    MOST_FRICTION,
-    SIDE,
-    Array,
-    MiddleLine,
-    Ramps,
-)
+from gear_kinematics.measurement.loops import ANGLES, MOST_FRICTION, SIDE, Array, MiddleLine, Ramps
 from gear_kinematics.measurement.sentences import Cause
 from gear_kinematics.statistics.uncertainty import Estimate, resolution, student_t
 

@@ -71,10 +71,7 @@ def arm_head(command: str) -> list[str]:
 
 
 def _gear(
-    joint: str,
-    ratio: GearRatio,
-    teeth: tuple[int, int] | None,
-    encoder: Mapping[str, str | float],
+    joint: str, ratio: GearRatio, teeth: tuple[int, int] | None, encoder: Mapping[str, str | float]
 ) -> dict[str, str]:
     """Return the parameters that are known of a gear, as scalars of YAML."""
     values = {'rotor_joint': quoted(joint), 'gear_ratio': quoted(str(ratio))}

@@ -32,10 +32,7 @@ def errors_of_poses(
     turned = 2.0 * np.arctan2(z, w) - state.output_angle[:, np.newaxis]
     turned -= math.tau * np.round(turned / math.tau)
     turned = np.hypot(turned, 2.0 * np.hypot(x, y)) + np.abs(np.hypot(z, w) - 1.0)
-    return {
-        'position of bodies': apart.max(axis=1),
-        'orientation of bodies': turned.max(axis=1),
-    }
+    return {'position of bodies': apart.max(axis=1), 'orientation of bodies': turned.max(axis=1)}
 
 
 def own_joints(

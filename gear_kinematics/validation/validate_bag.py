@@ -173,10 +173,7 @@ def _of_only_joint(task: Task, bag: Bag, rotor: str) -> tuple[Task, Sequence[Fin
 
 
 def _played(
-    task: Task,
-    bag: Bag,
-    progress: ReportProgress | None,
-    play: Callable[..., Iterable[Message]],
+    task: Task, bag: Bag, progress: ReportProgress | None, play: Callable[..., Iterable[Message]]
 ) -> BagReport:
     """Validate what a live node publishes for the recorded rotor states."""
     given, joints = {'rotor': task.rotor_topic}, [task.parameters.rotor_joint]
