@@ -209,9 +209,8 @@ class VelocityField:
         expected = abs(mean) * (stamp - since) * 1e-9
         last, now = (math.copysign(v or 0.0, (v or 0.0) * mean) for v in (self._last, velocity))
         goes_on = min(last, now) >= 0.5 * abs(mean) and now >= (1.0 - _STEADY) * last
-        right = self.finding is VelocityMeaning.RIGHT
-        stuck = right and goes_on and not turn and expected >= _TRAVEL
-        if stuck or expected > _IMPOSSIBLE * (abs(turn) + _TRAVEL):
+        stuck = goes_on and not turn and self.finding is VelocityMeaning.RIGHT
+        if (stuck and expected >= _TRAVEL) or expected > _IMPOSSIBLE * (abs(turn) + _TRAVEL):
             return math.copysign(expected, mean) / turn if turn else math.inf
         return math.nan
 
@@ -324,8 +323,7 @@ class VelocityField:
         if not slope and abs(velocities[-1]) < (1.0 - _STEADY) * abs(velocities[0]):
             return True  # as behind a filter after a stop
         factor = mean / slope if slope else math.inf
-        rounded = 1.0 / _FAR < factor < _FAR or (self._moved and not factor)
-        if not (slow and rounded):
+        if not (slow and (1.0 / _FAR < factor < _FAR or (self._moved and not factor))):
             self._decide(factor)
         return True
 
