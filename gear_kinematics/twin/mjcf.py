@@ -85,7 +85,7 @@ def mjcf(
   that close the loops add less than 0.01 % to the compliance of the gear; one of 1, 0.04 %.
 -->
 <option timestep="{step!r}" integrator="implicitfast" gravity="0 0 0" iterations="10"
- tolerance="1e-12"><flag contact="disable"/></option>
+ tolerance="1e-12" jacobian="dense"><flag contact="disable" island="disable"/></option>
 <visual><headlight ambient="0.5 0.5 0.5"/></visual>
 <default>
   <equality solref="{2.0 * step!r} 1" solimp="0.9999 0.9999"/>

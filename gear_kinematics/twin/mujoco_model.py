@@ -9,6 +9,7 @@ from gear_kinematics.twin.mjcf import mjcf
 
 _FASTEST = 0.14  # rad a time step; beyond, closing the loops feeds in energy
 mujoco.set_mju_user_warning(lambda _: None)  # else MUJOCO_LOG.TXT in the current folder
+mujoco.set_mjcb_time(None)  # reading the clock in each step takes a tenth of its time
 
 
 class MujocoModel:
@@ -66,6 +67,8 @@ class MujocoModel:
     def _build(self, gear: TwinGear) -> None:
         self._gear = gear
         self.model = mujoco.MjModel.from_xml_string(mjcf(gear, shown=False))
+        # What the sensors of the file say is not read here.
+        self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_SENSOR
         self.data = mujoco.MjData(self.model)
         self._step = self.model.opt.timestep
         # Views of what MuJoCo reads and writes, as each access by name takes longer than its use.
