@@ -184,7 +184,7 @@ class RotorTurns:
         self.longest_silence = 0.0
         """Time without a sample, ns, after which a multi-turn encoder may have restarted, so that
         its turns are unknown at the start, too; 0: it never does."""
-        self._lost = False
+        self.lost = False  # whether they are unknown until the next reference, because of a jump
         self.unknown_gaps = 0
         """Number of gaps in which the rotor could have turned half a period or more unseen."""
         self.reset()
@@ -220,12 +220,12 @@ class RotorTurns:
 
     def forget_turns(self) -> None:
         """Make the turns as unknown as at the start; counting goes on."""
-        self.referenced = not (self.period or self.longest_silence or self._lost)
+        self.referenced = not (self.period or self.longest_silence or self.lost)
         self.unseen_travel = math.inf  # rad, greatest error of the count
 
     def lose(self) -> None:
         """Treat the turns as unknown until the next reference, because the encoder has jumped."""
-        self._lost = True
+        self.lost = True
         self.forget_turns()
 
     def lose_unseen(self) -> None:
@@ -332,7 +332,7 @@ class RotorTurns:
 
     def refer(self) -> None:
         """Treat the counted turns as known from now on."""
-        self.referenced, self.unseen_travel, self._lost = True, 0.0, False
+        self.referenced, self.unseen_travel, self.lost = True, 0.0, False
         self.longest_gap = 0.0
 
     def zero_for(self, rotor_angle: float, direction: int) -> float:

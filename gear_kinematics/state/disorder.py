@@ -24,7 +24,7 @@ class Disorder:
         self.stamps: list[int] = []
         self.close_resets = 0  # resets of the clock that directly follow another one
         self._reset = -_CLOSE  # number of the message of the last one
-        self._step: Fact | None = None
+        self.step: Fact | None = None  # the clock's last step back
         self._too_fast: Fact | None = None
 
     @property
@@ -34,7 +34,7 @@ class Disorder:
         The unit is known of batches only.
         """
         if self.close_resets < ALTERNATING:
-            return self._too_fast or self._step
+            return self._too_fast or self.step
         return Condition.CLOCKS_ALTERNATE(count=self.close_resets)
 
     def compare(self, stamps: Array, received: Array) -> None:
@@ -66,7 +66,7 @@ class Disorder:
 
     def _note_step(self, last: int, stamp: int) -> None:
         size, at = (last - stamp) / SECOND, last / SECOND
-        self._step = Condition.CLOCK_SET_BACK(size=size, time=at)
+        self.step = Condition.CLOCK_SET_BACK(size=size, time=at)
 
 
 class Bursts:

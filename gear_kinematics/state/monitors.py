@@ -15,6 +15,7 @@ from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition, Fact, GearReport
 from gear_kinematics.state.turn_reference import TurnReference, range_fault
+from gear_kinematics.state.wraps import why_unknown
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import Rejection
 
@@ -140,7 +141,9 @@ class InputMonitor(DriverMonitor):
         if age > rotor_input.parameters.input_timeout:
             yield Condition.NO_INPUT(age=age)
         if not rotor_input.referenced:
-            if lost := rotor_input.why_lost:
+            turns, reset = rotor_input.turns, rotor_input.disorder.step
+            lost = rotor_input.why_lost if turns.lost else why_unknown(turns)
+            if lost := lost or (reset if rotor_input.resets else None):
                 yield lost
             yield _not_referenced(reference, self._encoder.clocks_apart)
         elif wrong := (reference and reference.disagreement) or _outside(rotor_input):

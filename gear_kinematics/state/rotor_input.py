@@ -18,7 +18,7 @@ from gear_kinematics.state.plausibility import Plausibility
 from gear_kinematics.state.rotor_samples import RotorSamples, Row
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.state.velocity_field import VelocityField
-from gear_kinematics.state.wraps import too_seldom
+from gear_kinematics.state.wraps import why_unknown
 from gear_kinematics.wire.batches import Array, decode_joint_states
 from gear_kinematics.wire.cdr import LATEST, SECOND
 from gear_kinematics.wire.joint_reader import (
@@ -109,9 +109,7 @@ class RotorInput:
     @property
     def why_lost(self) -> Fact | None:
         """How the turns were lost, as far as that is known."""
-        gap = self.turns.longest_gap
-        known = self.plausibility.jumped or too_seldom(*self.turns.usual_gap)
-        return known or (Condition.GAP(gap=gap) if gap else None)
+        return self.plausibility.jumped or why_unknown(self.turns)
 
     @property
     def mostly_rejected(self) -> bool:

@@ -56,6 +56,11 @@ class Condition(Enum):
         'a gap of {gap:.3f} s could hide a turn of the rotor',
         'Let the driver send without gaps, or lower max_rotor_speed to what the motor reaches.',
     )
+    TURNED_TOO_FAR = (
+        ERROR,
+        'the rotor turned by more than max_rotor_speed allows within {gap:.3f} s',
+        "Check whether the drive restarted and how it stamps, or raise that limit to the motor's.",
+    )
     REJECTED = (
         WARN,
         'rejected: {counts}',
@@ -91,12 +96,12 @@ class Condition(Enum):
         'the stamps went back by more than 1 s {count} times, as from two clocks in turn',
         'Stop all drivers but one: steps of the positions are not found meanwhile.',
     )
-    # The following are said of recordings only.
     CLOCK_SET_BACK = (
         OK,
         'the clock was set back by at least {size:.3g} s just after {time:.3f} s',
         '',
     )
+    # The following are said of recordings only.
     VELOCITIES_WERE = OK, 'until {time:.3f} s, {doubt}', ''
     EFFORT_TOO_LARGE = OK, _EFFORT, ''
     EFFORT_IS_ZERO = OK, 'the effort is 0 throughout the motion, and is taken as absent', ''

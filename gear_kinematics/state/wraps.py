@@ -9,7 +9,7 @@ one turn is recognised, because the quick return of a machine looks like a wrap 
 import math
 from dataclasses import dataclass, field
 
-from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.kinematics.rotor_turns import TURN, RotorTurns
 from gear_kinematics.state.statuses import Condition, Fact
 
 LEAST_STEP = 0.5 * TURN  # rad, of a step that may be a wrap
@@ -119,6 +119,14 @@ class Wraps:
         if known and not self.period:
             self.period = TURN
         return known
+
+
+def why_unknown(turns: RotorTurns) -> Fact | None:
+    """Return how a gap, or a step within one that hides no turn, made the turns unknown."""
+    gap = turns.longest_gap
+    hides = 2.0 * turns.max_speed * gap >= turns.period
+    which = Condition.GAP if hides else Condition.TURNED_TOO_FAR
+    return too_seldom(*turns.usual_gap) or (which(gap=gap) if gap else None)
 
 
 def too_seldom(

@@ -72,7 +72,7 @@ class InputHealth:
         # Times of reception show no speeds, because of bursts, and jumps are no motion.
         timed = 2 * rotor_input.zero_stamps <= rotor_input.received
         timed &= not rotor_input.plausibility.jumped
-        lost = rotor_input.why_lost  # gaps are counted
+        lost, counted = rotor_input.why_lost, {Condition.GAP, Condition.TURNED_TOO_FAR}
         no_effort = Condition.EFFORT_IS_ZERO() if rotor_input.effort_field.absent else ''
         return InputReport(
             topic=topic,
@@ -94,7 +94,7 @@ class InputHealth:
             max_speed=self._fastest * timed,
             longest_gaps=tuple(self._longest),
             referenced=not (rotor_input.turns.unknown_gaps or rotor_input.plausibility.jumped),
-            jumped='' if lost and lost.condition is Condition.GAP else str(lost or ''),
+            jumped='' if lost and lost.condition in counted else str(lost or ''),
             velocity_is=str(rotor_input.velocity_field.in_recording or ''),
             set_back=str(rotor_input.disorder.clock_fault or ''),
             beyond_limits=str(rotor_input.plausibility.beyond_limits or ''),

@@ -174,6 +174,23 @@ ROWS = {
         FindingCause.JUMPS,
         SINGLE,
     ),
+    'turns unknown after a clock was set back': Row(
+        moved(stamp=-2 * SECOND),
+        {'resets': 1},
+        (
+            Condition.NOT_REFERENCED(),
+            Condition.CLOCK_SET_BACK(size=pytest.approx(1.99), time=100.59),
+        ),
+        FindingCause.SET_BACK,
+        SINGLE,
+    ),
+    'impossible step within a turn': Row(
+        moved(offset=1.7),
+        {'jumps': 1},
+        (Condition.TURNED_TOO_FAR(gap=pytest.approx(0.01)), Condition.NOT_REFERENCED()),
+        FindingCause.JUMPS,
+        SINGLE,
+    ),
     'driver restarts': Row(
         moved(offset=100.0),
         {'rejected': {'implausible': 2}},

@@ -4,6 +4,7 @@
 import math
 import struct
 from contextlib import suppress
+from dataclasses import replace
 
 import pytest
 from live import SECOND, rotor_bytes
@@ -87,6 +88,20 @@ def test_counts_are_facts_of_the_next_report_alone_and_faults_of_the_graph_of_al
     report = bench.report(START + 4.0)
     assert report.facts == [Condition.LOSSES_UNKNOWN()]
     assert report.values['lost messages'] == 'unknown'
+
+
+def test_a_jump_from_before_the_reference_is_not_why_turns_are_unknown():
+    gear = GearState(replace(SETTINGS, rotor_encoder='single_turn', max_rotor_speed=100.0))
+    for time in (*range(40), 140):
+        if time == 140:
+            jumped, *_ = gear.report(START, Connections())['rotor input'].facts
+            gear.input.home(0.0)
+        position = (0.1 * time + 3.0 * (time >= 20)) % math.tau
+        with suppress(RejectedInputError):
+            gear.rotor(good((100 + time) * SECOND // 100, position), int)
+    assert jumped.condition is Condition.JUMPED
+    gap, *_ = gear.report(START, Connections())['rotor input'].facts
+    assert gap == Condition.GAP(gap=pytest.approx(1.01))
 
 
 def test_drivers_of_other_joints_are_no_fault(bench):
