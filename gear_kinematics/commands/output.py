@@ -21,10 +21,7 @@ def complain(error: object) -> None:
 
 
 def announce_ros(participants: int) -> None:
-    """Say on a terminal that ROS starts, which can take seconds, and warn of low shared memory.
-
-    Raises SharedMemoryError if the memory is too low for the import of ROS.
-    """
+    """Say on a terminal that ROS starts; warn of low shared memory, or raise SharedMemoryError."""
     if sys.stderr.isatty():
         print('starting ROS ...', file=sys.stderr)
     if warning := check_shared_memory(participants):
@@ -58,6 +55,11 @@ def stopped_by_signals() -> Iterator[Callable[[], bool]]:
 
 class Console(console.Console):
     """Raises BrokenPipeError, instead of ending the process as rich does."""
+
+    @property
+    def is_terminal(self) -> bool:
+        """Whether a table can be shown; on a dumb terminal rich would show nothing of it."""
+        return os.environ.get('TERM') not in {'dumb', 'unknown'} and super().is_terminal
 
     def on_broken_pipe(self) -> None:
         """Raise the error for `closed_pipe_ignored`."""

@@ -103,8 +103,7 @@ class Recorder:
             if (heard := inputs & self.heard.keys())
         }
         for topic in self.inputs - self._inputs_of.keys():
-            if opened := self._open.pop(topic, None):
-                opened[1].close()
+            self._open.pop(topic, None)
         until = time.monotonic() + _LONGEST
         for looked in count():
             late = any(0 <= self._stamp(output) < stamp for output, stamp in last.items())
@@ -116,9 +115,8 @@ class Recorder:
             self._take()
 
     def _stamp(self, topic: str) -> int:
-        """Return the stamp of the last message on a topic, ns; -1 if there is none."""
         last = self.heard[topic].last if topic in self.heard else None
-        return header_stamp(last.data) if last else -1
+        return header_stamp(last.data) if last else -1  # ns
 
     def _look(self, namespace: str, name: str) -> None:
         with suppress(RuntimeError):  # the node has ended meanwhile

@@ -29,6 +29,7 @@ from gear_kinematics.watch.watcher import Watcher
 _REFRESH = 0.1  # s
 _LINES = 1.0  # s between lines in a pipe
 _BAR = 40  # characters
+_END = {'q', '\4'}  # or Ctrl-D
 _STYLES = {'': 'bold', 'stale': 'dim', 'notable': 'yellow', 'pass': 'green', 'unusable': 'magenta'}
 _BAD = 'bold red'  # the style of all other tones
 
@@ -77,7 +78,7 @@ def show(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> Non
         undo = f'   u undo: back to {view.undo}' if view.undo else ''
         more = f'   n next {"actuator" if view.arm else "node"}' * bool(others)
         rows.append(Entry('', '', f'h home{undo}{more}   q end'))
-        return rows, pressed != 'q'
+        return rows, pressed not in _END
 
     _show(console, stopped, frame)
 
@@ -99,7 +100,7 @@ def guide(live: LiveCommissioning, console: Console, stopped: Callable[[], bool]
         if console.is_terminal:
             rows.insert(1, Entry('', f'{"━" * round(_BAR * shown.known):─<{_BAR}}'))
             rows += [*shown.entries[1:], Entry('', '', 'Enter end')]
-        return rows, shown.known < 1.0 and pressed not in {'q', '\n'}
+        return rows, shown.known < 1.0 and pressed not in {*_END, '\n'}
 
     with replay_node('') as node:
         listener = Listener(node)
@@ -122,7 +123,7 @@ def show_recording(recorder: Recorder, console: Console, stopped: Callable[[], b
                 *([] if recorder.heard else rows),
                 Entry('', '', 'q end'),
             ]  # fmt: skip
-        return rows, pressed != 'q'
+        return rows, pressed not in _END
 
     _show(console, stopped, frame)
 

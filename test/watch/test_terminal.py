@@ -68,7 +68,7 @@ def test_key_shows_the_next_node_and_a_mistyped_one_is_corrected(tmp_path):
         terminal.wait_for('n next node')
         for name in (NODE, OTHER):
             terminal.wait_for(f'{name} +connected', keys='n')
-        terminal.type('q')
+        terminal.type('\4')  # Ctrl-D
         assert terminal.end() == 0
 
 

@@ -27,7 +27,7 @@ from rich.console import Console
 from sensor_msgs.msg import JointState
 from watching import DEADLINE, WatcherStandIn
 
-from gear_kinematics.commands import init, joints
+from gear_kinematics.commands import init, joints, output
 from gear_kinematics.commands.cli import main
 from gear_kinematics.measurement.commissioning.analysis import Channel
 from gear_kinematics.parameters import NodeParameters
@@ -500,6 +500,17 @@ def printed(renderable, width: int = 120) -> str:
     stream = io.StringIO()
     Console(file=stream, width=width, force_terminal=True, color_system=None).print(renderable)
     return stream.getvalue()
+
+
+@pytest.mark.parametrize('kind', ['dumb', 'xterm'])
+def test_a_dumb_terminal_gets_lines_as_a_pipe_does(monkeypatch, kind):
+    """rich would show nothing of a table on it, until the end."""
+    monkeypatch.setenv('TERM', kind)
+    shown, stops = io.StringIO(), iter([False, True])
+    recorder = SimpleNamespace(poll=lambda: None, absent='', heard={})
+    show_recording(recorder, output.Console(file=shown, force_terminal=True), lambda: next(stops))
+    lines = re.match(r'[\d-]+T\S+ waiting for a gear_state_publisher\n', shown.getvalue())
+    assert bool(lines) == (kind == 'dumb')
 
 
 @pytest.mark.parametrize(
