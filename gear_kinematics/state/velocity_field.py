@@ -35,6 +35,7 @@ _ALIGNED = 0.95  # the square of a correlation from which a factor explains the 
 _FEW = 4  # velocities between readings, of which the mean is that of an oscillation
 _RELATED = 0.5  # the correlation that a motion has with its velocities, at least
 _IMPOSSIBLE = 30.0  # times the travel: any more between two readings is no velocity
+_LONGEST = 10.0  # readings in which velocities that go on show a position that is stuck
 _FILTERED = 0.5  # share by which what a filter leaves of a motion may differ from a projection
 _LATE, _EXPLAINED = 0.03, 0.9  # s, square of a correlation, from which a delay is reported
 _CHANGES = 4.0
@@ -96,6 +97,7 @@ class VelocityField:
         self._pause_until = 0  # ns, while only a stuck encoder is looked for
         self._total, self._count = 0.0, 0  # of the velocities since the last reading
         self._last: float | None = None  # rad/s, the velocity at the last reading
+        self._held = 0.0  # rad, the way by the velocities while the position did not change
         self._readings: list[tuple[int, float, float]] = []
         """Each stamp, ns, its position, rad, and the mean velocity since the one before, rad/s."""
         self._begin_block()
@@ -200,18 +202,18 @@ class VelocityField:
         self.quiet_until = 0 if self.contradicts else self.due
 
     def _impossible(self, stamp: int, position: float, velocity: float | None) -> float:
-        """Return the factor of velocities that are too great, or go on at a standstill, or NaN.
-
-        Behind a stop, those of a filter fall.
-        """
+        """Return the factor of velocities that are too great, or go on at a standstill, or NaN."""
         since, before, _ = self._readings[-1] if self._readings else (stamp, position, 0.0)
         mean, turn = self._total / max(1, self._count), position - before
-        expected = abs(mean) * (stamp - since) * 1e-9
+        expected = mean * (stamp - since) * 1e-9
+        self._held = 0.0 if turn else self._held + expected
         last, now = (math.copysign(v or 0.0, (v or 0.0) * mean) for v in (self._last, velocity))
+        # Behind a stop, the velocities of a filter fall.
         goes_on = min(last, now) >= 0.5 * abs(mean) and now >= (1.0 - _STEADY) * last
-        stuck = goes_on and not turn and self.finding is VelocityMeaning.RIGHT
-        if (stuck and expected >= _TRAVEL) or expected > _IMPOSSIBLE * (abs(turn) + _TRAVEL):
-            return math.copysign(expected, mean) / turn if turn else math.inf
+        held = _TRAVEL <= abs(self._held) <= _LONGEST * abs(expected)
+        stuck = held and goes_on and self.finding is VelocityMeaning.RIGHT
+        if stuck or abs(expected) > _IMPOSSIBLE * (abs(turn) + _TRAVEL):
+            return expected / turn if turn else math.inf
         return math.nan
 
     def _follow(self, travel: float, noise: float) -> None:
@@ -329,16 +331,14 @@ class VelocityField:
 
     def _decide(self, factor: float, *, certain: bool = False) -> None:
         """Change the finding if it is certain, or two comparisons in a row find the same."""
-        found = self._meaning_of(factor)
+        found, stamp = self._meaning_of(factor), self._readings[-1][0]
         if certain or found is self._candidate:
-            if self.decided is None:
-                self.decided = self._readings[-1][0]
+            self.decided = stamp if self.decided is None else self.decided
             if self.contradicts and found is VelocityMeaning.RIGHT:
-                end = self._readings[-1][0] / SECOND
-                self._past = Condition.VELOCITIES_WERE(time=end, doubt=self.meaning)
+                self._past = Condition.VELOCITIES_WERE(time=stamp / SECOND, doubt=self.meaning)
             self.finding, self.factor = found, factor
             self.contradicts = found is not VelocityMeaning.RIGHT
-            self._pause_until = 0 if self.contradicts else self._readings[-1][0] + _PAUSE
+            self._pause_until = 0 if self.contradicts else stamp + _PAUSE
         self._candidate = found
 
     def _meaning_of(self, factor: float) -> VelocityMeaning:

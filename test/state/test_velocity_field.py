@@ -299,13 +299,14 @@ def test_velocities_of_an_unsteady_motion_show_that_an_encoder_is_stuck(velocity
     assert rotor.velocity_field.positions_stand == stuck
 
 
+@pytest.mark.parametrize(('speed', 'within'), [(60.0, 0.2), (12.0, 0.5)])
 @pytest.mark.parametrize('begin', [1.2, 1.65])
 @pytest.mark.parametrize('rate', [40, 500])
-def test_an_encoder_that_is_stuck_beside_right_velocities_is_named_within_0_2_s(rate, begin):
+def test_an_encoder_that_is_stuck_beside_right_velocities_is_named(rate, begin, speed, within):
     def fields(time):
-        return 60.0 * min(time, begin) + 0.1 * math.sin(20.0 * min(time, begin)), 60.0
+        return speed * min(time, begin) + 0.05 * math.sin(20.0 * min(time, begin)), speed
 
-    rotor, _ = heard(fields, rate, begin + 0.2 + 1.5 / rate)
+    rotor, _ = heard(fields, rate, begin + within + 1.5 / rate)
     assert rotor.velocity_field.positions_stand
 
 
