@@ -190,6 +190,8 @@ def _listed_contents(path: Path, metadata: Any) -> Contents:
     if starts.keys() >= set(names):  # tools list files by name: _10 before _2
         names = sorted(names, key=starts.__getitem__)
     files = [_listed_file(path, name) for name in names]
+    if not starts:  # before version 5
+        files = _in_order(files) or files
     if len(set(files)) < len(files):
         raise ValueError('a file is listed more than once')
     message_count = int(information['message_count'])
