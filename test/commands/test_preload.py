@@ -191,10 +191,10 @@ TURN = ('preload', '--degrees', '1')
         ),
         (
             ['preload', '--degrees', '200', *SOFT],
-            'at a ring turn of 200° 00′ 00.000″ other teeth would mesh: the tooth pitch is 4° 30′',
+            'the preload twists the output by 3.67 rad, but a tooth pitch is 0.0827 rad',
         ),
-        (['preload', '--setting', '0', '1', '1', *SOFT], 'at a ring turn of 8° 50′ 04.878″'),
-        (['preload', '--wanted-preload', '50', *SOFT], 'other teeth would mesh'),
+        (['preload', '--setting', '0', '1', '1', *SOFT], 'twists the output by 0.162 rad'),
+        (['preload', '--wanted-preload', '50', *SOFT], 'but a tooth pitch is 0.0827 rad'),
         ([*TURN, *SOFT, '--plot', 'plot.xyz'], 'plot.xyz: the suffix'),
         (['preload', '--wanted-preload', '1e6', *SOFT], 'at most a whole turn'),
     ],
