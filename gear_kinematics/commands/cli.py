@@ -94,9 +94,8 @@ class _Parser(argparse.ArgumentParser):
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         # By the pattern of argparse, -58/3 and -1e-3 would be unknown options.
-        self._negative_number_matcher = re.compile(
-            r'-(\d+/\d+|(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|inf|nan)$', re.IGNORECASE
-        )
+        number = r'-(\d+/\d+|[\d.]+(e[-+]?\d+)?|inf|nan)$'
+        self._negative_number_matcher = re.compile(number, re.IGNORECASE)
         self.set_defaults(parser=self)  # that of the innermost subcommand remains
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
