@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
+from shlex import quote
 
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Console, announce_ros, stopped_by_signals
@@ -84,7 +85,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     given = '' if files else ' --config FILE, with the parameter file of the node'
     for gear in gears:
         chosen = f' --node {gear}' * (len(gears) > 1)
-        print(f'prove it: gearkin validate {options.out}{chosen}{given}')
+        print(f'prove it: gearkin validate {quote(str(options.out))}{chosen}{given}')
     return ExitCode.DONE
 
 

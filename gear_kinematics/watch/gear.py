@@ -207,10 +207,7 @@ class GearNode:
         self.homing.call_async(Trigger.Request()).add_done_callback(take)
 
     def set(self, values: Mapping[str, Any], done: str, answer: 'futures.Future[Answer]') -> None:
-        """Set all or none of some parameters; answer with success or the reason of the failure.
-
-        They are left alone if someone else has changed them since they were read.
-        """
+        """Set parameters unless someone else has changed them; answer with success or a reason."""
 
         def check(answered: Future) -> None:
             present = self.parameters.values() if self.parameters else {}

@@ -122,8 +122,8 @@ class Watcher:
             others = [GearNode(self._node, gear.name, own) for own in gear.arm if own not in known]
             self._gears += others
         # A node that starts again may have other actuators; a mistyped one is kept, as a fault.
-        named = {'', self._actuator}
-        self._gears = [g for g in self._gears if not g.arm or g.actuator in {*named, *g.arm}]
+        kept = {'', self._actuator}
+        self._gears = [g for g in self._gears if not g.arm or g.actuator in {*kept, *g.arm}]
         self._gears.sort(key=_place)
         running = [gear for gear in self._gears if gear.name in graph.gears]
         going_on = self._gear if self._gear in running else None

@@ -158,7 +158,9 @@ def test_the_parameters_of_each_node_that_answers_are_kept(tmp_path):
     assert {name: NodeParameters.load(path, name).gear_ratio for name in ratios} == ratios
 
 
-def test_a_node_that_is_homed_meanwhile_is_recorded_with_its_first_zero(tmp_path, monkeypatch):
+def test_a_node_that_is_homed_meanwhile_is_recorded_with_its_first_zero(
+    tmp_path, monkeypatch, capsys
+):
     default, zeros, asked = NodeParameters.load(default_config()), [0.0], Event()
 
     def answer(_node, _name, **_):
@@ -180,8 +182,10 @@ def test_a_node_that_is_homed_meanwhile_is_recorded_with_its_first_zero(tmp_path
     monkeypatch.setattr(
         'gear_kinematics.ros.live.replay_node', lambda *_: contextlib.nullcontext()
     )
-    assert main(['record', str(tmp_path / 'monday')]) == 0
-    assert NodeParameters.load(tmp_path / 'monday' / 'actuator.yaml').rotor_zero == 0.0
+    folder = tmp_path / 'on monday'
+    assert main(['record', str(folder)]) == 0
+    assert NodeParameters.load(folder / 'actuator.yaml').rotor_zero == 0.0
+    assert capsys.readouterr().out.endswith(f"\nprove it: gearkin validate '{folder}'\n")
 
 
 def test_a_node_that_has_ended_is_not_asked_for_its_parameters(monkeypatch):
