@@ -123,15 +123,13 @@ class TransmissionError:
         """
         self._max_gap = max_gap
         self._direction = Direction(travel)
-        self._ideal: deque[_Ideal] = deque(maxlen=_DEPTH)
-        self._measured: deque[tuple[int, float]] = deque()
         self.reset()
 
     def reset(self) -> None:
         """Forget all samples, as after homing."""
         self._direction.reset()
-        self._ideal.clear()
-        self._measured.clear()
+        self._ideal: deque[_Ideal] = deque(maxlen=_DEPTH)
+        self._measured: deque[tuple[int, float]] = deque()
         self._last_measured: int | None = None
         self._first_error: float | None = None
 
