@@ -93,11 +93,6 @@ class ReadLimits:
         """Return the size, bytes, to which a compressed chunk or message may expand."""
         return cls.spare_size + cls.chunk_expansion * size
 
-    @classmethod
-    def expanded_file(cls, size: int) -> int:
-        """Return the size, bytes, to which a compressed file may expand."""
-        return cls.spare_size + cls.file_expansion * size
-
     def count(self, expanded: int) -> None:
         """Count decompressed bytes; raises ValueError if there are too many."""
         self._expanded -= expanded
@@ -147,7 +142,8 @@ def decompressed(data: bytes, decompress: Decompressor, limits: ReadLimits, what
 
 def decompress_file(source: IO[bytes], target: Path, codec: Codec) -> str:
     """Decompress as much as possible; returns the cause of an early end, or an empty text."""
-    limit = left = ReadLimits.expanded_file(os.fstat(source.fileno()).st_size)
+    size = os.fstat(source.fileno()).st_size
+    limit = left = ReadLimits.spare_size + ReadLimits.file_expansion * size
     with target.open('wb') as output, codec.open(source) as expanded:
         try:
             while piece := expanded.read1(2**18):  # returns partial data, unlike read()
