@@ -84,9 +84,7 @@ class CountChanges:
         error, angle = error[rows], angle[rows]
         jumps = np.abs(np.diff(error, prepend=error_before)) > self._tolerance
         constant = not jumps[1:_FEW].any()
-        if (
-            not self._parameters.rotor_period
-        ):  # no gap changes the count, so that a jump is lasting
+        if not self._parameters.rotor_period:  # then no gap changes the count: a jump is lasting
             jumps[:-1] &= ~jumps[1:]
         steps, moved, turns, rest = [], 0.0, 0.0, 0.0
         self._last_alone = False
