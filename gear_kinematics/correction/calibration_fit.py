@@ -2,12 +2,11 @@
 """Assessment of how well a calibration fits a measured transmission error."""
 
 import math
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[Any]
+from gear_kinematics.wire.batches import Array
 
 _SHARE = 0.05  # of samples that may be outside a 95 % interval
 _TOLERATED = 0.07  # since the width of an interval is known to a few percent (docs/calibration.md)

@@ -6,14 +6,12 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.wire.batches import Array
 from gear_kinematics.wire.cdr import SECOND
-
-Array = NDArray[Any]
 
 MAX_GAP = SECOND  # ns between samples after which the hysteresis is unknown: motion was missed
 _SAMPLING = SECOND // 10

@@ -7,9 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from gear_kinematics.correction.calibration_fit import CalibrationFit
-from gear_kinematics.correction.reversals import Array, Reversals, separate
+from gear_kinematics.correction.reversals import Reversals, separate
 from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.statistics.normal_equations import Array
 
 _MOST = 2**20  # greatest number of samples kept: 60 s, the longest window, at 17 kHz
 _BINS = 720  # bins of output angles in a turn, within which both directions are compared

@@ -13,12 +13,9 @@ which is a straight line over the difference of the signed speeds.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gear_kinematics.statistics.normal_equations import NormalEquations
+from gear_kinematics.statistics.normal_equations import Array, NormalEquations
 from gear_kinematics.statistics.uncertainty import Estimate, jackknife
-
-Array = NDArray[np.float64]
 
 _BLOCKS = 20  # blocks of angles; errors within a block may be correlated, those of blocks are not
 _LEAST = 3  # least number of blocks for a straight line and its scatter

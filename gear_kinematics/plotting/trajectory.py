@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gear_kinematics.bag import Bag, BagError, ReportProgress
 from gear_kinematics.bag.roles import find_rotor_topic
@@ -14,9 +13,8 @@ from gear_kinematics.kinematics import Mechanism, MotionState, solve, split_turn
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.gear_state import GearState
+from gear_kinematics.wire.batches import Array
 from gear_kinematics.wire.cdr import SECOND
-
-Array = NDArray[np.float64]
 
 MOST_TURNS = 1000  #: rotor turns at a constant speed; animations cannot show more
 _PER_TURN = 360  # samples

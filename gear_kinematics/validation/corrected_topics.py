@@ -12,8 +12,8 @@ import numpy as np
 
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.validation.fields import Window
-from gear_kinematics.validation.output_topics import STATE_UNITS, Array, Bounds, JointStateTopic
+from gear_kinematics.validation.fields import Array, Window
+from gear_kinematics.validation.output_topics import STATE_UNITS, Bounds, JointStateTopic
 from gear_kinematics.validation.recorder import HOLE
 from gear_kinematics.wire.topics import CORRECTED_INTERVAL, CORRECTED_STATE
 

@@ -5,16 +5,13 @@ import math
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Gear, Mechanism
 from gear_kinematics.kinematics.gear_ratio import tooth_pairs
 from gear_kinematics.statistics.uncertainty import Component, Estimate, jackknife
 from gear_kinematics.validation.causes import FindingCause
-from gear_kinematics.validation.fields import product
+from gear_kinematics.validation.fields import Array, product
 from gear_kinematics.validation.report import Finding
-
-Array = NDArray[np.float64]
 
 _MAX_TEETH = 1000
 _MAX_DENOMINATOR, _CHANCE = 100, 0.01

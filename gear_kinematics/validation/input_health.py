@@ -13,10 +13,8 @@ from gear_kinematics.state.rotor_samples import RotorSamples
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.report import Finding, Gap, InputReport
-from gear_kinematics.wire.batches import once_for_joints
+from gear_kinematics.wire.batches import Array, once_for_joints
 from gear_kinematics.wire.cdr import SECOND
-
-Array = NDArray[np.float64]
 
 _MIN_GAP = 5.0  # median periods
 _LEAST_TIME = 0.5  # median periods; the least time that a step is taken to need

@@ -2,17 +2,16 @@
 """Compares the fields of each output topic with recomputed ones, sample by sample."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Mechanism, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.diagnosis import AngleFit, FactorFit, diagnose
-from gear_kinematics.validation.fields import FieldSamples, Occurrences, Window, as_slice
+from gear_kinematics.validation.fields import Array, FieldSamples, Occurrences, Window, as_slice
 from gear_kinematics.validation.matching import Expectation, OutputTopic, rotor_angle
 from gear_kinematics.validation.report import Finding
 from gear_kinematics.wire.batches import (
@@ -26,7 +25,6 @@ from gear_kinematics.wire.cdr import joint_state_layout, pose_array_layout
 from gear_kinematics.wire.joint_reader import joints_of
 from gear_kinematics.wire.nearest import listed
 
-Array = NDArray[Any]
 Bounds = tuple[Array, Array]
 
 _AHEAD = 1000  # samples that are compared with a message that has no stamp in common with any

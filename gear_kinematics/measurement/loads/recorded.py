@@ -7,10 +7,9 @@ from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gear_kinematics.bag import BagError, ReportProgress, TopicMessages
 from gear_kinematics.bag.roles import find_rotor_topic, only_joint
@@ -23,10 +22,8 @@ from gear_kinematics.state.effort_field import questioned
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.loads import LoadEstimator
 from gear_kinematics.state.statuses import Fact
-from gear_kinematics.wire.batches import encode
+from gear_kinematics.wire.batches import Array, encode
 from gear_kinematics.wire.cdr import SECOND, JointStateTemplate
-
-Array = NDArray[Any]
 
 ANGLE_BINS = 72  # bins of a turn of the rotor, of 5° each
 _JOINTS = 'mesh', 'cam', 'slot'
