@@ -133,7 +133,7 @@ class ArmState:
         if self._single:
             return self._single.encode()
         stamp = answered[0][1].sample.stamp
-        joined: dict[str, _Parts] = {}
+        joined: dict[str, _Parts] = defaultdict(lambda: ([], []))
         encoded: list[tuple[str, bytes]] = []
         errors: _Errors = []
         for name, state in answered:
@@ -141,8 +141,6 @@ class ArmState:
                 errors.append((name, state.errors))
             for topic, template, numbers in state.rows():
                 if isinstance(template, JointStateTemplate):
-                    if topic not in joined:
-                        joined[topic] = [], []
                     templates, given = joined[topic]
                     templates.append(template)
                     given += numbers
