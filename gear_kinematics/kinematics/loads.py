@@ -250,8 +250,8 @@ class TorqueSharing:
             that branch A pushes the output in the positive direction; -1 if in the negative one.
 
     Raises:
-        ValueError: if a `preload` is beyond a tooth pitch or there are not two branches, or
-            `direction` is neither 1 nor -1.
+        ValueError: if `preload` is given and there are not two branches, or `direction` is
+            neither 1 nor -1.
     """
 
     def __init__(
@@ -261,9 +261,6 @@ class TorqueSharing:
             raise ValueError(f'direction must be 1 or -1, not {direction!r}')
         if preload is not None:
             braced(mechanism)
-            if (twist := preload.interference) >= (pitch := math.tau / mechanism.satellite_teeth):
-                twisted = f'the preload twists the output by {twist:.3g} rad'
-                raise MechanismError([f'{twisted}, but a tooth pitch is {pitch:.3g} rad'])
         self._count, self._preload = len(mechanism.branches), preload
         self._direction = float(direction)
 

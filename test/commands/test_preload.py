@@ -189,12 +189,6 @@ TURN = ('preload', '--degrees', '1')
             [*TURN, *SOFT, '--backlash', '0.1'],
             '--backlash must be less than a tooth pitch, 0.0827 rad',
         ),
-        (
-            ['preload', '--degrees', '200', *SOFT],
-            'the preload twists the output by 3.67 rad, but a tooth pitch is 0.0827 rad',
-        ),
-        (['preload', '--setting', '0', '1', '1', *SOFT], 'twists the output by 0.162 rad'),
-        (['preload', '--wanted-preload', '50', *SOFT], 'but a tooth pitch is 0.0827 rad'),
         ([*TURN, *SOFT, '--plot', 'plot.xyz'], 'plot.xyz: the suffix'),
         (['preload', '--wanted-preload', '1e6', *SOFT], 'at most a whole turn'),
     ],
