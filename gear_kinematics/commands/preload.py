@@ -17,6 +17,7 @@ from gear_kinematics.commands.output import message_progress
 from gear_kinematics.commands.pins import Pins
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics.loads import TorqueSharing
 from gear_kinematics.kinematics.preload import Preload, Stiffness, braced
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.loads.recorded import LoadTask, read_loads
@@ -118,6 +119,7 @@ def _answer(options: argparse.Namespace) -> _Answer:
         Preload.from_ring_turn(pair, stiffness, angle - (pins.phase or 0.0), backlash)
         for angle in (pins.ring_turn, pins.nearest.ring_turn)
     )
+    TorqueSharing(pair, preload)  # raises the error of a preload that no gear takes
     return _Answer(pair, (a.name, b.name), backlash, preload, pins, pinned)
 
 

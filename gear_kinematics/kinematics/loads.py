@@ -40,6 +40,8 @@ from gear_kinematics.kinematics.motion import Array, BranchPosition, MotionState
 from gear_kinematics.kinematics.preload import Pair, Preload, braced
 from gear_kinematics.kinematics.rotor_turns import lists_as_arrays
 
+_GREATEST_TWIST = 1.0  # rad, at the output, by a preload: more is one in another unit
+
 
 @dataclass(frozen=True, slots=True)
 class Bodies:
@@ -250,8 +252,8 @@ class TorqueSharing:
             that branch A pushes the output in the positive direction; -1 if in the negative one.
 
     Raises:
-        ValueError: if `preload` is given and there are not two branches, or `direction` is
-            neither 1 nor -1.
+        ValueError: if a `preload` twists the output by more than 1 rad or there are not two
+            branches, or `direction` is neither 1 nor -1.
     """
 
     def __init__(
@@ -261,6 +263,11 @@ class TorqueSharing:
             raise ValueError(f'direction must be 1 or -1, not {direction!r}')
         if preload is not None:
             braced(mechanism)
+            if (twist := preload.interference) > _GREATEST_TWIST:
+                limit = f'a gear takes at most {_GREATEST_TWIST:g} rad'
+                raise MechanismError(
+                    [f'the preload twists the output by {twist:.3g} rad: {limit}']
+                )
         self._count, self._preload = len(mechanism.branches), preload
         self._direction = float(direction)
 

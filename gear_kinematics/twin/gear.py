@@ -33,7 +33,7 @@ import numpy as np
 
 from gear_kinematics.correction.calibration_file import Calibration, Order
 from gear_kinematics.kinematics import Mechanism, MechanismError
-from gear_kinematics.kinematics.preload import Preload, Stiffness, braced
+from gear_kinematics.kinematics.preload import Preload, Stiffness
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.arm import by_actuator
 from gear_kinematics.parameters.files import given_parameters
@@ -154,7 +154,7 @@ class TwinGear:
             output_inertia=twin.output_inertia,
         )
         if preload:
-            braced(parameters.mechanism)
+            _ = parameters.sharing  # raises the error of an impossible preload
         return made.preloaded(abs(preload))
 
     @property

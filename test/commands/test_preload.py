@@ -189,6 +189,10 @@ TURN = ('preload', '--degrees', '1')
             [*TURN, *SOFT, '--backlash', '0.1'],
             '--backlash must be less than a tooth pitch, 0.0827 rad',
         ),
+        (
+            ['preload', '--degrees', '200', *SOFT],
+            'the preload twists the output by 3.67 rad: a gear takes at most 1 rad',
+        ),
         ([*TURN, *SOFT, '--plot', 'plot.xyz'], 'plot.xyz: the suffix'),
         (['preload', '--wanted-preload', '1e6', *SOFT], 'at most a whole turn'),
     ],

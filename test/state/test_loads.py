@@ -102,6 +102,7 @@ def test_acceleration_is_unknown_across_a_break(stamp, segment):
     [
         ({'branch_stiffness': (0.0,), 'shaft_stiffness': 0.0}, 'a preload needs branch_stiffness'),
         ({'branches': DEFAULT.branches[:1]}, 'exactly two branches'),
+        ({'preload': 2000.0}, 'by 3.4 rad: a gear takes at most 1 rad'),  # 2 N·m, in N·mm
         ({'gear_ratio': '100'}, 'only the ratio of this gear is known'),
     ],
 )

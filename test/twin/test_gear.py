@@ -170,6 +170,7 @@ def test_a_gear_of_which_only_the_ratio_is_known_has_one_branch(config):
         ({'loads.rotor_inertia': 0.0}, r'loads\.rotor_inertia must be greater than 0'),
         ({'branches': '[a]', 'branch_stiffness': '[1.0, 2.0]'}, '2 values for 1 branches'),
         ({'branches': '[a]', 'preload': 1.0}, 'exactly two branches'),
+        ({'preload': 2000.0}, 'a gear takes at most 1 rad'),
         (
             {'friktion': 1.0, 'play': -1.0},
             'play must be between 0.0 and 1.0, .*; unknown parameter `friktion`; did you mean `f',
