@@ -54,3 +54,6 @@ def test_what_is_left_where_coefficients_may_not_be_positive(seed):
     bounds = np.where(limited, 0.0, np.inf)
     known = optimize.lsq_linear(columns, error, (-np.inf, bounds), method='bvls', tol=1e-14)
     np.testing.assert_array_equal(equations.not_above_zero(limited), known.active_mask == 0)
+    chosen, groups = range(2, 20), [[2], [5, 6], [19], [8, 12, 17]]
+    fewer = [equations.errors([k for k in chosen if k not in group]) for group in groups]
+    np.testing.assert_allclose(equations.errors_without(chosen, groups), fewer, rtol=1e-6)

@@ -171,8 +171,8 @@ def select(equations: NormalEquations, terms: Sequence[Term], own: Sequence[int]
     """
     columns = columns_of(terms)
 
-    def errors(chosen: Sequence[int]) -> Array:
-        return equations.errors([*(place for k in chosen for place in columns[k]), *own])
+    def used(chosen: Sequence[int]) -> list[int]:
+        return [*(place for k in chosen for place in columns[k]), *own]
 
     # The output lags by hysteresis, so that no coefficient of a stop operator is positive.
     lags = [isinstance(term.entry, Stop) for term in terms for _ in term.coefficients]
@@ -180,8 +180,10 @@ def select(equations: NormalEquations, terms: Sequence[Term], own: Sequence[int]
     path = [[k for k, place in enumerate(columns) if fitted[place[0]]]]
     fixed = int(bool(terms) and terms[0].is_trend)
     while len(path[0]) > fixed:
-        smaller = [[k for k in path[0] if k != gone] for gone in path[0] if gone >= fixed]
-        path.insert(0, min(smaller, key=lambda chosen: float(errors(chosen).mean())))
-    every = [errors(chosen) for chosen in path]
+        candidates = [k for k in path[0] if k >= fixed]
+        without = equations.errors_without(used(path[0]), [columns[k] for k in candidates])
+        gone = candidates[int(np.argmin(without.mean(axis=1)))]
+        path.insert(0, [k for k in path[0] if k != gone])
+    every = [equations.errors(used(chosen)) for chosen in path]
     best = min(every, key=lambda error: float(error.mean()))
     return next(c for c, error in zip(path, every, strict=True) if is_as_good(error, best))
