@@ -239,7 +239,7 @@ def _words(name: str) -> tuple[tuple[str, ...], str]:
         return ' ' if not inner.isdigit() and usual_unit(inner) in {unit, ''} else f' {inner} '
 
     words: list[str] = []
-    for token in re.split(r'[\s_/.:,;{}<>|=-]+', _BRACKETS.sub(put, name)):
+    for token in re.split(r'[^\w°%‰′″]+|_+', _BRACKETS.sub(put, name)):
         small = token.lower().replace('μ', 'µ')
         words += [small] if small in _UNITS else [w.lower() for w in _CAMEL.findall(token)]
     pairs = ((word, _COMPOUND.fullmatch(word)) for word in words)

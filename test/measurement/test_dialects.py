@@ -547,7 +547,7 @@ RAMPS = {
         [t, a * DEG, q * 1e3], 'Time,Angle,Units,Torque,Units',
         ('{:.2f}', '{:.6f},deg', '{:.3f},mNm')),
     'units behind other signs': lambda t, a, q: written(
-        [t, a * DEG, q * 1e3], 'time=s,angle<deg>,torque{mNm}', 3 * ['{:.6f}']),
+        [t, a * DEG, q * 1e3], 'time=s,angle<deg>,扭矩（mNm）', 3 * ['{:.6f}']),
     'a symbol by DIN 1313': lambda t, a, q: written(
         [t, a * DEG, q], 't / s;φ / °;M / Nm', 3 * ['{:.6f}'], ';'),
     'moteus': lambda t, a, q: written(
