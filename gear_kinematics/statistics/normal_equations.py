@@ -132,11 +132,11 @@ class NormalEquations:
         whole = inverse @ self.products[:, places[:-1], -1:][fits]
         size = self._scale[places] / self._scale[-1]
         products = self._blocks[:, places][:, :, places] / np.outer(size, size)
-        errors = []
+        error, errors = np.ones((len(fits), 1, 1)), []
         for group in groups:
             rows = [places.index(column) for column in group]
             part = inverse[:, :, rows]
             less = part @ np.linalg.solve(part[:, rows], whole[:, rows])
-            factors = np.pad(less - whole, ((0, 0), (0, 1), (0, 0)), constant_values=1.0)
+            factors = np.concatenate([less - whole, error], axis=1)
             errors.append((factors * (products @ factors)).sum(axis=(1, 2)))
         return np.array(errors)
