@@ -3,8 +3,8 @@
 # iDynTree 15.1.0: a continuous joint of a URDF with a limit of its torque may turn from 0 to 0 rad, and is saved so.
 #
 # A rotor is a joint of type "continuous" with <limit effort="9" velocity="600"/>, as the format of URDF allows.
-# Expected: it has no limits of its position, as without this element. What happens: hasPosLimits() is true with limits of
-# 0 and 0. ModelExporter writes it as type="revolute" with lower="0" upper="0", so that what keeps to the limits of a
+# Expected: it has no limits of its position, as without this element. What happens: hasPosLimits() is true with limits
+# of 0 and 0. ModelExporter writes it as type="revolute" with lower="0" upper="0", so that what keeps to the limits of a
 # URDF, Pinocchio for example, holds it at 0 rad. The mimic of an output, its ratio and its offset, is lost as well, so
 # that the output is a joint that nothing drives.
 # For us: leave <limit> out of continuous joints before iDynTree reads them, and do not save a gear with it.

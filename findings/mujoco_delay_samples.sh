@@ -3,8 +3,8 @@
 # MuJoCo 4.0.0: a delay of 100 ms of an encoder or a motor becomes 50 ms if the time step is halved, without a warning.
 #
 # A sensor has delay="0.1" nsample="50", which is enough for 100 ms at a time step of 2 ms. Expected at 1 ms: the same
-# delay, or an error, as there is one for a delay without nsample. What happens: the oldest of the 50 samples is used, so
-# that the encoder lags by 50 ms; with nsample="10" it lags by 10 ms. The command of a motor is delayed too little in
+# delay, or an error, as there is one for a delay without nsample. What happens: the oldest of the 50 samples is used,
+# so that the encoder lags by 50 ms; with nsample="10" it lags by 10 ms. The command of a motor is delayed too little in
 # the same way. The delay in the model is still 0.1.
 # For us: give nsample as the delay divided by the least time step, rounded up, and measure the delay of the simulation.
 #

@@ -1,12 +1,12 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# MuJoCo 4.0.0: behind a gear of 20, a joint with limits of ±90° reaches only ±4.5° by an actuator with inheritrange="1".
+# MuJoCo 4.0.0: behind a gear of 20, a joint with limits of ±90° reaches only ±4.5° by a servo with inheritrange="1".
 #
 # A position actuator with gear="20" is given the angle of the rotor, which is 20 times that of the joint. Expected of
 # inheritrange="1", which is to take the limits of the actuator from those of the joint: a ctrlrange of ±1800°, or an
 # error. What happens: the ctrlrange is ±90°, without a warning, and a command of 1200° is cut to 90°, so that the joint
-# goes to 4.5° instead of 60°. With a gear of -20 and a joint from 0° to 90°, the range is from 0° to 90° instead of from
-# -1800° to 0°, and the joint does not move at all. The actrange of intvelocity is too small in the same way.
+# goes to 4.5° instead of 60°. With a gear of -20 and a joint from 0° to 90°, the range is from 0° to 90° instead of
+# from -1800° to 0°, and the joint does not move at all. The actrange of intvelocity is too small in the same way.
 # For us: give ctrlrange as the limits of the joint times the gear, and turn them where the gear is negative.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.

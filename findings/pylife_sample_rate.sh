@@ -4,8 +4,8 @@
 #
 # Expected of psd_df(), which takes the rate of a record from its times: a peak at 3.00 Hz. What happens: the rate is
 # rounded to whole hertz, 12, without a warning, so that all frequencies are 4 % too low; butter_bandpass() has its
-# corners by the same rate. At 1 kHz it is right. resample_acc() from 1 kHz to 200 Hz interpolates without a low-pass, so
-# that a gear mesh at 190 Hz is a vibration at 10 Hz of the same power.
+# corners by the same rate. At 1 kHz it is right. resample_acc() from 1 kHz to 200 Hz interpolates without a low-pass,
+# so that a gear mesh at 190 Hz is a vibration at 10 Hz of the same power.
 # For us: use scipy.signal.welch() with the measured rate, and a low-pass before a record is resampled.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
