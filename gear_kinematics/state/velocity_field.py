@@ -175,6 +175,8 @@ class VelocityField:
         self.due = stamp + SPAN
         readings = self._readings
         self.add(velocity)
+        if not self._count or (readings and stamp > readings[-1][0] + 2 * SPAN):
+            readings.clear()
         if not math.isnan(factor := self._impossible(stamp, position, velocity)):
             self._decide(factor, certain=True)
         if stamp < self._pause_until:
@@ -182,8 +184,6 @@ class VelocityField:
             self._last, self._total, self._count = velocity, 0.0, 0
             self.quiet_until = self.due
             return
-        if not self._count or (readings and stamp > readings[-1][0] + 2 * SPAN):
-            readings.clear()
         travel = max(_TRAVEL, _NOISES * noise)
         if self._count:
             self._fewest = min(self._fewest, self._count)

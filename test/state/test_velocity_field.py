@@ -204,6 +204,13 @@ def test_right_velocities_are_not_late_where_messages_are_lost():
     assert {*said} == {None}
 
 
+def test_right_velocities_are_not_too_great_after_a_pause_of_the_driver():
+    time = np.arange(600) / 100
+    time[200:] += 10.0 * math.tau / 3.0
+    said = meanings(time, 20.0 * np.sin(3.0 * time), 60.0 * np.cos(3.0 * time))
+    assert {*said} == {None}
+
+
 @pytest.mark.parametrize(('eccentric', 'noise'), [(0.02, 0.0), (0.0, 0.01)])
 def test_errors_of_positions_at_a_steady_speed_are_no_delay(eccentric, noise):
     """Even where readings, 0.1 s apart, take them half a turn apart."""
