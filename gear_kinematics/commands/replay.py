@@ -9,11 +9,7 @@ from gear_kinematics.bag import Bag
 from gear_kinematics.bag.roles import find_rotor_topic, joints_on
 from gear_kinematics.bag.schedule import count_due
 from gear_kinematics.commands import ExitCode, arguments, bags
-from gear_kinematics.commands.output import (
-    announce_ros,
-    message_progress,
-    stopped_by_signals,
-)
+from gear_kinematics.commands.output import announce_ros, message_progress, stopped_by_signals
 from gear_kinematics.report.document import counted
 from gear_kinematics.wire.nearest import among
 from gear_kinematics.wire.topics import ROTOR_STATE

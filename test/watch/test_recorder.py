@@ -255,14 +255,13 @@ def test_the_outputs_of_a_busy_node_are_recorded_to_the_last_input(
     monkeypatch.setattr(module, 'time', SimpleNamespace(**ticking))
 
     def opened(arrivals):
-        polled = SimpleNamespace(last=None, count=0, close=lambda: None)
+        polled = SimpleNamespace(last=None)
 
         def take():
             due = [stamp for time in [*arrivals] if time <= clock[0] + 1e-9
                    for stamp in arrivals.pop(time)]  # fmt: skip
             new = [Taken(template.encode(stamp, [0.0]), stamp, stamp) for stamp in due]
             polled.last = new[-1] if new else polled.last
-            polled.count += len(new)
             return new
 
         polled.take = take
