@@ -60,7 +60,7 @@ class Recorder:
         # In addition to a reliable subscription, until the driver is known: this one hears every
         # driver, and if it were made only then, it would miss the first messages.
         self._best_effort: dict[str, Polled] = {}
-        self._inputs_of: dict[str, set[str]] = {}  # by topics of outputs
+        self._inputs_of: dict[str, set[str]] = {}  # by topics of outputs with their stamps
         self._least: dict[str, int] = {}  # ns from the dispatch to the reception of a message
 
     def poll(self) -> None:
@@ -133,7 +133,9 @@ class Recorder:
                 )
             }
             self.inputs |= heard
-            self._inputs_of |= {topic: heard for topic, _ in outputs}
+            for topic, _ in outputs:
+                if topics.base_name(topic) != topics.base_name(topics.DIAGNOSTICS):
+                    self._inputs_of.setdefault(topic, set()).update(heard)
             for topic, [kind, *_] in inputs + outputs:
                 if kind not in _TYPES or topics.base_name(topic) in self._left_out:
                     continue

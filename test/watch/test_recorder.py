@@ -132,6 +132,23 @@ def test_an_encoder_at_the_output_is_missed_only_where_one_is_connected(monkeypa
     assert recorder.inputs == {*own}
 
 
+def test_outputs_of_two_nodes_on_one_topic_are_awaited_by_the_inputs_of_both(monkeypatch):
+    gears = ['/left/gear', '/right/gear']
+    monkeypatch.setattr(module, 'Graph', lambda _: SimpleNamespace(gears=gears))
+    monkeypatch.setattr(module, 'Polled', MagicMock())
+    node = SimpleNamespace(
+        get_subscriber_names_and_types_by_node=lambda _, place: [(f'{place}/m', [JOINT_STATE])],
+        get_publisher_names_and_types_by_node=lambda *_: [
+            ('/joint_states', [JOINT_STATE]),
+            ('/diagnostics', ['diagnostic_msgs/msg/DiagnosticArray']),  # once a second
+        ],
+        get_publishers_info_by_topic=lambda _: [],
+    )
+    recorder = Recorder(node, MagicMock())
+    recorder.poll()
+    assert recorder._inputs_of == {'/joint_states': {'/left/m', '/right/m'}}
+
+
 def test_a_mistyped_node_is_named_beside_those_that_run(monkeypatch):
     running = []
     monkeypatch.setattr(module, 'Graph', lambda _: SimpleNamespace(gears=[*running]))
