@@ -36,9 +36,9 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
         ),
     },
     'record and prove': {
-        'record': ('record what running nodes hear and publish', 'monday'),
+        'record': ('record what running nodes receive and publish', 'monday'),
         'validate': ('compare recorded outputs with recomputed ones', 'logs/monday'),
-        'compute': ('write a bag with the outputs for a rotor topic', 'logs/monday computed'),
+        'compute': ('compute the outputs of a recorded rotor topic', 'logs/monday computed'),
         'replay': ("publish a bag's rotor topic with its own timing", 'logs/monday --loop'),
         'info': ('list the contents of recordings: topics, rates, joints and gaps', 'logs/*/'),
         'demo': ('play the shipped bag into the live node and validate its outputs', ''),

@@ -43,7 +43,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     recording.add_argument('--encoder-joint', metavar='NAME', help='joint of the output encoder')
     gear = arguments.group(parser, 'gear')
     known = add_known_ratio(parser, 'ratio to confirm, such as -19')
-    known.add_argument('--check', type=Path, metavar='FILE', help='judge this parameter file')
+    text = 'judge this parameter file, and write none'
+    known.add_argument('--check', type=Path, metavar='FILE', help=text)
     text = (
         'moment of the last recording at which the output angle is 0; a stamp or a time, s '
         "(default: where the output's encoder reads 0)"

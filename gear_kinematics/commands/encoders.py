@@ -66,7 +66,7 @@ def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
         )
         group.add_argument('--on-rotor', action='store_true', help=text)
     of_rotor = (
-        'the encoder of the rotor, or of the angle column, where angles are counts, as in '
+        "the rotor's encoder, or of that of the angle column, for angles in counts such as "
         'motor_inc (default: from the readings)'
     )
     for name, encoder in ('rotor', of_rotor), ('output', 'the output encoder'):

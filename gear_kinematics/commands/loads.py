@@ -27,8 +27,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_columns(parser, 'rotor', 'output', 'angle', 'torque')
     gear = arguments.group(parser, 'gear')
     for name, unit, bounds, text in (
-        ('cam-rating', 'N', (1.0, 1e8), "dynamic load rating C of a cam's bearing, for its life"),
-        ('slot-friction', 'MU', (1e-4, 1.0), 'coefficient of friction of the slots, for its loss'),
+        ('cam-rating', 'N', (1.0, 1e8), "dynamic load rating C of a cam's bearing; adds its life"),
+        ('slot-friction', 'MU', (1e-4, 1.0), 'friction coefficient of the slots; adds their loss'),
     ):
         number = arguments.between(*bounds)
         gear.add_argument(f'--{name}', type=number, default=math.nan, metavar=unit, help=text)

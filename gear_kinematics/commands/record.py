@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""`gearkin record`: what the running nodes hear and publish, as a recording."""
+"""`gearkin record`: records what the running nodes receive and publish."""
 
 import argparse
 from collections.abc import Mapping

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Records what gear nodes hear and publish, as their topics are named."""
+"""Records what gear nodes receive and publish, under the names of their topics."""
 
 import time
 from collections.abc import Callable
