@@ -32,9 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='take stiffness and preload from a report of gearkin preload, or springs and '
         'friction from one of gearkin lost-motion (repeat the option for both)',
     )
-    text = (
-        'write softer loops, for MuJoCo Warp, which add 0.04 %% to the compliance, not 0.0001 %%'
-    )
+    text = 'write softer loops for MuJoCo Warp: they add 0.04 %% to the compliance, not 0.0001 %%'
     gear.add_argument('--single-precision', action='store_true', help=text)
     arguments.group(parser, 'output').add_argument(
         '-o', '--output', default='-', metavar='FILE', help='model to write (default: stdout)'

@@ -215,7 +215,8 @@ def read_loads(task: LoadTask, progress: ReportProgress | None = None) -> Record
         except BagError as error:  # what was read before is used
             damage = str(error)
     if gear.input.effort_field.absent:
-        damage = damage or f'{task.bag}: the effort on {topic} is 0 throughout the motion: none'
+        absent = f'the effort on {topic} is 0 throughout the motion, and is taken as absent'
+        damage = damage or f'{task.bag}: {absent}'
         stamps.clear()
     if not any(map(len, stamps)):
         why = gear.input.why_rejected or 'no messages'
