@@ -223,7 +223,7 @@ def solve(
             ±`MOST_TURNS`.
 
     Raises:
-        TypeError: if `mechanism` is none, with what to call for a GearRatio.
+        TypeError: if `mechanism` is no Mechanism; the message says what to call for a GearRatio.
         ValueError: if `rotor_turns` are not integers up to ±`MOST_TURNS`.
     """
     if not isinstance(mechanism, Mechanism):

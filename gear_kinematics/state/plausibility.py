@@ -1,9 +1,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Judges by limits of speed and acceleration whether the rotor can have turned so far.
 
-Each reading is judged at once, by the last ones that were believed. One that the rotor cannot
-have reached is doubted. Three doubted ones in a row that agree with each other are believed: as a
-motion that the last believed reading only hid, or one beyond the limits, or as a jump.
+Each reading is judged at once, by the last believed ones. A reading that the rotor cannot have
+reached is doubted. Three doubted readings in a row that agree with each other are believed: as a
+motion that a wrong last reading had hidden, as a motion beyond the limits, or as a jump.
 """
 
 import math
@@ -90,7 +90,7 @@ class Plausibility:
 
     @property
     def beyond_limits(self) -> Fact | None:
-        """How the readings exceed the rotor's limits or their own precision, and which of them."""
+        """Which limits of the rotor, or of their own precision, the readings exceed."""
         which = []
         if self.seen_speed:
             which.append(Condition.BEYOND_SPEED(speed=self.seen_speed))
@@ -101,7 +101,7 @@ class Plausibility:
         return Condition.BEYOND_LIMITS(which=which, advice=which[-1].advice) if which else None
 
     def set_back(self, time: int) -> None:
-        """Note that the clock was set back by so much, ns, since the last reading."""
+        """Note that the clock was set back by a time, ns, since the last reading."""
         position, changed, step, span = self._last
         self._last = position, changed - time, step, span
         self._stamp -= time
