@@ -134,7 +134,7 @@ class Observation(Enum):
         'well, or locked.'
     )
     INFERRED = (
-        'Inferred: no angle has a name such as output_angle, which tells that its encoder is at '
+        'Inferred: no angle has a name such as output_angle, which says that its encoder is at '
         'the output. If it is that of the motor, with the output locked, the figures include the '
         'compliance of motor, bench and clamping.'
     )

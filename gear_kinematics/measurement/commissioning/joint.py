@@ -44,7 +44,7 @@ class Joint:
             ('output', measured, encoders.output_step),
         ):
             if unit := other_unit(values, step):
-                hint = 'of a CSV, --angle-unit, --rotor-counts and --output-counts tell the unit'
+                hint = 'for a CSV, --angle-unit, --rotor-counts and --output-counts give the unit'
                 raise RecordingError(f'{path}: the positions of the {body} are {unit}; {hint}')
         period, wraps = find_range(rotor, motion.seconds, encoders.rotor_step)
         output_wraps = count_wraps(measured, TURN)
