@@ -43,7 +43,7 @@ class Pins(NamedTuple):
         error = f'{arc_seconds(self.nearest.error):+z.3f}″'
         yield 'turn', f'{arc(self.nearest.ring_turn)} for a wanted {arc(self.ring_turn)} ({error})'
         if self.phase is not None:
-            yield 'phase', f'{arc(self.phase)} of it'
+            yield 'phase', f'{arc(self.phase)} of it, for the cam phase of branch B'
 
 
 def add_turn(parser: argparse.ArgumentParser, *, required: bool) -> argparse._ActionsContainer:
