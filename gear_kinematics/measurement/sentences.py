@@ -225,7 +225,7 @@ class Observation(Enum):
     WRITTEN = '{answer} It is written to {target}.'
     # What a calibration is worth, in shares of the samples, and what it lacks
     ERROR_FALLS = (
-        _FALLS + _INSIDE + ' of ± {half_width:arcmin} arcmin. The node takes the file as its '
+        _FALLS + _INSIDE + ' of ± {half_width:arcmin} arcmin. Give the file to the node as its '
         'parameter calibration.'
     )
     TOO_NARROW = (

@@ -132,7 +132,7 @@ def _section(half_width: float, judged: Judgement) -> doc.Section:
     delay = plus_minus(judged.delay, 1e3)
     values = (
         ('delay of the output', delay, 'ms'),
-        ('wider for what was not calibrated', number(100.0 * judged.uncalibrated), '% of samples'),
+        ('with a wider interval', number(100.0 * judged.uncalibrated), '% of samples'),
     )
     cells = [(name, doc.Cell(value, unit=unit)) for name, value, unit in values]
     return doc.Section(
