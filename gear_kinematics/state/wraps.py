@@ -25,7 +25,6 @@ _RESERVE = 1.25  # times what is needed: limits that are proposed
 _MANY = 16  # wraps, whose mean shows that a range is another
 _EVEN = 1.1  # greatest ratio of times between readings of which the steps are compared
 _SURE = 6.0  # standard errors of the mean, by which it is then off beyond the noise of a reading
-_ALIKE = 0.5  # of the greatest step: least one of those around a wrap that shows it
 _RANGE = 'rotor_encoder_range, which gearkin init can find'
 
 
@@ -59,12 +58,12 @@ class Wraps:
 
         The steps, rad, are those before the wrap, of it, without the periods `counted`, and behind
         it, in spans of time, ns. What the motion and the noise of a reading, rad, do not explain
-        shows how far the range is off. A vibration can be fastest at each wrap: the parabola
-        through the steps around it allows for that, as long as they differ little.
+        shows how far the range is off. A motion can be fastest at each wrap: the parabola
+        through the steps around it allows for that, as long as they differ by the noise at most.
         """
         (before, wrap, after), (earlier, time) = steps, self.earlier
-        around = sorted(math.copysign(1.0, before) * step for step in (earlier, before, after))
-        if max(time, *spans) > _EVEN * min(time, *spans) or around[0] < _ALIKE * around[-1]:
+        varies = max(earlier, before, after) - min(earlier, before, after)
+        if max(time, *spans) > _EVEN * min(time, *spans) or varies > noise:
             return bool(self.period)
         off = math.copysign(1.0, self.counted) * (wrap - before - (after - earlier) / 3.0)
         self._times += 1

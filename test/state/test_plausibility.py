@@ -478,17 +478,25 @@ def test_positions_that_wrap_at_another_range_than_the_configured_one_are_named(
     assert rotor.referenced != other
 
 
-@pytest.mark.parametrize('resolution', [0.0, TURN / 100])
-@pytest.mark.parametrize(('rate', 'frequency', 'amplitude'), [
-    (10, 1.0, 0.5), (20, 3.0, 0.5), (30, 4.0, 1.0), (40, 4.0, 0.5), (60, 3.0, 0.5),
+@pytest.mark.parametrize(('ramps', 'resolution'), [
+    (False, 0.0), (False, TURN / 100), (True, 0.0),
 ])  # fmt: skip
-def test_an_oscillation_about_the_wrap_is_no_other_range(rate, frequency, amplitude, resolution):
-    """Its speed is greatest at each wrap."""
-    angles = amplitude * np.sin(TURN * frequency * np.arange(25 * rate) / rate)
+@pytest.mark.parametrize(('rate', 'frequency', 'amplitude'), [
+    (10, 1.0, 0.5), (20, 3.0, 0.5), (30, 4.0, 1.0), (40, 4.0, 0.5), (50, 2.48, 4.0),
+])  # fmt: skip
+def test_an_oscillation_about_the_wrap_is_no_other_range(
+    rate, frequency, amplitude, ramps, resolution
+):
+    """Its speed is greatest at each wrap, and with ramps, as of a leg, has a corner there."""
+    phases = 2.0 * frequency * np.arange(20 * rate) / rate
+    angles = amplitude * np.sin(math.pi * phases)
+    if ramps:
+        angles = amplitude * 4.0 * (phases % 1.0) * (1.0 - phases % 1.0) * (-1.0) ** (phases // 1)
     if resolution:
         angles = np.floor(angles / resolution) * resolution
-    rotor = RotorInput(replace(SINGLE, max_rotor_speed=1.2 * TURN * frequency * amplitude))
-    for data in messages(np.arange(25 * rate) / rate, np.mod(angles, TURN)):
+    settings = {'rotor_encoder_range': 100.0, 'max_rotor_speed': 8.5 * frequency * amplitude}
+    rotor = RotorInput(replace(MULTI, **settings))
+    for data in messages(np.arange(20 * rate) / rate, np.mod(angles, 100.0)):
         rotor.accept(data, int)
     assert rotor.plausibility.jumped is None
 
