@@ -94,12 +94,14 @@ class Actuator:
         except RuntimeError as error:  # after the joint was changed, too
             none = f'no valid {topics.ROTOR_STATE} has come yet'
             raise RefusedError(none, '; check the driver') from error
-        if (age := time.monotonic() - self._seen) > parameters.input_timeout:
-            last = f'the last valid {topics.ROTOR_STATE} came {age:.1f} s ago'
-            raise RefusedError(last, '; check that the driver is running')
         if (speed := abs(ratio.output_rate(self._present_speed))) > limit:
             too_fast = f', faster than home_max_speed, {limit:g} rad/s; stop it and home it again'
             raise RefusedError(f'the shaft turns at {speed:.3g} rad/s', too_fast)
+        age, span = time.monotonic() - self._seen, _SPEED_SPAN / SECOND
+        rejected = (self.state.monitor.last_input or 0.0) - self._seen > span
+        if age > parameters.input_timeout or rejected or speed * age > limit * span:
+            last = f'the last valid {topics.ROTOR_STATE} came {age:.1f} s ago'
+            raise RefusedError(last, '; check the driver')
         whole, rest = ratio.output_angle(*before, math)
         was, now = math.degrees(TURN * whole + rest), math.degrees(parameters.home_angle)
         return zero, f'the shaft was at {was:z.1f}° and is now at {now:z.1f}°'

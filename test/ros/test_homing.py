@@ -138,12 +138,25 @@ def test_turns_that_the_output_encoder_adds_are_no_speed(homing):
     assert home(node).message.startswith('the shaft was at 114.6° and is now at 0.0°')
 
 
-def test_position_that_is_old_is_not_homed(homing):
+@pytest.mark.parametrize(
+    ('speed', 'age', 'then', 'refused'),
+    [
+        (0.0, 1234.5, (), True),
+        (0.0, 5.5, (), False),
+        (0.0, 5.5, [math.nan], True),  # rejected messages do not show where the shaft is
+        (0.2, 5.5, (), True),  # it turned, at less than home_max_speed
+    ],
+)
+def test_position_that_is_old_is_not_homed(homing, speed, age, then, refused):
     node = homing()
-    drive(node, [1.0])
-    node._actuators['']._seen -= 1234.5
-    node._on_rotor_state(b'no message')
-    assert home(node).message.startswith('the last valid rotor_state came 1234.5 s ago')
+    drive(node, [1.0 + 1e-3 * speed * k for k in range(200)])
+    actuator = node._actuators['']
+    actuator._seen = actuator.state.monitor.last_input = actuator._seen - age
+    drive(node, then)
+    answer = home(node)
+    assert answer.success != refused, answer.message
+    words = f'the last valid rotor_state came {age} s ago; check the driver'
+    assert refused == (answer.message == words)
 
 
 def test_zero_that_cannot_be_written_holds_and_the_answer_says_why(homing, tmp_path, monkeypatch):
