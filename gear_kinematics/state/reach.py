@@ -55,14 +55,16 @@ class HeldUp(NamedTuple):
             return HeldUp(end, length, usual if self.usual or usual > _CLOSE else 0)
         speed = abs(former[2]) / former[3] * 1e9 if former[3] else math.inf
         # Bursts that came before while the rotor stood did not show.
-        usual = former[3] if former[3] > min(_CLOSE, max(_FASTEST, 2 * span)) else 0
+        at_rest = self.usual if since == length else 0
+        usual = former[3] if former[3] > min(_CLOSE, max(_FASTEST, 2 * span)) else at_rest
         return HeldUp(end, length, usual, speed, former[0])
 
     def at_rest(self, last: int, stamp: int) -> 'HeldUp':
         """Take the stamp of a reading that repeats the position of the one before, ns."""
         pause = stamp - last
         regular = self.end == last and pause <= 2 * max(self.length, self.usual)
-        return HeldUp(stamp, 0, pause) if regular else HeldUp(stamp, pause)
+        usual = self.usual if self.end == last else 0
+        return HeldUp(stamp, 0, pause) if regular else HeldUp(stamp, pause, usual)
 
 
 def _stale(last: Reading, former: Reading, late: float) -> float:

@@ -301,15 +301,18 @@ def test_a_wrong_reading_in_a_second_burst_is_out_of_reach(period):
     assert [k for k, each in enumerate(beliefs) if each is not BELIEVED] == [411]
 
 
-@pytest.mark.parametrize('first', range(5))
-def test_a_rotor_that_starts_while_its_driver_is_held_up_is_believed(first):
-    """At rest, it was read each 20 ms; then 8 readings come at once."""
-    n = np.arange(28)
+@pytest.mark.parametrize('first', range(8))
+@pytest.mark.parametrize(('limit', 'after'), [(650.0, 0), (28.0, -15_000_000)])
+def test_a_rotor_that_starts_while_its_driver_is_held_up_is_believed(first, limit, after):
+    """At rest, it was read each 20 ms; then 8 readings come at once, and further ones."""
+    n = np.arange(32)
     times = 0.02 * (n - 20 - first).clip(0)
-    stamps = START + 20_000_000 * np.where(n < 20, n, 28) + n
-    judge = Plausibility(*LIMITS)
+    held_up = (n >= 20) & (n < 28)
+    stamps = START + 20_000_000 * np.where(held_up, 27, n) + n
+    stamps[28:] += after
+    judge = Plausibility(limit, LIMITS[1])
     assert judge.judge(0.001, START - SECOND) is BELIEVED
-    for stamp, angle in zip(stamps, 1500.0 * times**2, strict=True):
+    for stamp, angle in zip(stamps, np.minimum(1500.0 * times, 20.0) * times, strict=True):
         assert judge.judge(float(angle), int(stamp)) is BELIEVED
 
 
