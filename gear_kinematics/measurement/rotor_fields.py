@@ -15,7 +15,7 @@ from gear_kinematics.measurement.recording import MOST_MESSAGES
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import counted
-from gear_kinematics.state.effort_field import EffortField, questioned
+from gear_kinematics.state.effort_field import EffortField
 from gear_kinematics.state.reach import FLOOR
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition, Fact
@@ -104,11 +104,9 @@ def questions(
         yield seldom
     field = EffortField()
     field.all_believed(values[:, 0], values[:, 2])
-    if field.absent:
-        yield Condition.EFFORT_IS_ZERO()
-    efforts = values[np.isfinite(values[:, 2]), 2]
-    if question := questioned(float(np.max(np.abs(efforts), initial=0.0))):
-        yield question
+    field.note(values[:, 2])
+    if field.doubt:
+        yield field.doubt
 
 
 def _impossible_steps(rotor: RotorInput, *, limited: bool) -> Iterator[Observed | Fact]:

@@ -19,6 +19,7 @@ class EffortField:
 
     def __init__(self) -> None:
         self.real = False  # whether one was not 0: from then on, 0 is a torque
+        self._most = 0.0  # N·m: the greatest torque that was noted
         self._least, self._greatest = math.inf, -math.inf  # rad: positions with an effort of 0
 
     @property
@@ -30,6 +31,15 @@ class EffortField:
     def zeros(self) -> bool:
         """Whether there was an effort of 0 before any other."""
         return self._least <= self._greatest
+
+    @property
+    def doubt(self) -> Fact | None:
+        """Why the efforts can hardly be torques, if so."""
+        return Condition.EFFORT_IS_ZERO() if self.absent else questioned(self._most)
+
+    def note(self, torques: Array) -> None:
+        """Note the torques of the rotor that the efforts are, N·m, (n,), NaN for none."""
+        self._most = float(np.fmax.reduce(np.abs(torques), initial=self._most))
 
     def believed(self, position: float, effort: float) -> float | None:
         """Take the next position, rad, and effort; returns None for an effort without meaning."""

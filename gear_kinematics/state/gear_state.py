@@ -204,6 +204,7 @@ class GearState:
                     errors += self.errors
             samples = RotorSamples.of(rows)
             self.input.disorder.compare(samples.stamp, samples.received)
+            self.input.effort_field.note(samples.effort)
             if self.corrector:
                 columns = np.array(corrections, float).reshape(-1, len(Correction._fields)).T
                 correction = Correction(*columns)

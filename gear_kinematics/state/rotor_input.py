@@ -213,6 +213,7 @@ class RotorInput:
         samples = take(rows, stamps, values, clock, rejected)
         self.received = before + len(messages)
         self.disorder.compare(samples.stamp, samples.received)
+        self.effort_field.note(samples.effort)
         return samples
 
     def _leave_others(self) -> None:

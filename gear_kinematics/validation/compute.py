@@ -15,7 +15,6 @@ from gear_kinematics.bag.roles import Topics, find_in_namespace, in_namespace
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import counted
-from gear_kinematics.state.effort_field import questioned
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition, Fact
@@ -99,7 +98,7 @@ def compute(
     chosen = {*inputs, *others}
     _check_topics(source, rotor_topic, chosen, outputs)
     kept, computed, copied = list[str](), 0, 0
-    efforts, outside = dict.fromkeys(gears, 0.0), dict[str, Fact | None].fromkeys(gears)
+    outside = dict[str, Fact | None].fromkeys(gears)
     with BagWriter(target, storage=storage, compression=compression) as writer:
         for name, content in files.items():
             writer.add_file(name, content)
@@ -118,7 +117,7 @@ def compute(
         for batch in source.batches({*kept, *outputs}, progress, publish_times=True):
             messages = [message for message in batch if message[0] not in outputs]
             copied += sum(topic != rotor_topic for topic, *_ in messages)
-            answers = _answers(gears, messages, rotor_topic, encoder_topic, efforts, outside)
+            answers = _answers(gears, messages, rotor_topic, encoder_topic, outside)
             computed += len(answers[OUTPUT_STATE])
             # A stable sort by these puts each output directly after its rotor message.
             places, received = [*range(len(messages))], [message[1] for message in messages]
@@ -132,7 +131,7 @@ def compute(
         inputs_of,
         computed,
         copied,
-        {name: _doubts(each, efforts[name], outside[name]) for name, each in inputs_of.items()},
+        {name: _doubts(each, outside[name]) for name, each in inputs_of.items()},
         left_out=tuple(sorted(source.topics.keys() - {*kept, *outputs})),
     )
 
@@ -157,19 +156,16 @@ def _answers(
     messages: Sequence[Message],
     rotor: str,
     encoder: str,
-    efforts: dict[str, float],
     outside: dict[str, Fact | None],
 ) -> dict[str, dict[int, bytes]]:
     """Return outputs by name in the node and row of the input.
 
-    Raises `efforts` to the greatest, and sets the first angles `outside` of their ranges.
+    Sets the first angles `outside` of their ranges.
     """
     found = defaultdict[str, list[dict[int, bytes]]](list)
     for actuator, gear in gears.items():
         answers = gear.batch(messages, rotor, encoder)
         samples = answers.samples
-        sizes = np.abs(np.nan_to_num(samples.effort))
-        efforts[actuator] = float(np.max(sizes, initial=efforts[actuator]))
         outside[actuator] = outside[actuator] or farthest_outside(
             gear.parameters, samples.turns, samples.angle, samples.referenced
         )
@@ -185,8 +181,8 @@ def _answers(
     return joined
 
 
-def _doubts(rotor: RotorInput, effort: float, outside: Fact | None) -> list[Fact]:
-    """Return what seems wrong with an input, by its state at the end and its greatest effort."""
+def _doubts(rotor: RotorInput, outside: Fact | None) -> list[Fact]:
+    """Return what seems wrong with an input, by its state at the end."""
     unstamped = Condition.UNSTAMPED(messages=counted(rotor.zero_stamps, 'message'))
     repeated = Condition.REPEATED_STAMPS(count=rotor.duplicates)
     doubts = (
@@ -196,9 +192,8 @@ def _doubts(rotor: RotorInput, effort: float, outside: Fact | None) -> list[Fact
         unstamped if rotor.zero_stamps else None,
         repeated if rotor.duplicates > MANY_REPEATED * rotor.received else None,
         rotor.velocity_field.in_recording,
-        questioned(effort),
+        rotor.effort_field.doubt,
         outside,
-        Condition.EFFORT_IS_ZERO() if rotor.effort_field.absent else None,
         None if rotor.referenced else Condition.UNREFERENCED_AT_END(),
     )
     return [doubt for doubt in doubts if doubt]

@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.state.effort_field import questioned
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.rotor_samples import RotorSamples
 from gear_kinematics.state.statuses import Condition, Fact
@@ -37,7 +36,6 @@ class InputHealth:
         self._longest: list[Gap] = []
         self._overspeed = 0
         self._fastest = 0.0
-        self._effort = 0.0  # the greatest of the rotor, N·m
         self.outside: Fact | None = None  # the first output angle outside of its range
 
     def update(self, samples: RotorSamples) -> None:
@@ -47,7 +45,6 @@ class InputHealth:
             return
         if self._first_stamp is None:
             self._first_stamp = int(stamp[0])
-        self._effort = float(np.fmax.reduce(np.abs(samples.effort), initial=self._effort))
         last_stamp, last_angle = self._last or (stamp[0], rotor_angle[0])
         self._last = int(stamp[-1]), float(rotor_angle[-1])
         forward, period, duration = _periods(stamp, int(last_stamp))
@@ -71,7 +68,6 @@ class InputHealth:
         timed = 2 * rotor_input.zero_stamps <= rotor_input.received
         timed &= not rotor_input.plausibility.jumped
         lost, counted = rotor_input.why_lost, {Condition.GAP, Condition.TURNED_TOO_FAR}
-        no_effort = Condition.EFFORT_IS_ZERO() if rotor_input.effort_field.absent else ''
         return InputReport(
             topic=topic,
             joint=rotor_input.parameters.rotor_joint,
@@ -97,7 +93,7 @@ class InputHealth:
             set_back=str(rotor_input.disorder.clock_fault or ''),
             beyond_limits=str(rotor_input.plausibility.beyond_limits or ''),
             outside=str(self.outside or ''),
-            effort_is=str(questioned(self._effort) or no_effort),
+            effort_is=str(rotor_input.effort_field.doubt or ''),
         )
 
 
