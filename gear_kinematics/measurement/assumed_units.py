@@ -69,7 +69,7 @@ def against(
         return 'has whole numbers, such as counts', 'counts'
     if 'raw' in says.words:
         return 'is raw', 'rev'
-    if column.borrowed:
+    if column.borrowed and column.unit != 'rad':
         return None
     if _HALF_TURN < np.max(moved, initial=0.0) <= np.ptp(values) <= 2.0 * _HALF_TURN:
         return 'has turns of 360, such as degrees', 'deg'

@@ -14,9 +14,9 @@ import numpy as np
 from gear_kinematics.measurement.names import known_units, meaning, usual_unit
 
 MOMENT = re.compile(
-    r'(\d+ days? |\d{1,4}[-./ ](\d\d?|[a-z]{3})[-./ ]\d{2,4}[T ] ?)?'
-    r'\d?\d:\d\d(:\d\d([.,]\d+)?|[.,]\d+)\s?'
-    r'(Z|UTC|[AP]M|[+-]\d\d:?\d\d)?',
+    r'(\d+ days? |([a-z]{3} ){2} ?\d\d? |\d{1,4}[-./ ](\d\d?|[a-z]{3})[-./ ]\d{2,4}[T ] ?)?'
+    r'\d?\d:\d\d(:\d\d([.,:;]\d+)?|[.,]\d+)\s?'
+    r'(Z|UTC|[AP]M|[+-]\d\d:?\d\d|\d{4})?',
     re.ASCII | re.IGNORECASE,
 )
 _TUPLE = re.compile(r'\(.*,( .*)?\)')  # as Python writes them
@@ -53,7 +53,7 @@ def numbers(column: Any, point: str = '.') -> Any:
         return column.to_numpy()
     text = column.astype(str).str.strip().str.replace('\u2212', '-')
     text = text.str.replace(_NEGATIVE, r'-\1', regex=True)
-    text = text.str.replace(r'(?<=\d) sec$', '', regex=True)  # as MATLAB writes durations
+    text = text.str.replace(r'(?<=[\d.])[dD](?=[-+]\d)', 'e', regex=True)  # as in Fortran
     text = text.str.replace(r"(?<=\d)[ '\u2019\u00a0\u202f](?=\d{3}\b)", '', regex=True)
     if text.str.fullmatch('(0x)?[0-9a-fA-F]{1,15}').all() and (
         text.str.startswith('0x').all()
@@ -107,19 +107,19 @@ def _moments(text: Any) -> Any:
     """Convert dates and times of the day in any of the usual notations; NaT for other text."""
     import pandas as pd  # noqa: PLC0415, of an extra
 
-    text = text.str.replace(',', '.')
-    text = text.str.replace(r'(?<=:\d\d):(?=\d{3,}$)', '.', regex=True)  # 9:00:00:040
+    text = text.str.replace(r',(?! )', '.', regex=True)
+    text = text.str.replace(r'(?<=:\d\d)[:;](?=\d{3,}$)', '.', regex=True)  # 9:00:00:040
     moments = pd.to_datetime(text, format='ISO8601', utc=True, errors='coerce')
     if not moments.notna().any():
         half = text.str.lower().str.extract(r'(?:^| )(\d+):.*([ap])m$')  # 12:00 AM is midnight
         later = pd.to_timedelta(12.0 * (half[1] == 'p') - 12.0 * (half[0] == '12'), unit='h')
-        of_day = text.where(text.str.fullmatch(MOMENT))
-        text, of_day = text.str.rstrip('APMapm '), of_day.str.rstrip('APMapm ')
-        plain = of_day.str.replace(r'^\d+:\d+[.].*', r'0:\g<0>', regex=True)
+        text = text.str.replace('(?i)(?<=[0-9]) ?[ap]m$', '', regex=True)
+        plain = text.str.replace(r'^\d+:\d+[.].*', r'0:\g<0>', regex=True)
         moments = pd.Timestamp(0) + pd.to_timedelta(plain, errors='coerce') + later
     if not moments.notna().any():  # other dates
         date = r'\d\d?[ ./-](\d\d?|[A-Za-z]{3})[ ./-](\d{4}|(?<=[./])\d\d) +\d\d?:\d\d'
         date = rf'\d{{4}}[./-]\d\d?[./-]\d\d?[ T]+\d\d?:\d\d|{date}'  # with AM or PM
+        date = rf'[A-Z][a-z]{{2}} [A-Z][a-z]{{2}} +\d\d? \d\d:\d\d:\d\d|{date}'  # of asctime
         dates = text.where(text.str.match(date))
         dates = dates.str.replace(r'([./])(\d\d)(?= )', r'\g<1>20\2', regex=True)
         with warnings.catch_warnings():
@@ -156,7 +156,8 @@ def weight(cell: str, point: str) -> float:
         return min(weight(one, '.') for one in elements)
     mark, other = re.escape(point), re.escape('.' if point == ',' else ',')
     cell = _NEGATIVE.sub(r'-\1', cell)
-    if re.fullmatch(rf'[-+\u2212]?(\d+({mark}\d*)?|{mark}\d+)([eE][-+]?\d+)?|0x[\da-fA-F]+', cell):
+    power = r'(([eE][-+]?|[dD][-+])\d+)?'
+    if re.fullmatch(rf'[-+\u2212]?(\d+({mark}\d*)?|{mark}\d+){power}|0x[\da-fA-F]+', cell):
         return 1.0 if ',' not in cell else 0.9
     grouped = rf"[-+\u2212]?[1-9]\d{{0,2}}(([ '\u2019\u00a0\u202f]|{other})\d{{3}})+({mark}\d*)?"
     return 0.5 if re.fullmatch(grouped, cell) or MOMENT.fullmatch(cell) else 0.0

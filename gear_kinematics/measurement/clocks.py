@@ -19,10 +19,11 @@ from gear_kinematics.wire.cdr import SECOND
 _DATES = 978_307_200.0, 4_102_444_800.0  # s since 1970: the years 2001 and 2100
 _LEAST_STEP, _MOST_STEP = {'s': 1e-6, 'ms': 5e-5, 'us': 5e-5, 'ns': 5e-5}, 1.0
 """Likely intervals between samples, s: least for times in a unit, and greatest."""
-_TICKS = 621_355_968_000_000_000, 116_444_736_000_000_000, 0
-"""Times of .NET, since the year 1, and of Windows, since 1601, in 1970; of a count; in 100 ns."""
-_EPOCHS = [('days', 25_569), *(('100ns', ticks) for ticks in _TICKS[:2])]
-"""Units of dates of workbooks, .NET and Windows; these dates in 1970."""
+_EPOCHS = {
+    '100ns': (621_355_968_000_000_000, 116_444_736_000_000_000, 0),
+    'days': (719_529, 25_569, 0),
+}
+"""Times in 1970 by unit: of .NET and Windows, of MATLAB and workbooks, and of a count."""
 _UNREADABLE = 0.01  # greatest share of times that cannot be read
 _RISING = 0.5  # least share of all steps forward that remains at the end of doubtful times
 _LATE_ROWS = 25  # most successive rows out of order; more show a clock that was set back
@@ -62,12 +63,14 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
         likely = [unit for unit in likely if speed <= FASTEST * TIME_UNITS[unit]]
     others = [
         unit
-        for unit, epoch in _EPOCHS
+        for unit, epochs in _EPOCHS.items()
+        for epoch in epochs[:2]
         if _DATES[0] < (times[0] - epoch) * TIME_UNITS[unit] < _DATES[1]
         and _LEAST_STEP['s'] <= step * TIME_UNITS[unit] <= _MOST_STEP
     ]
     likely = others or [unit for unit in dated if unit in likely] or likely
-    if (len(likely) != 1 and role == 'rotor') or (
+    numbered = not (dated or others) and np.all(steps == 1.0)  # perhaps the numbers of the rows
+    if (role == 'rotor' and (len(likely) != 1 or numbered)) or (
         _is_temps(clock.name, clock.unit) and times[0] > _LATE_ROWS * step
     ):
         cause = f'the times in {clock.name}: steps of {step:.6g} do not tell their unit'
@@ -77,13 +80,14 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
 
 
 def check_steps(clock: Column, times: Array) -> None:
-    """Raise ColumnsError if times said to be in s are whole numbers apart by more than one."""
-    if clock.unit == 's' and times.dtype.kind != 'M':  # dates
+    """Raise ColumnsError if times in s or ms are whole numbers apart by more than a second."""
+    finer = {'s': 'ms', 'ms': 'us'}.get(clock.unit)
+    if finer and times.dtype.kind != 'M':  # dates
         known = times[np.isfinite(times)].astype(float)
         step = float(np.median(np.abs(np.diff(known)))) if len(known) > 1 else 0.0
-        if step > _MOST_STEP and not np.any(known % 1.0):
-            cause = f'the times in {clock.name} are {step:.6g} s apart, as if they were ms'
-            raise ColumnsError(cause, 'their unit', time=f'{clock.name} [ms]')
+        if (step := step * clock.scale) > _MOST_STEP and not np.any(known % 1.0):
+            cause = f'the times in {clock.name} are {step:.6g} s apart, as if they were {finer}'
+            raise ColumnsError(cause, 'their unit', time=f'{clock.name} [{finer}]')
 
 
 def in_nanoseconds(seconds: Array, fraction: Array, name: str) -> Array | None:
@@ -94,8 +98,8 @@ def in_nanoseconds(seconds: Array, fraction: Array, name: str) -> Array | None:
     known = (seconds == seconds) & (fraction == fraction)  # noqa: PLR0124, no NaN
     if np.any(seconds[known] % 1.0) or np.any(fraction[known] >= size):
         return None
-    whole, rest = (np.where(known, one, 0).astype(np.int64) for one in (seconds, fraction))
-    both = whole * SECOND + rest * (SECOND // size)
+    whole, rest = (np.where(known, one, 0.0) for one in (seconds, fraction * (SECOND / size)))
+    both = whole.astype(np.int64) * SECOND + np.round(rest).astype(np.int64)
     return both if known.all() else np.where(known, both, np.nan)
 
 
@@ -124,12 +128,17 @@ def are_no_times(name: str, unit: str, times: Array) -> bool:
     """Return whether numbers of a name that may say something else do not rise as times do.
 
     They are called T, t_m, or temps (French for times), or have a further word, as cycle_time has.
+    A date may be that of the day alone.
     """
     steps, says = np.diff(times.astype(float)), meaning(name)
+    day = not says.role and times.dtype.kind == 'M'
+    if day and not np.any(times.astype('M8[ns]').astype(np.int64) % _DAY):
+        return True
     if _is_temps(name, unit) or (says.unsure and 't' in says.words):
         return not np.all(steps > 0.0)
     rise, least = np.sum(steps), _RISING * np.sum(steps, where=steps > 0.0)
-    return bool((says.unsure and rise <= least) or (name == 'T' and rise < least))
+    unsure = says.unsure or not says.role
+    return bool((unsure and rise <= least) or (name == 'T' and rise < least))
 
 
 def _is_temps(name: str, unit: str) -> bool:
@@ -154,9 +163,9 @@ def stamps(
     if clock is None or times is None:
         return np.arange(len(rows)) * SECOND, rows
     times = times[rows]
-    if clock.unit == '100ns':
+    if epochs := _EPOCHS.get(clock.unit):
         last = np.max(times, where=times == times, initial=0)  # noqa: PLR0124, no NaN
-        times = times - next(epoch for epoch in _TICKS if epoch <= last or not epoch)
+        times = times - next(epoch for epoch in epochs if epoch <= last or not epoch)
     if times.dtype.kind == 'M':
         readable = ~np.isnat(times)
         stamp = times.astype('datetime64[ns]').astype(np.int64)

@@ -34,6 +34,8 @@ _REVOLUTIONS = re.compile(r'(?i)servo_stats.*position|pos_estimate|pos_rel|pos_a
 _NUMBERED = re.compile(r'(\W*\d+|_[a-z]|(?<=^t)[mol])(?=( ?[\[(].*)?$)')
 """Ends of time.1, as pandas repeats a name, of time_a, and of tm, before any unit."""
 _MOTEUS = {'position', 'torque', 'q_current'}
+_DATES = ('date',), ('datum',)
+"""Words of columns that have the times if no other has, but perhaps the day alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +124,9 @@ def find_columns(
             named[role] = name
     others = [name for name in header if name != named.get('output_time')]
     filled = [name for name in others if first.get(name, name) or meaning(name).role != 'time']
-    found, side = likeliest(others) | likeliest(filled) | named, 'angle'
+    dates = (name for name in others if meaning(name).words in _DATES)
+    found, side = dict(zip(['time'], dates, strict=False)), 'angle'
+    found |= likeliest(others) | likeliest(filled) | named
     if {'rotor', 'output'} <= found.keys() and 'angle' not in named:
         found.pop('angle', None)
     elif 'torque' in found and (sides := [role for role in ANGULAR if role in found]):
@@ -237,5 +241,6 @@ def fraction_of(name: str, names: Sequence[str]) -> str | None:
     """Return the column of ns, µs or ms that may belong to one of whole seconds, or dates."""
     words, unit, *_ = meaning(name)
     likely = [(words, other) for other in ('ns', 'us', 'ms') if unit == 's']
-    likely += [((), 'ms')] * (not unit)  # Millisecond beside Time
+    # Millisecond beside Time, or Fractional Seconds
+    likely += [((), 'ms'), (('fractional',), 's')] * (not unit)
     return next((other for other in names if meaning(other)[:2] in likely), None)

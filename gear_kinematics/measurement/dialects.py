@@ -123,7 +123,8 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
     if 2 * len(_LOGGED.findall(text)) > text.count('\n'):
         inner = _LOGGED.sub('', text)
         mark = max(_SEPARATORS, key=inner.count)
-        plain = partial(_LOGGED.sub, lambda at: (at[1] or at[2]).replace(' ', 'T') + mark)
+        joint = 'T' if mark == ' ' else ' '
+        plain = partial(_LOGGED.sub, lambda at: (at[1] or at[2]).replace(' ', joint) + mark)
     lines = [*io.StringIO(plain(text), newline=None)]
     if size > _HEAD and not (lines := lines[:-1]):
         raise ValueError(f'the first row is longer than {_HEAD} characters')
@@ -292,8 +293,9 @@ def _names(
     says = [sum(bool(m.role) and not m.unsure for m in map(meaning, row)) for row in rows]
     at = max([*whole, last], key=lambda k: (says[k], k))
     names, groups = rows[at], rows[at - 1] if at else []
-    if rows[last][0] and meaning(rows[last][0]).role == 'time' != meaning(names[0]).role:
-        names = [rows[last][0], *names[1:]]  # TIME below Labels, of Tektronix
+    own = meaning(rows[-1][0])
+    if own.words and own.role == 'time' != meaning(names[0]).role:
+        names = [rows[-1][0], *names[1:]]  # TIME below Labels, of Tektronix
     if label:  # such as Y_Unit_Label of LabVIEW
         units = ['', *label][len(label) >= len(names) :]
     else:

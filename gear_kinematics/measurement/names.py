@@ -26,7 +26,7 @@ _VOCABULARY = {
     'filling': 'header receive log dynamic measured meas actual act filtered raw field data value '
     'values feedback state states axis angular rotary present sensor abs side in ist host pi ros '
     'system unix epoch tv channel ch fb fbk ave estimate scalars signals date datum utc wall '
-    'application main plc prg gvl',
+    'application main plc prg gvl db payload msg message',
 }
 """Words in names by kind, the likeliest first. The input is the rotor if a quantity is said, too.
 The filling may accompany all others; any other word shows a command, a speed or the like."""
@@ -50,14 +50,14 @@ _DEG, _KGF, _LBF = UNITS['deg'], 9.80665, 4.4482216152605  # rad, N, N
 _SIZES: Mapping[str, Mapping[str, Any]] = {
     'angle': {
         'rad radian radians': 1.0,
-        'mrad': 1e-3,
+        'mrad millirad milliradian milliradians': 1e-3,
         'deg ° degree degrees grados gradi degrés': _DEG,
         'rev turn turns revs revolution revolutions rotations umdrehungen umdr': TURN,
         'mdeg millideg': 1e-3 * _DEG,
         'cdeg': 1e-2 * _DEG,
         'ddeg': 0.1 * _DEG,
         'mrev': 1e-3 * TURN,
-        'urad µrad': 1e-6,
+        'urad µrad microrad microradians': 1e-6,
         "arcmin arc-min arcminutes ′ '": _DEG / 60.0,
         'arcsec arc-sec arcseconds ″': _DEG / 3600.0,
         'gon': TURN / 400.0,
@@ -68,12 +68,14 @@ _SIZES: Mapping[str, Mapping[str, Any]] = {
         'mN·m mnm nmm': 1e-3,
         'µN·m unm µnm': 1e-6,
         'N·cm ncm cnm': 1e-2,
+        'dN·m dnm': 0.1,
         'kN·m knm': 1e3,
         'kg·cm kgcm kgfcm': 1e-2 * _KGF,
+        'g·cm gcm gfcm': 1e-5 * _KGF,
         'kg·m kgm kgfm': _KGF,
         'lb·ft lbft ftlb lbfft ftlbf ftlbs': 0.3048 * _LBF,
         'lb·in lbin inlb lbfin inlbf inlbs': 0.0254 * _LBF,
-        'oz·in ozin inoz ozfin': 0.0254 / 16.0 * _LBF,
+        'oz·in ozin inoz ozfin inozf': 0.0254 / 16.0 * _LBF,
     },
     'time': {
         's sec secs second seconds': 1.0,
@@ -97,8 +99,9 @@ _UNITS = {
     for word in words.split()
 }
 
-_MEGA = r'MN(?=[-_.*·⋅ ]?m)', 'meganewton'  # so that MN·m is not read as mN·m
-_PLAINER = {
+_DOTS = '-.*·⋅∙•×'  # between newton and metre
+_MEGA = rf'MN(?=[{_DOTS}_ ]?m)', 'meganewton'  # so that MN·m is not read as mN·m
+_PLAINER: Mapping[str, Any] = {
     _MEGA[0]: _MEGA[1],
     r'^[%#"\s]+|[#"\s]+$': '',
     r'\{name==': '{',  # of a joint, in paths of Foxglove
@@ -110,12 +113,10 @@ _PLAINER = {
     r'^M(?=[ _/\[(]*[mckµ]?N)': 'moment',
     r'(?i)[ _]?milli(?=(nm|rad|deg)(?![a-z]))': '_m',
     r'(?i)(winkel.*[^a-z])grad(?![a-z])': r'\1deg',  # gradians elsewhere
-    r'(?i)[ _]?(deg|rad|rev)[ _]?x10$': r'_d\1',
-    r'(?i)[ _]?(deg|rad|rev)[ _]?x100$': r'_c\1',
-    r'(?i)[ _]?(deg|rad|rev)[ _]?x1000$': r'_m\1',
-    r'(?i)(?<![a-z])([mk]?n|kgf?)[-_.*·⋅ ]([cm]?m)(?![a-z])': r'\1\2',
-    r'(?i)(?<![a-z])(ozf?|lb[fs]?)[-_.*·⋅ ](in|ft)(?![a-z])': r'\1\2',
-    r'(?i)(?<![a-z])(in(?=[-.*·⋅])|ft)[-_.*·⋅ ](ozf?|lb[fs]?)(?![a-z])': r'\1\2',
+    r'(?i)[ _]?(deg|rad|rev)[ _]?x1(0{1,3})$': lambda u: f'_{"dcm"[len(u[2]) - 1]}{u[1]}',
+    rf'(?i)(?<![a-z])([mcdkµ]?n|k?gf?)[{_DOTS}_ ]([cm]?m)(?![a-z])': r'\1\2',
+    rf'(?i)(?<![a-z])(ozf?|lb[fs]?)[{_DOTS}_ ](in|ft)(?![a-z])': r'\1\2',
+    rf'(?i)(?<![a-z])(in(?=[{_DOTS}])|ft)[{_DOTS}_ ](ozf?|lb[fs]?)(?![a-z])': r'\1\2',
 }
 """Spellings in names, and what is read in their place."""
 _BRACKETS = re.compile(r'[\[(]\s*([^\])]*?)\s*[\])]')
@@ -206,8 +207,8 @@ def _role(
 def usual_unit(text: str) -> str:
     """Return the usual word for a unit, a text in lower case if it is unknown, or nothing."""
     plain = re.sub(r'\s|units?:', '', re.sub(*_MEGA, text).lower().replace('μ', 'µ'))
-    plain = re.sub(r'[-.*·⋅](?=(in|ft|lb[fs]?|c?m)$)', '', plain.strip('[]').strip('()'))
-    plain = re.sub(r'n(ewton)?[-_.*·⋅]?([cm]?)m(et(er|re)s?)?(?!\w)', r'n\2m', plain)
+    plain = re.sub(rf'[{_DOTS}](?=(in|ft|ozf?|lb[fs]?|c?m)$)', '', plain.strip('[]').strip('()'))
+    plain = re.sub(rf'n(ewton)?[{_DOTS}_]?([cm]?)m(et(er|re)s?)?(?!\w)', r'n\2m', plain)
     outer, _, inner = plain.partition('(')  # as in "° (Degree)" and "(deg)"
     plain = (outer or inner).strip('()[].')
     plain = _IN_BRACKETS.get(plain, plain)

@@ -146,10 +146,9 @@ class _Samples:
         clock = self.found.pop('time', None)
         usual = clock.name if clock else ''
         clocks = {role: table.clocks.get(one.name, usual) for role, one in self.found.items()}
-        asked = clock and not (table.clocks or sources.time)
-        own = own_clocks(table.names, self.found) if asked else {}
-        given = self.found.pop('output_time', None)
-        own = {'output': given.name} if given else own
+        given, own = self.found.pop('output_time', None), dict[str, str]()
+        if given or (clock and not (table.clocks or sources.time)):
+            own = {'output': given.name} if given else own_clocks(table.names, self.found)
         units = {**table.units, **{one.name: one.unit for one in (clock, given) if one}}
         raw, clock = self._loaded(table, clock, {*clocks.values(), *own.values()})
         if sources.output_time and not (given and clock):
@@ -266,14 +265,11 @@ class _Samples:
             self.remarks.append(Observation.ROWS_LEFT_OUT(rows=left_out))
         clock = self._clock and self._clock._replace(name=name)
         stamp, chosen = stamps(clock, times, kept, self.remarks, self.faults, alone=alone)
-        values = {role: one[chosen] for role, one in data.items()}
-        values = {role: np.where(np.abs(v) < _LEAST, 0.0, v) for role, v in values.items()}
-        for role in values:
+        values = {role: np.where(np.abs(v) < _LEAST, 0.0, v)[chosen] for role, v in data.items()}
+        for role, angles in values.items():
             if 'counts' in self.found[role].unit:
-                values[role] = signed(values[role], self.found[role].scale)
-        gaps = 0 * stamp
-        if alone:
-            gaps = np.cumsum(np.abs(np.diff(chosen, prepend=chosen[0])) > _GAP)
+                values[role] = signed(angles, self.found[role].scale)
+        gaps = alone * np.cumsum(np.abs(np.diff(chosen, prepend=chosen[0])) > _GAP)
         return _Series(stamp, values, gaps)
 
     def unwrapped(self, role: str, period: float = 0.0) -> Array:
@@ -340,10 +336,15 @@ class _Samples:
         motion = RotorMotion.of(main.stamp, rotor, effort, main.segment)
         steps_of_both = steps['rotor'], steps['output']
         both = Encoders(motion, self.timed, before, share, output[inside], *steps_of_both)
-        if not (self.found['rotor'].unit or self.found['output'].unit):
+        of_output, of_rotor = self.found['output'], self.found['rotor']
+        if of_output.unit == of_rotor.unit == '' or (
+            of_output.borrowed and of_rotor.unit == 'rad'
+        ):
             turned = self.unwrapped('rotor', period) if self._sources.as_recorded else rotor
             if differ_as_degrees(both.at_measured(turned), both.measured):
-                names = ' differs from '.join(self.found[r].name for r in ('output', 'rotor'))
-                cause = f'{names} by more than gears do in rad, as in degrees'
-                raise ColumnsError(cause, 'the unit', unit='deg')
+                cause = (
+                    f'{of_output.name} differs from {of_rotor.name} by more than gears do in rad'
+                )
+                lone = {'output': f'{of_output.name} [deg]'} if of_rotor.unit else {'unit': 'deg'}
+                raise ColumnsError(f'{cause}, as in degrees', 'the unit', **lone)
         return both

@@ -195,6 +195,10 @@ ENCODERS = {
         written([t, t, r, o], '[26 Nov 2026 9:59:40.000] time,rotor,output', (
             lambda v: f'[{moment()(v)[:-3]}]', ' {:.2f}', '{:.5f}', '{:.5f}')).replace('],', ']')
         + 'Min,-99,-9\nMax,99,9\n'),
+    'old stamps of Tera Term': lambda t, r, o: written(
+        [t, r, o], '[Thu Nov 26 09:59:39.000 2026] rotor,output', (
+            lambda v: f'[Thu Nov 26 {moment()(v)[11:-3]} 2026]', '{:.5f}', '{:.5f}'
+        )).replace('],', '] '),
     'stamps of the Arduino IDE alone': lambda t, r, o: written(
         [t, r, o], '09:59:40.000 -> rotor,output', (
             lambda v: f'{moment()(v)[11:-3]} ->', '{:.5f}', '{:.5f}')).replace('>,', '> '),
@@ -367,6 +371,25 @@ ENCODERS = {
         for table, (name, values) in enumerate((('rotor', r), ('output', o)))
         for at, value in zip(t, values, strict=True)),
     'durations of MATLAB': plain(time='{:.2f} sec'),
+    'hours of MATLAB': plain(time='{:.7f} hr', unit=1.0 / 3600.0),
+    'durations of polars': plain(time='PT{:.2f}S'),
+    'durations of Python': plain(time=lambda v: f'"1 day, {timedelta(seconds=v)}"'),
+    'serial dates of MATLAB': lambda t, r, o: written([740312.4 + t / 86400.0, r, o], NAMES,
+                                                      ('{:.10f}', '{:.5f}', '{:.5f}')),
+    'a trend of Rockwell': lambda t, r, o: written(
+        [t, r, o], 'Trend,3\nHeader:,Date,Time,DB1.Motor [rad],Payload.Output [rad]',
+        (lambda v: f'Data,11/26/2026,{moment(" ", decimals=";")(v)[11:-3]}', '{:.5f}', '{:.5f}')),
+    'a date in place of a time': plain('Date,rotor,output', time=moment(' ')),
+    'a whole day beside times of each side': lambda t, r, o: written(
+        [t[:-1], r[:-1], t[1:], o[1:]], 'Date,motor_time,motor_pos,output_time,output_pos',
+        ('26.11.2026,{:.2f}', *3 * ['{:.5f}'])),
+    'fractional seconds of Keithley': lambda t, r, o: written(
+        [t, t % 1.0, r, o], 'Date,Fractional Seconds,rotor,output',
+        (lambda v: moment(' ')(v)[:19], '{:.6f}', '{:.5f}', '{:.5f}')),
+    'names of columns above the name of the index': plain(
+        'joint,motor,output\nquantity,position,position\ntime,,'),
+    'exponents of Fortran': lambda t, r, o: written(
+        [t, r, o], NAMES, lambda v: f'{v:.6E}'.replace('E', 'D')),
     'dates with names of months': plain(time=clock('%d-Nov-%Y %H:%M:%S.%f')),
     'Simulink, with times of each signal': lambda t, r, o: written(
         [t, r * DEG, t, o * DEG], 'time,motor angle,time,output angle\n'
@@ -512,6 +535,10 @@ RAMPS = {
     'a name that stays': lambda t, a, q: written(
         [t, t, a, q], 'time,name,angle,torque', ('{:.2f}', lambda _: 'Run A', '{:.6f}', '{:.6f}')),
     'N·cm': lambda t, a, q: written([t, a * DEG, q * 100], 't,Angle [°],Torque [Ncm]'),
+    'dN·m': lambda t, a, q: written([t, a * 1e3, q * 10], 't,angle_millirad,torque_dNm', '{:.6f}'),
+    'gf·cm': lambda t, a, q: written(
+        [t, a * 1e6, q / 9.80665e-5], 't,angle [microrad],torque [gf.cm]', '{:.6f}'),
+    'in-ozf': lambda t, a, q: written([t, a, q / 0.00706155], 't,angle,torque [in-ozf]', '{:.6f}'),
     'kg·cm': lambda t, a, q: written([t, a * DEG, q / 0.0980665], 't,angle_deg,torque_kgcm'),
     'lb-in': lambda t, a, q: written([t, a * DEG, q / 0.112985], 't,angle_deg,load [lb-in]'),
     'lbs': lambda t, a, q: written([t, a * DEG, q / 0.112985], 't,angle_deg,Torque (in-lbs)'),
@@ -654,6 +681,11 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
          'rotor_counts has three digits behind each comma'),
         (lambda t, r, o: written([t + 95_930.0 + 40.0 * (t >= 30.0), r, o], NAMES),
          'the times in time are hours, minutes and seconds'),
+        (lambda t, r, o: written([25.0 * t, 10.0 * r, 10.0 * o], NAMES),
+         r'times in time: steps of 1 do not tell'),
+        (lambda t, r, o: written([t, r, o * DEG], 'time,rotor [rad],output'),
+         r'output differs from rotor \[rad\] .* as in --output-column .output .deg'),
+        (lambda t, r, o: written([t, r * DEG, o], 'time,rotor,output [rad]'), 'speeds of'),
         *((lambda t, r, o, step=step: written([25.0 * step * t, 1e-2 * r, 1e-2 * o], NAMES,
                                    ('{:.4f}', '{:.7f}', '{:.7f}')),
           f'steps of {step} do not tell') for step in (0.2, 0.9993)),
@@ -754,6 +786,8 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         ('Data1,torque\n0,2\n', 'Data1 does not say that it is an angle: .* --angle-unit'),
         (lambda t, r, o: written([1e3 * t, r, o], 'time_s,rotor,output', '{:.0f}'),
          r"times in time_s are 40 s apart, as if they were ms: .* --time-column 'time_s \[ms"),
+        (lambda t, r, o: written([1e6 * t, r, o], 'time_ms,rotor,output', '{:.0f}'),
+         r"times in time_ms are 40 s apart, as if they were us: .* --time-column 'time_ms \[us"),
         (lambda t, r, o: written([t, *in_counts(r, o), in_counts(r)[0] / 4096 * 360],
                                  'time,mot_ang,ank_ang,mot_ang_deg', ('{:.2f}', *3 * ['{:.7f}'])),
          'for example: .* --output-column .?ank_ang'),
