@@ -10,8 +10,8 @@
 # on a single rotor, both are right.
 # For us: build the force on a driven shaft yourself, with the angle -ratio * speed * t.
 #
-# Exit code 0: still so. Installs the versions into a temporary folder, without two libraries for seals and for
-# magnetic bearings, of which there are none.
+# Exit code 0: still so. Installs the versions into a temporary folder, without the libraries for its seals and its
+# magnetic bearings, of which there are none here.
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
