@@ -125,6 +125,10 @@ class FindingCause(Enum):
     NAN_FOR_ALL = '{field} is NaN for all of {joints}, and should be empty: {messages}' + _FIRST
     # The recorder
     RECORDER_LOST = 'the recorder says that it lost {messages}'
+    TWICE = (
+        '{messages} recorded twice, as where merged recordings overlap: they and their outputs '
+        'are judged once'
+    )
     ENDED_EARLY = (
         '{output} ends {seconds:.3f} s before {topic}: the node may have ended, or lagged behind'
     )

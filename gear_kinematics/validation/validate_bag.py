@@ -2,15 +2,24 @@
 """Validates a bag, in this process or another one."""
 
 import time
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from itertools import islice
+from itertools import compress, islice
+from operator import eq
 from pathlib import Path
 from typing import Any
 
-from gear_kinematics.bag import Bag, BagError, Message, MessagesByTopic, ReportProgress, in_batches
+from gear_kinematics.bag import (
+    Bag,
+    BagError,
+    Message,
+    MessagesByTopic,
+    ReportProgress,
+    TopicMessages,
+    in_batches,
+)
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.bag.roles import (
     Topics,
@@ -47,6 +56,7 @@ from gear_kinematics.wire.topics import (
 
 _LOSSES = 'rosbag2_interfaces/msg/MessagesLostEvent'  # of recorders since Lyrical
 _OF_BODIES = JOINT_STATES, *LOAD_TOPICS  # further topics, if the bodies of the gear are known
+_STAMP = slice(4, 12)  # bytes of a header's stamp in CDR
 _BATCH = 8192  # messages of a live node that are validated together
 
 
@@ -115,7 +125,9 @@ def _judged(task: Task, bag: Bag, progress: ReportProgress | None) -> BagReport:
     arm = ArmValidator(validators) if task.actuators else None
     known = {topic for each in validators for topic in each.topics}
     judged = sorted(known.difference(each.unjudged for each in validators))
-    damage = _feed(arm or validators[0], bag.by_topic(judged, progress))
+    twice = list[Finding]()
+    batches = _once(bag.by_topic(judged, progress), topics.rotor, twice)
+    damage = _feed(arm or validators[0], batches)
     lost = _recorded_losses(bag)
     reports = arm.reports(damage, lost) if arm else [validators[0].report(damage, lost)]
     reports = [
@@ -127,7 +139,7 @@ def _judged(task: Task, bag: Bag, progress: ReportProgress | None) -> BagReport:
         known -= {each.further.get(TRANSMISSION_ERROR, '') for each in validators}
     actuators = [each.parameters.actuator for each in tasks]
     left_out = _not_compared(bag, topics, known, actuators)
-    return report.adding(*_losses(lost, judged), *left_out)
+    return report.adding(*twice, *_losses(lost, judged), *left_out)
 
 
 def _validator(task: Task, bag: Bag, topics: Topics) -> Validator:
@@ -222,6 +234,42 @@ def _agrees(task: Task, topics: Topics, batches: Iterable[MessagesByTopic]) -> b
     validator.feed(batches)
     judged = validator.report().topics
     return bool(judged) and judged[0].compared > 0 and not judged[0].wrong
+
+
+def _once(
+    batches: Iterable[MessagesByTopic], rotor: str, twice: list[Finding]
+) -> Iterator[MessagesByTopic]:
+    """Drop the second ones of equal messages, where those of the rotor are there twice.
+
+    Outputs that are there twice without their inputs were published twice. At the end it adds how
+    many of the rotor's there are to `twice`.
+    """
+    latest, count = defaultdict[str, tuple[int, bytes]](lambda: (-1, b'')), 0
+    for batch in batches:
+        new = {rotor: _differs(latest[rotor], batch[rotor])}
+        count += new[rotor].count(False)
+        if not all(new[rotor]):
+            new = {topic: _differs(latest[topic], messages) for topic, messages in batch.items()}
+        latest |= {topic: (of.received[-1], of.data[-1]) for topic, of in batch.items() if of.data}
+        for topic, rows in new.items():
+            if not all(rows):
+                batch[topic].received[:] = compress(batch[topic].received, rows)
+                batch[topic].data[:] = compress(batch[topic].data, rows)
+        yield batch
+    twice += [Finding(FindingCause.TWICE, rotor, count=count)] if count else []
+
+
+def _differs(before: tuple[int, bytes], messages: TopicMessages) -> list[bool]:
+    """Return which messages differ from the one before, in stamp, contents or time of reception.
+
+    Messages without a stamp can be equal although each was published, as at rest.
+    """
+    last, content = before
+    received, data = messages.received, messages.data
+    if not any(map(eq, [last, *received], received)):
+        return []
+    rows = zip([last, *received], received, [content, *data], data, strict=False)
+    return [a < b or c != d or not any(d[_STAMP]) for a, b, c, d in rows]
 
 
 def _losses(lost: Counter[str], topics: Iterable[str]) -> Iterator[Finding]:

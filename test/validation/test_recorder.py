@@ -192,6 +192,26 @@ def test_a_fault_is_found_wherever_it_is(traffic, config, seed, fault, place):
     assert any(said in finding.text for finding in findings(report))
 
 
+@pytest.mark.parametrize('doubled_input', [True, False])
+def test_where_merged_recordings_overlap_each_message_is_judged_once(
+    traffic, config, doubled_input, tmp_path
+):
+    """The first may end, and the second begin, between an input and its output."""
+    messages = traffic[50]
+    inputs = [k for k, m in enumerate(messages) if m.topic == ROTOR]
+    begin, end = inputs[60] + 1, inputs[120] + 1
+    merged = [
+        m
+        for k, m in enumerate(messages)
+        for _ in range(1 + (begin <= k < end and (doubled_input or m.topic != ROTOR)))
+    ]
+    report = validate_bag(Task(folder(tmp_path / 'bag', merged), config))
+    assert report.passed is doubled_input
+    assert [t.extra for t in report.topics] == 2 * [0 if doubled_input else 60]
+    said = [found for found in report.findings if found.cause == FindingCause.TWICE]
+    assert said == ([Finding(FindingCause.TWICE, ROTOR, count=60)] if doubled_input else [])
+
+
 @pytest.mark.parametrize('seed', range(5))
 def test_a_loss_after_a_quiet_period_is_found_at_once(traffic, config, seed):
     """A recorder without losses for some time has settled before a second has passed."""
