@@ -262,6 +262,9 @@ class GearStatePublisher(PublishingNode):
                 return  # a message of another driver on a shared topic, and no input
             actuator.state.monitor.last_input = time.monotonic()
         of, detail = f' of {name}' if name else '', rejection.detail
+        if str(rejection) == Rejection.JOINT_MISSING:
+            side = 'rotor' if topic == topics.ROTOR_STATE else 'output_encoder'
+            detail = f'{detail}; set {side}_joint'
         # Not one for each actuator: all of an arm can lack the same.
         subject = f'{topic} rejected: {rejection}'
         self._warn(f'{topic}{of} rejected: {rejection}{detail and f": {detail}"}', subject)

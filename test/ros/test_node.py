@@ -291,11 +291,17 @@ def test_rejected_input_is_warned_about_once_a_second_for_each_cause(make, monke
         now += 0.1
         node._on_rotor_state(b'')
         node._on_rotor_state(rotor_bytes(1, ['rotor'], []))
+        node._on_output_encoder(rotor_bytes(1, ['a', 'b'], [1.0, 2.0]))
         said = capfd.readouterr().err
-        causes = ('not a JointState', 'position missing')
-        warnings.append([said.count(f'rotor_state rejected: {cause}') for cause in causes])
-    assert [sum(each) for each in zip(*warnings, strict=True)] == [3, 3]
-    assert warnings[0] == warnings[10] == warnings[20] == [1, 1]
+        missing = 'joint missing: more than one joint in it; there are: a, b'
+        rejections = (
+            'rotor_state rejected: not a JointState',
+            'rotor_state rejected: position missing',
+            f'output_encoder rejected: {missing}; set output_encoder_joint',
+        )
+        warnings.append([said.count(each) for each in rejections])
+    assert [sum(each) for each in zip(*warnings, strict=True)] == [3, 3, 3]
+    assert warnings[0] == warnings[10] == warnings[20] == [1, 1, 1]
 
 
 @pytest.mark.parametrize('kind', ['events', 'single_threaded'])
