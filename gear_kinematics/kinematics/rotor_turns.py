@@ -31,6 +31,7 @@ _TURN_LOW = TURN - _TURN_HIGH
 _WHOLE = 1e-6  # relative difference of a period from the whole turns that are meant
 _USUAL, _MOST_GAPS = 20, 40  # surplus of gaps that were too long: least for usual; greatest
 _NOISE = 0.05  # rad, greatest noise of any encoder
+_Speed = float | None  # rad/s; None if unknown
 BELOW_HALF = math.nextafter(math.pi, 0.0)  #: rad; any smaller angle is 0 turns, however rounded
 
 
@@ -210,13 +211,11 @@ class RotorTurns:
         self.periods = 0
         """Number of periods that are added to the readings."""
         self._offset = 0, 0, 0.0  # periods, and their sum as turns and angle, rad
-        self._reading = 0.0
-        self._stamp = 0
+        self._reading, self._stamp = 0.0, 0
         self._velocity: float | None = None
-        self._since_gap: tuple[float, float, float, float] | None = None
-        """By what the turns since a gap that velocities narrowed down exceed the expected ones,
-        and the width of their bounds, rad; the gap, and for how long it matters, s: behind a
-        message that was late, others come in a burst, and turn too far in all."""
+        self._since_gap: tuple[_Speed, float, float, float] | None = None
+        """Velocity before a gap that velocities narrowed, rad/s; turn, rad, and time since, s;
+        gap. Behind a late message, others come in a burst, and turn too far in all."""
 
     def forget_turns(self) -> None:
         """Make the turns as unknown as at the start; counting goes on."""
@@ -251,23 +250,24 @@ class RotorTurns:
         split: tuple[int, float] = _split_few(position) if few else split_turns(position)
         if period and self._position is not None:
             elapsed = (stamp - self._stamp) * 1e-9
-            low, high = self._possible_turn(elapsed, velocity)
-            apparent, expected = position - self._reading, 0.5 * (low + high)
+            expected, width = self._possible_turn(elapsed, self._velocity, velocity)
+            apparent, since = position - self._reading, self._since_gap
             more = round((expected - apparent) / period)
             # Stamps that are early or late put the turn outside of what is possible: it is the
             # right one only if any other were far less possible.
-            off, width, gap = apparent + period * more - expected, high - low, elapsed
-            wide, since = width >= period, self._since_gap
+            turn, gap, wide = apparent + period * more, elapsed, width >= period
             if wide:
                 self._gap += (elapsed - self._gap) / (self._gaps + 1)
             self._gaps = min(self._gaps + 1, _MOST_GAPS) if wide else max(self._gaps - 1, 0)
             if 2.0 * self.max_speed * elapsed >= period:
-                since = 0.0, 0.0, elapsed, 2.0 * elapsed
+                since = self._velocity, 0.0, 0.0, elapsed
             if since:
-                sums = off + since[0], width + since[1], since[2], since[3] - elapsed
-                since = sums if since[3] > elapsed and sums[1] < period else None
-                off, width, gap, _ = since or (off, width, elapsed, 0.0)
-            outside = abs(off) - 0.5 * width
+                before, turned, time = since[0], since[1] + turn, since[2] + elapsed
+                middle, between = self._possible_turn(time, before, velocity)
+                since = (before, turned, time, since[3]) if between < period else None
+                if since:
+                    turn, expected, width, gap = turned, middle, between, since[3]
+            outside = abs(turn - expected) - 0.5 * width
             if wide or outside > _NOISE + (period - width - outside) / 5.0:
                 self.referenced, since = False, None
                 self.unknown_gaps += 1
@@ -287,8 +287,8 @@ class RotorTurns:
         self._position = split
         self._reading, self._stamp, self._velocity = position, stamp, velocity
 
-    def _possible_turn(self, elapsed: float, velocity: float | None) -> tuple[float, float]:
-        """The least and the greatest turn of the rotor in a gap, rad.
+    def _possible_turn(self, elapsed: float, before: _Speed, after: _Speed) -> tuple[float, float]:
+        """The middle and the width of the possible turns of the rotor in a gap, rad.
 
         Within `elapsed` the rotor reaches at most ±max_speed·elapsed. Where that is ambiguous,
         the speeds v0 and v1 at both ends narrow it: with accelerations of at most A, the turn is
@@ -296,15 +296,15 @@ class RotorTurns:
         """
         reach = self.max_speed * elapsed
         low, high = -reach, reach
-        if 2.0 * reach >= self.period and velocity is not None and self._velocity is not None:
-            change = velocity - self._velocity
-            middle = 0.5 * (velocity + self._velocity) * elapsed
+        if 2.0 * reach >= self.period and before is not None and after is not None:
+            change = after - before
+            middle = 0.5 * (after + before) * elapsed
             # No **, which raises on overflow.
             spread = self.max_acceleration * elapsed * elapsed / 4.0
             spread -= change * change / (4.0 * self.max_acceleration)
             if spread >= 0.0 and abs(middle) <= reach:  # else the limits or the speeds are wrong
                 low, high = max(low, middle - spread), min(high, middle + spread)
-        return low, high
+        return 0.5 * (low + high), high - low
 
     def relative_to(self, zero: RotorPosition, direction: int) -> RotorPosition:
         """Return the rotor angle φ2 = direction·(position - zero), without cancellation.

@@ -269,19 +269,26 @@ def test_velocities_beyond_the_limits_narrow_nothing(speeds, elapsed):
 
 
 @pytest.mark.parametrize('late', [True, False], ids=['held up', 'lost'])
-@pytest.mark.parametrize(('period', 'speed', 'gap'), [(25.0, 320.0, 0.07), (math.tau, 90.0, 0.06)])
-def test_messages_that_were_held_up_end_a_gap_that_velocities_narrow(period, speed, gap, late):
+@pytest.mark.parametrize(
+    ('period', 'speed', 'gap', 'brake'),
+    [(25.0, 320.0, 0.07, 0.0), (math.tau, 90.0, 0.06, 0.0), (math.tau, 63.0, 0.141, 485.0)],
+)
+def test_messages_that_were_held_up_end_a_gap_that_velocities_narrow(
+    period, speed, gap, brake, late
+):
     """Messages that are stamped at arrival come in a burst, and seem to turn on in no time."""
     tracker = encoder(period=period, max_speed=1.2 * speed, max_acceleration=500.0)
     taken = np.arange(0.0, 0.4, 0.002)
     stamps = np.where((taken > 0.1) & (taken < 0.1 + gap) & late, 0.1 + gap, taken)
-    for at, stamp in zip(taken, stamps, strict=True):
+    speeds = (speed - brake * (taken - 0.1).clip(0.0)).clip(0.0)
+    ways = np.append(0.0, np.cumsum(0.001 * (speeds[1:] + speeds[:-1])))
+    for way, now, stamp in zip(ways, speeds, stamps, strict=True):
         if stamp <= 0.1 or stamp >= 0.1 + gap:  # else it is lost
-            tracker.update(speed * at % period, round(stamp * 1e9), speed)
-        if not at:
+            tracker.update(way % period, round(stamp * 1e9), now)
+        if not stamp:
             tracker.home(0.0, 1)
     turns, angle = tracker.position
-    right = math.isclose(math.tau * turns + angle, speed * taken[-1], rel_tol=1e-6)
+    right = math.isclose(math.tau * turns + angle, way, rel_tol=1e-6)
     assert (tracker.referenced, right) == (not late, not late)
     assert tracker.longest_gap == pytest.approx(gap * late, abs=0.003)
 
