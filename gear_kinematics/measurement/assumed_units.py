@@ -91,8 +91,8 @@ def differ_as_degrees(rotor: Array, output: Array) -> bool:
     output = np.unwrap(output) if count_wraps(output, TURN) else output
     every = max(1, len(rotor) // _ROWS)
     rotor, output = rotor[::every], output[::every]
-    ratio = output_by_rotor(rotor, output)
-    if ratio is None or len(rotor) < _FEWEST * _BLOCKS:
+    ratio = output_by_rotor(rotor, output) if len(rotor) >= _FEWEST * _BLOCKS else None
+    if ratio is None:
         return False
     parts = np.array_split(np.stack([output - ratio * rotor, np.gradient(rotor)]), _BLOCKS, axis=1)
     parts = [part - [[np.median(part[0])], [0.0]] for part in parts]

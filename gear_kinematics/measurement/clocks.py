@@ -17,15 +17,18 @@ from gear_kinematics.report.document import number
 from gear_kinematics.wire.cdr import SECOND
 
 _DATES = 978_307_200.0, 4_102_444_800.0  # s since 1970: the years 2001 and 2100
-_LEAST_STEP, _MOST_STEP = {'s': 1e-6, 'ms': 5e-5, 'us': 5e-5, 'ns': 5e-5}, 1.0
-"""Likely intervals between samples, s: least for times in a unit, and greatest."""
 _EPOCHS = {
+    **dict.fromkeys(('s', 'ms', 'us', 'ns'), (0,)),
     '100ns': (621_355_968_000_000_000, 116_444_736_000_000_000, 0),
     'days': (719_529, 25_569, 0),
 }
-"""Times in 1970 by unit: of .NET and Windows, of MATLAB and workbooks, and of a count."""
+"""Times in 1970 by unit, also those of .NET and Windows, of MATLAB and workbooks."""
+_LEAST_STEP = dict.fromkeys(_EPOCHS, 1e-6) | dict.fromkeys(('ms', 'us', 'ns'), 5e-5)
+_MOST_STEP = 1.0
+"""Likely intervals between samples, s: least for times in a unit, and greatest."""
 _UNREADABLE = 0.01  # greatest share of times that cannot be read
 _RISING = 0.5  # least share of all steps forward that remains at the end of doubtful times
+_UNORDERED = 0.25  # least share of steps back in rows that are in another order than that of time
 _LATE_ROWS = 25  # most successive rows out of order; more show a clock that was set back
 _FEWEST_AGAIN, _LONGEST_STEP = 2, 1.5
 """Least number of rows that repeat times after a clock was set back; their greatest step, in usual
@@ -42,8 +45,8 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
         return clock._replace(unit='date')
     known = np.isfinite(times) & np.isfinite(angle)
     times, angle = times[known].astype(float), angle[known]
-    if _newest_first(times):
-        times, angle = times[::-1], angle[::-1]
+    order = _by_time(times)
+    times, angle = times[order], angle[order]
     later = np.diff(times) > 0.0
     if not later.any():
         cause = 'they stand still' if known.any() else 'no numbers nor ISO 8601'
@@ -56,20 +59,18 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
     speed = float(np.quantile(np.abs(np.diff(angle)[later]) / steps, MOST))
     if role == 'angle':  # a locked shaft, whose times only give the order
         speed = 0.0
-    spans = {unit: (step * TIME_UNITS[unit], times[0] * TIME_UNITS[unit]) for unit in _LEAST_STEP}
-    dated = [unit for unit, (_, at) in spans.items() if _DATES[0] < at < _DATES[1]]
-    likely = [unit for unit, (size, _) in spans.items() if _LEAST_STEP[unit] <= size <= _MOST_STEP]
+    within = [u for u in _EPOCHS if _LEAST_STEP[u] <= step * TIME_UNITS[u] <= _MOST_STEP]
+    dated = {
+        unit
+        for unit in within
+        for epoch in _EPOCHS[unit]
+        if _DATES[0] < (times[0] - epoch) * TIME_UNITS[unit] < _DATES[1]
+    }
+    likely = [unit for unit in within if _EPOCHS[unit] == (0,)]
     if len(likely) > 1:
         likely = [unit for unit in likely if speed <= FASTEST * TIME_UNITS[unit]]
-    others = [
-        unit
-        for unit, epochs in _EPOCHS.items()
-        for epoch in epochs[:2]
-        if _DATES[0] < (times[0] - epoch) * TIME_UNITS[unit] < _DATES[1]
-        and _LEAST_STEP['s'] <= step * TIME_UNITS[unit] <= _MOST_STEP
-    ]
-    likely = others or [unit for unit in dated if unit in likely] or likely
-    numbered = not (dated or others) and np.all(steps == 1.0)  # perhaps the numbers of the rows
+    likely = [unit for unit in within if unit in dated] or likely
+    numbered = not dated and np.all(steps == 1.0)  # perhaps the numbers of the rows
     if (role == 'rotor' and (len(likely) != 1 or numbered)) or (
         _is_temps(clock.name, clock.unit) and times[0] > _LATE_ROWS * step
     ):
@@ -79,13 +80,18 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
     return clock._replace(unit=unit, scale=TIME_UNITS[unit])
 
 
-def check_steps(clock: Column, times: Array) -> None:
-    """Raise ColumnsError if times in s or ms are whole numbers apart by more than a second."""
+def check_steps(clock: Column, times: Array, angle: Array) -> None:
+    """Raise ColumnsError if times in s or ms are whole numbers apart by more than a second.
+
+    With times in a finer unit, the rotor's angle, rad, would not change too fast.
+    """
     finer = {'s': 'ms', 'ms': 'us'}.get(clock.unit)
-    if finer and times.dtype.kind != 'M':  # dates
-        known = times[np.isfinite(times)].astype(float)
-        step = float(np.median(np.abs(np.diff(known)))) if len(known) > 1 else 0.0
-        if (step := step * clock.scale) > _MOST_STEP and not np.any(known % 1.0):
+    known = np.isfinite(times) & np.isfinite(angle)
+    if finer and times.dtype.kind != 'M' and np.count_nonzero(known) > 1:  # no dates
+        steps, turned = np.abs(np.diff([times[known].astype(float), angle[known]]))
+        step = float(np.median(steps)) * clock.scale
+        speed = np.quantile(turned / np.maximum(steps, 1.0), MOST) / TIME_UNITS[finer]
+        if step > _MOST_STEP and speed <= FASTEST and not np.any(times[known] % 1.0):
             cause = f'the times in {clock.name} are {step:.6g} s apart, as if they were {finer}'
             raise ColumnsError(cause, 'their unit', time=f'{clock.name} [{finer}]')
 
@@ -163,13 +169,13 @@ def stamps(
     if clock is None or times is None:
         return np.arange(len(rows)) * SECOND, rows
     times = times[rows]
-    if epochs := _EPOCHS.get(clock.unit):
-        last = np.max(times, where=times == times, initial=0)  # noqa: PLR0124, no NaN
-        times = times - next(epoch for epoch in epochs if epoch <= last or not epoch)
     if times.dtype.kind == 'M':
         readable = ~np.isnat(times)
         stamp = times.astype('datetime64[ns]').astype(np.int64)
     else:
+        last = np.max(times, where=times == times, initial=0)  # noqa: PLR0124, no NaN
+        epochs = _EPOCHS.get(clock.unit, (0,))
+        times = times - next(epoch for epoch in epochs if epoch <= last or not epoch)
         readable = np.abs(times * clock.scale) < _DATES[1]  # NaN compares false
         factor = clock.scale * SECOND
         exact = times.dtype.kind in 'iu'  # with more digits than floating point has
@@ -182,9 +188,8 @@ def stamps(
         raise ColumnsError(f'{cause}, or too large', 'their unit', time=f'{clock.name} [ns]')
     if lost := np.count_nonzero(~readable):
         remarks.append(Observation.NO_TIMES(rows=lost, column=clock.name))
-    rows, stamp = rows[readable], stamp[readable]
-    if _newest_first(stamp):
-        rows, stamp = rows[::-1], stamp[::-1]
+    by_time = _by_time(stamp[readable])
+    rows, stamp = rows[readable][by_time], stamp[readable][by_time]
     if stamp.min() >= 0 and stamp.max() < _DAY:  # times of the day begin again at midnight
         stamp = stamp + _DAY * np.cumsum(np.diff(stamp, prepend=stamp[0]) < -0.5 * _DAY)
     for before, size in _restore(stamp) if alone else ():
@@ -209,9 +214,12 @@ def stamps(
     return stamp, rows
 
 
-def _newest_first(times: Array) -> bool:
-    """Return whether times only go back, as in an export of a database."""
-    return len(times) > 0 and times[-1] < times[0] and bool(np.all(np.diff(times) <= 0))
+def _by_time(times: Array) -> Array | slice:
+    """Return the order of rows by time where they are in reverse, or sorted by something else."""
+    steps = np.diff(times)
+    if np.count_nonzero(steps < 0) <= _UNORDERED * np.count_nonzero(steps):
+        return slice(None)
+    return slice(None, None, -1) if np.all(steps <= 0) else np.argsort(times, kind='stable')
 
 
 def _restore(stamp: Array) -> Iterator[tuple[int, int]]:

@@ -44,16 +44,12 @@ _LOGGED = re.compile(r'(?m)^(?:\[([^]\n]*\d:\d\d[^]\n]*)\]|(\d\d:\d\d:\d\d[.]\d+
 _PADDED = re.compile(r'(?<=[,;|\t]) +(?=")')  # which would hide quotation marks
 _TYPES = re.compile(r'(?i)[iuf]\d+|(float|double|u?int)\d*|(type|interp|blockpath|portindex): *.+')
 """Cells of rows that give types, as INCA and Simulink write them."""
-_FRAMES = (
-    r'\s*(\(\d+\.\d+\)\s+)?(\w+\s+)?[\dA-F]{3,8}(#|\s+\[\d+\]\s+[\dA-F]{2}\b)'
-    r'|;\$FILEVERSION|date \w{3} \w{3} \d'
-)
-"""Beginnings of CAN bus logs of candump, PCAN-View and CANoe."""
 _NO_TABLES = {
-    _FRAMES: 'a log of CAN frames: decode their signals to columns, as cantools does',
+    r'\s*(\(\d+\.\d+\)\s+)?(\w+\s+)?[\dA-F]{3,8}(#|\s+\[\d+\]\s+[\dA-F]{2}\b)|;\$FILEVERSION|'
+    r'date \w{3} \w{3} \d': 'a log of CAN frames: decode the signals to columns, as by cantools',
     '# Created by Octave': 'a text of Octave: save the variables with the option -v7, as a .mat',
 }
-"""Beginnings of texts that are no tables, and what to do."""
+"""Beginnings of texts that are no tables, as of candump, PCAN-View and CANoe, and what to do."""
 _CODESYS = '[key]; [value]'  # begins a trace of CODESYS, whose variables are below each other
 _NO_NAMES = re.compile(r'(?i)[-+|:=\s]*|sep=.*\s*')  # lines without names, as of psql
 

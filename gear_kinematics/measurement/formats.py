@@ -9,6 +9,7 @@ which `columns` chooses, or `advice` proposes columns; `clocks` gives the rows t
 `assumed_units` doubts units that are not given; and `tables` decides which rows are used.
 """
 
+import json
 import re
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -207,6 +208,17 @@ def _workbook(path: Path) -> TableFile:
         raise ValueError(f'{error}{hint}') from error
 
 
+def _json(path: Path) -> TableFile:
+    """Read objects, one in each line or all in an array, whose fields and arrays are columns."""
+    import pandas as pd  # noqa: PLC0415, of an extra
+
+    text = path.read_text('utf-8-sig').strip()
+    rows = json.loads(
+        text if text[:1] == '[' else f'[{",".join(filter(None, text.splitlines()))}]'
+    )
+    return open_text(path, pd.json_normalize(rows).to_csv(index=False).encode())
+
+
 _READERS: Mapping[str, Callable[[Path], TableFile]] = {
     'text': open_text,
     'parquet': _parquet,
@@ -214,6 +226,7 @@ _READERS: Mapping[str, Callable[[Path], TableFile]] = {
     'tdms': _tdms,
     'mf4': _mf4,
     'workbook': _workbook,
+    'json': _json,
 }
 """Readers, by the format that `TABLES` gives for a name."""
 

@@ -167,20 +167,20 @@ class _Samples:
         if not all(rows.any() for _, rows in groups):
             names = ', '.join(column.name for column in self.found.values())
             raise ValueError(f'no usable rows: none has numbers in all of {names}')
-        if clock and not clock.unit:
+        if clock:
             role = 'rotor' if 'rotor' in self.found else 'angle'
             turned = data[role] * (self.found[role].unit != 'counts')  # whose speed is unknown
-            clock = with_unit(clock, raw[clocks[role]], turned, role)
-        elif clock and not sources.time and 'rotor' in self.found:
-            check_steps(clock, raw[clock.name])
+            if not clock.unit:
+                clock = with_unit(clock, raw[clocks[role]], turned, role)
+            elif role == 'rotor' and not sources.time:
+                check_steps(clock, raw[clocks[role]], turned)
         self._clock, self.timed = clock, clock is not None
         self.series: dict[str, _Series] = {}
         for roles, kept in groups:
             name, values = clocks[roles[0]], {role: data[role] for role in roles}
             one = self._sampled(values, kept, name, raw.get(name), alone=len(groups) == 1)
             self.series |= dict.fromkeys(roles, one)
-        angles = (role for role in self.found if role != 'torque')
-        self._shown = {role: find_step(self.series[role].values[role]) for role in angles}
+        self._shown = {r: find_step(self.series[r].values[r]) for r in self.found if r != 'torque'}
         role = 'output' if 'output' in self.found else 'angle'
         self.used = len(self.series[role].stamp)
         named = ' and '.join(dict.fromkeys(clocks.values()))

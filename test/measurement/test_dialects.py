@@ -2,6 +2,7 @@
 """Tables as benches write them: each is read as without its fault, or refused."""
 
 import argparse
+import json
 import math
 import re
 import shlex
@@ -165,6 +166,8 @@ ENCODERS = {
     'cp1252': plain('Prüfling 3\ntime,rotor [°],output [°]', angle=DEG, code='cp1252'),
     'CR LF': lambda t, r, o: written([t, r, o], NAMES).replace('\n', '\r\n'),
     'the newest row first': lambda t, r, o: written([t[::-1], r[::-1], o[::-1]], NAMES),
+    'rows by the angle of the output': lambda t, r, o: written(
+        [column[np.argsort(o)] for column in (t, r, o)], NAMES),
     'the newest date first': lambda t, r, o: written(
         [t[::-1], r[::-1], o[::-1]], 'Zeitstempel,rotor,output', moment()),
     'a colon before milliseconds': plain(time=lambda v: ':'.join(moment(' ')(v).rsplit('.', 1))),
@@ -370,10 +373,11 @@ ENCODERS = {
         + ''.join(f',,{table},{moment()(at)}Z,{value:.5f},{name}\n'
         for table, (name, values) in enumerate((('rotor', r), ('output', o)))
         for at, value in zip(t, values, strict=True)),
-    'durations of MATLAB': plain(time='{:.2f} sec'),
     'hours of MATLAB': plain(time='{:.7f} hr', unit=1.0 / 3600.0),
     'durations of polars': plain(time='PT{:.2f}S'),
     'durations of Python': plain(time=lambda v: f'"1 day, {timedelta(seconds=v)}"'),
+    'dates of matplotlib': lambda t, r, o: written(
+        [20783.4 + t / 86400.0, r, o], NAMES, ('{:.10f}', '{:.5f}', '{:.5f}')),
     'serial dates of MATLAB': lambda t, r, o: written([740312.4 + t / 86400.0, r, o], NAMES,
                                                       ('{:.10f}', '{:.5f}', '{:.5f}')),
     'a trend of Rockwell': lambda t, r, o: written(
@@ -606,8 +610,17 @@ def test_every_dialect_is_read(tmp_path, gear, reference, dialect):
     kind, dialects = ('ramps', RAMPS) if dialect in RAMPS else ('encoders', ENCODERS)
     path = saved(tmp_path, dialects[dialect](*reference(kind)))
     recording = read(path, gear, Sources(rotor_counts=4096 if 'counts' in dialect else None))
-    if kind == 'ramps' or dialect in READ_IN_TURN:
+    if dialect in READ_IN_TURN:
         assert_measured(recording, gear)
+    if kind == 'ramps':
+        _, *true = reference(kind)
+        for found, values in zip(
+            (recording.locked.angle, recording.locked.torque), true, strict=True
+        ):
+            np.testing.assert_allclose(np.ptp(found), np.ptp(values), rtol=1e-3)
+            shares = (0.2, 0.8)
+            turned = np.quantile(found - found[0], shares)
+            np.testing.assert_allclose(turned, np.quantile(values - values[0], shares), rtol=1e-2)
     if kind == 'encoders':
         both, (_, *angles) = recording.encoders, reference(kind)
         for found, true in zip((both.rotor.turned, both.measured), angles, strict=True):
@@ -1121,6 +1134,23 @@ def text(path, time, rotor, output):
     return Sources()
 
 
+def json_lines(path, time, rotor, output):
+    """As `mcap cat --json` writes them."""
+    messages = (
+        {'log_time': t, 'data': {'name': ['m1', 'out'], 'position': pair, 'effort': []}}
+        for t, *pair in zip(time, rotor, output, strict=True)
+    )
+    path.write_text('\n'.join(map(json.dumps, messages)) + '\n\n')
+    return Sources()
+
+
+def json_array(path, *columns):
+    names = 'time', 'rotor', 'output'
+    rows = zip(*columns, strict=True)
+    path.write_text(json.dumps([dict(zip(names, row, strict=True)) for row in rows]))
+    return Sources()
+
+
 def workbook(path, time, rotor, output):
     pytest.importorskip('openpyxl')
     pd = pytest.importorskip('pandas')
@@ -1182,6 +1212,7 @@ FORMATS |= {'timeseries.mat': timeseries, 'groups.mat': asammdf_export}
 FORMATS |= {'fields.mat': fields_with_times, 'structs.parquet': structs}
 FORMATS |= {'long.parquet': long_table, 'joints.parquet': joint_states}
 FORMATS |= {'unnamed.mat': scope_without_labels, 'dspace.mat': control_desk}
+FORMATS |= {'jsonl': json_lines, 'json': json_array}
 FORMATS |= {'xlsx': workbook, **dict.fromkeys(('csv.gz', 'tsv.zst', 'TXT.zip', 'log'), text)}
 
 
@@ -1397,6 +1428,15 @@ def test_temperatures_are_no_times(tmp_path, gear, reference):
         assert recording.encoders.timed == ('time' in others)
     with pytest.raises(RecordingError, match=r'steps of 0\.04 do not tell their unit'):
         read(saved(tmp_path, written([40 + t, r, o], 'temps,rotor,output')), gear)
+
+
+def test_whole_seconds_are_believed_where_the_rotor_would_be_too_fast_in_ms(
+    tmp_path, gear, reference
+):
+    t, r, o = reference('encoders')
+    path = saved(tmp_path, written([50 * t, 10 * r, 10 * o], 'time_s,rotor,output', '{:.0f}'))
+    recording = read_table(path, Sources(unit='rad'), gear.gear.gear_ratio)
+    assert recording.encoders.duration == pytest.approx(50 * 52.76, rel=1e-3)
 
 
 def test_durations_are_no_times(tmp_path, gear, reference):
