@@ -72,9 +72,9 @@ class GearRatio(Fraction):
             return cls(Fraction(text))
         except ZeroDivisionError as error:
             cause = 'the denominator of a gear ratio must not be 0'
-            raise ValueError(f'{cause}: {text!r}') from error
+            raise ValueError(f'{cause}, not {text!r}') from error
         except ValueError as error:
-            raise ValueError(f'{error}: {text!r}') from error
+            raise ValueError(f'{error}, not {text!r}') from error
 
     @property
     def gear_ratio(self) -> Self:
