@@ -263,8 +263,8 @@ class GearStatePublisher(PublishingNode):
             actuator.state.monitor.last_input = time.monotonic()
         of, detail = f' of {name}' if name else '', rejection.detail
         if str(rejection) == Rejection.JOINT_MISSING:
-            side = 'rotor' if topic == topics.ROTOR_STATE else 'output_encoder'
-            detail = f'{detail}; set {side}_joint'
+            of_rotor = topic == topics.ROTOR_STATE
+            detail += f'; set {"rotor_joint" if of_rotor else "output_encoder_joint"}'
         # Not one for each actuator: all of an arm can lack the same.
         subject = f'{topic} rejected: {rejection}'
         self._warn(f'{topic}{of} rejected: {rejection}{detail and f": {detail}"}', subject)
