@@ -34,6 +34,7 @@ from gear_kinematics.wire.batches import JointStates, decode_joint_states
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.topics import OUTPUT_ENCODER
 
+_MOST_REPEATED = 0.75  # share of the stamps; a recording that was merged with itself has half
 _MOST_STATES = 1_800_000  # half an hour at 1 kHz; a state takes up to 200 bytes when measured
 
 
@@ -160,6 +161,11 @@ class States:
             if self._lacking and not len(measured[0]):
                 raise BagError(f'{path}: {encoder}: {self._lacking}')
             stamps, angles = _in_order(measured, encoder, remarks)
+            for topic, times in ((rotor, stamp), (encoder, stamps)):
+                repeated = int(np.count_nonzero(np.diff(times) == 0))
+                if repeated > _MOST_REPEATED * len(times):
+                    found = Observation.STAMPS_REPEAT(count=repeated, total=len(times))
+                    raise RecordingError(f'{path}: {topic}: {found}: record their nanoseconds')
             encoders = _compared(motion, stamps, angles, parameters, sources)
             if not len(encoders.measured):
                 what = 'no output angle was measured between two rotor states'

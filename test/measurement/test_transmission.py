@@ -86,11 +86,21 @@ def test_output_that_does_not_follow_is_refused(tmp_path, config, ways):
         measure(read(path, config), config)
 
 
-def test_recording_without_matching_stamps_is_refused(tmp_path, config):
-    rotor = Samples([START, START + MS], [0.0, 0.1])
-    encoder = Samples([START - 5 * MS, START - 4 * MS], [0.0, 0.0])
-    path = write_recording(tmp_path / 'apart', rotor, encoder)
-    with pytest.raises(RecordingError, match='no output angle was measured between two rotor'):
+@pytest.mark.parametrize(
+    ('rotor', 'encoder', 'cause'),
+    [
+        ([0, 1], [-5, -4], 'no output angle was measured between two rotor'),
+        ([0] * 9 + [1000], [1, 2], '/rotor_state: 8 of 10 stamps repeat the one before'),
+        ([0, 1], [0] * 9 + [1], '/output_encoder: 8 of 10 stamps repeat the one before'),
+    ],
+)
+def test_recording_without_usable_stamps_is_refused(tmp_path, config, rotor, encoder, cause):
+    states = (
+        Samples([START + ms * MS for ms in stamps], [0.1 * k for k in range(len(stamps))])
+        for stamps in (rotor, encoder)
+    )
+    path = write_recording(tmp_path / 'stamps', *states)
+    with pytest.raises(RecordingError, match=cause):
         read(path, config)
 
 
