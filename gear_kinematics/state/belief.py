@@ -2,7 +2,6 @@
 """Verdicts on the readings of an encoder."""
 
 from enum import Enum
-from typing import NamedTuple
 
 
 class Belief(Enum):
@@ -14,10 +13,3 @@ class Belief(Enum):
 
 
 BELIEVED = Belief.BELIEVED  # an attribute of an enum is slow for what each message takes
-
-
-class Jump(NamedTuple):
-    """A step of the readings that the rotor did not make."""
-
-    stamp: int  # ns, of the first reading behind it
-    size: float  # rad, as far as it was not expected; of a single-turn encoder, within its range

@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.state.belief import BELIEVED, Belief, Jump
+from gear_kinematics.state.belief import BELIEVED, Belief
 from gear_kinematics.state.motion import (
     COARSEST,
     EQUAL,
@@ -56,7 +56,8 @@ class Plausibility:
         The limits are in rad/s and rad/s².
         """
         self.jumps = 0
-        self.jump: Jump | None = None  # the latest
+        self.jump: Fact | None = None
+        """The latest, as far as it was not expected; of an encoder that repeats, in its range."""
         self.restrict(max_speed, max_acceleration, period)
         self.reset()
 
@@ -84,9 +85,7 @@ class Plausibility:
     @property
     def jumped(self) -> Fact | None:
         """The last jump of the encoder, or that its positions wrap; None if there was none."""
-        jump = self.jump
-        last = Condition.JUMPED(angle=jump.size, time=jump.stamp / 1e9) if jump else None
-        return self.wraps.fact or last
+        return self.wraps.fact or self.jump
 
     @property
     def beyond_limits(self) -> Fact | None:
@@ -120,7 +119,7 @@ class Plausibility:
         if self.period or not (stamp < _UPTIME < last and abs(moved) > near):
             return BELIEVED
         self.jumps += 1
-        self.jump = Jump(stamp, moved)
+        self.jump = Condition.JUMPED(angle=moved, time=stamp / 1e9)
         return Belief.JUMP
 
     def judge(self, position: float, stamp: int) -> Belief:
@@ -315,7 +314,8 @@ class Plausibility:
                     self.limits = self.limits._replace(acceleration=_MARGIN * seen)
         else:
             self.jumps += 1
-            self.jump = Jump(times[0], self._wrapped(first - before * elapsed))
+            size = self._wrapped(first - before * elapsed)
+            self.jump = Condition.JUMPED(angle=size, time=times[0] / 1e9)
             if not self.period:
                 self.wraps.note(first, positions[0], elapsed, (before, speed), jump=True)
         last, noise = self._last, self.noise

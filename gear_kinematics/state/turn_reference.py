@@ -190,10 +190,6 @@ class TurnReference:
         turns apart agrees, as one in fast motion may agree with anything."""
 
     @property
-    def _least_budget(self) -> float:
-        return self.refuted.budget if self.refuted else math.inf
-
-    @property
     def checked(self) -> bool:
         """Whether the latest block could tell whether the count is right."""
         return self.decision is not None and self.decision.budget < self.decision.margin
@@ -210,16 +206,17 @@ class TurnReference:
         for sample in samples:
             if errors := self._block.add(sample):
                 unseen = self.rotor.turns.unseen_travel
+                least = self.refuted.budget if self.refuted else math.inf
                 self.decision = decision = decide(errors, self.rotor.parameters, unseen)
                 if decision.disagreement or decision.budget < decision.margin:
                     self.disagreement = decision.disagreement
                 if decision.unambiguous:
-                    alike = decision.budget <= _ALIKE * self._least_budget
+                    alike = decision.budget <= _ALIKE * least
                     if not referenced and alike and not doubt():
                         self._refer(decision)
                         self.restart()
                         return ()
-                elif decision.refuted and decision.budget < self._least_budget:
+                elif decision.refuted and decision.budget < least:
                     self.refuted = decision
         return samples if referenced else ()
 

@@ -629,7 +629,7 @@ def test_a_wrong_reading_before_a_jump_does_not_make_it_a_motion(size):
     angles[31:] += size
     rotor, _ = fed(MULTI, messages(times, angles))
     assert rotor.plausibility.jump
-    assert rotor.plausibility.jump.size == pytest.approx(size, abs=0.3)
+    assert rotor.plausibility.jump.values['angle'] == pytest.approx(size, abs=0.3)
     assert not rotor.referenced
     assert rotor.plausibility.limits[:2] == LIMITS
 
@@ -640,7 +640,7 @@ def test_the_first_steps_after_a_standstill_hide_no_jump():
     angles[10:20] += 1e-4  # the resolution is known then
     angles[402:] -= 1.6
     rotor, _ = fed(MULTI, messages(times, angles))
-    assert rotor.plausibility.jump.size == pytest.approx(-1.6, abs=0.01)
+    assert rotor.plausibility.jump.values['angle'] == pytest.approx(-1.6, abs=0.01)
 
 
 @pytest.mark.parametrize('speed', [900.0, -5000.0])
