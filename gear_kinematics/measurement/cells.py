@@ -24,10 +24,7 @@ _NEGATIVE = re.compile(r'^\((\d[\d.,]*)\)$')
 """Negative numbers in brackets, as in accounts, which Excel writes."""
 _IDS = re.compile(r'((joint|motor|actuator|servo|axis|node|can|id|name|index) ?)+')
 """Names of the column of a table with a row for each joint."""
-_TOPICS = (
-    *('topic', 'message path', 'series', 'signal', 'channel', 'label', 'field', 'name'),
-    *('key', 'entry', 'variable', 'tag'),
-)
+_TOPICS = 'topic|message path|series|signal|channel|label|field|name|key|entry|variable|tag'
 """Names, the likeliest first, of the column of a table with a row for each value."""
 _NAMES = 100  # words in a column that are compared with names
 _OFTEN = 0.9  # share of the rows that are of another joint than the one before
@@ -211,7 +208,7 @@ def key_of(names: Sequence[str], sample: Any) -> tuple[str, str]:
     columns = [sample[place].dropna().tolist() for place in sample]
     roles, lower = {meaning(name).role for name in names}, [n.lower().strip('_') for n in names]
     if 'value' in lower and not {'rotor', 'output'} <= roles:
-        for place in (lower.index(name) for name in _TOPICS if name in lower):
+        for place in (lower.index(name) for name in _TOPICS.split('|') if name in lower):
             cells = columns[place]
             if len({*cells}) < len(cells) or not all(map(str.isdecimal, cells)):  # no row number
                 return names[place], names[lower.index('value')]

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.measurement.columns import Column, ColumnsError
+from gear_kinematics.measurement.columns import DATES, Column, ColumnsError
 from gear_kinematics.measurement.names import TIME_UNITS, meaning
 from gear_kinematics.measurement.recording import Array
 from gear_kinematics.measurement.sentences import Observation, Observed
@@ -63,7 +63,7 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
     dated = {
         unit
         for unit in within
-        for epoch in _EPOCHS[unit]
+        for epoch in _EPOCHS[unit][:2]
         if _DATES[0] < (times[0] - epoch) * TIME_UNITS[unit] < _DATES[1]
     }
     likely = [unit for unit in within if _EPOCHS[unit] == (0,)]
@@ -72,7 +72,7 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
     likely = [unit for unit in within if unit in dated] or likely
     numbered = not dated and np.all(steps == 1.0)  # perhaps the numbers of the rows
     if (role == 'rotor' and (len(likely) != 1 or numbered)) or (
-        _is_temps(clock.name, clock.unit) and times[0] > _LATE_ROWS * step
+        clock.name.lower() == 'temps' and times[0] > _LATE_ROWS * step
     ):
         cause = f'the times in {clock.name}: steps of {step:.6g} do not tell their unit'
         raise ColumnsError(cause, 'it', time=f'{clock.name} [ms]')
@@ -81,10 +81,7 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
 
 
 def check_steps(clock: Column, times: Array, angle: Array) -> None:
-    """Raise ColumnsError if times in s or ms are whole numbers apart by more than a second.
-
-    With times in a finer unit, the rotor's angle, rad, would not change too fast.
-    """
+    """Raise ColumnsError if whole s or ms may be in a finer unit, by the rotor's angle, rad."""
     finer = {'s': 'ms', 'ms': 'us'}.get(clock.unit)
     known = np.isfinite(times) & np.isfinite(angle)
     if finer and times.dtype.kind != 'M' and np.count_nonzero(known) > 1:  # no dates
@@ -137,18 +134,14 @@ def are_no_times(name: str, unit: str, times: Array) -> bool:
     A date may be that of the day alone.
     """
     steps, says = np.diff(times.astype(float)), meaning(name)
-    day = not says.role and times.dtype.kind == 'M'
-    if day and not np.any(times.astype('M8[ns]').astype(np.int64) % _DAY):
+    date = says.words in DATES
+    if date and times.dtype.kind == 'M' and not np.any(times.astype('M8[ns]').astype('i8') % _DAY):
         return True
-    if _is_temps(name, unit) or (says.unsure and 't' in says.words):
+    if (name.lower() == 'temps' and not unit) or (says.unsure and 't' in says.words):
         return not np.all(steps > 0.0)
     rise, least = np.sum(steps), _RISING * np.sum(steps, where=steps > 0.0)
-    unsure = says.unsure or not says.role
+    unsure = says.unsure or date
     return bool((unsure and rise <= least) or (name == 'T' and rise < least))
-
-
-def _is_temps(name: str, unit: str) -> bool:
-    return name.lower() == 'temps' and not unit
 
 
 def stamps(
@@ -264,9 +257,7 @@ def _order(stamp: Array) -> tuple[Array, int]:
 
 def _longest(values: list[int]) -> NDArray[np.bool_]:
     """Find the longest non-decreasing selection of values."""
-    ends: list[int] = []
-    places: list[int] = []
-    before = []
+    ends, places, before = list[int](), list[int](), list[int]()
     for k, value in enumerate(values):
         length = bisect_right(ends, value)
         ends[length : length + 1], places[length : length + 1] = [value], [k]

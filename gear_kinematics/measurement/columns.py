@@ -34,7 +34,7 @@ _REVOLUTIONS = re.compile(r'(?i)servo_stats.*position|pos_estimate|pos_rel|pos_a
 _NUMBERED = re.compile(r'(\W*\d+|_[a-z]|(?<=^t)[mol])(?=( ?[\[(].*)?$)')
 """Ends of time.1, as pandas repeats a name, of time_a, and of tm, before any unit."""
 _MOTEUS = {'position', 'torque', 'q_current'}
-_DATES = ('date',), ('datum',)
+DATES = ('date',), ('datum',)
 """Words of columns that have the times if no other has, but perhaps the day alone."""
 
 
@@ -124,7 +124,7 @@ def find_columns(
             named[role] = name
     others = [name for name in header if name != named.get('output_time')]
     filled = [name for name in others if first.get(name, name) or meaning(name).role != 'time']
-    dates = (name for name in others if meaning(name).words in _DATES)
+    dates = (name for name in others if meaning(name).words in DATES)
     found, side = dict(zip(['time'], dates, strict=False)), 'angle'
     found |= likeliest(others) | likeliest(filled) | named
     if {'rotor', 'output'} <= found.keys() and 'angle' not in named:

@@ -26,7 +26,7 @@ _VOCABULARY = {
     'filling': 'header receive log dynamic measured meas actual act filtered raw field data value '
     'values feedback state states axis angular rotary present sensor abs side in ist host pi ros '
     'system unix epoch tv channel ch fb fbk ave estimate scalars signals date datum utc wall '
-    'application main plc prg gvl db payload msg message',
+    'application main plc prg gvl payload msg message',
 }
 """Words in names by kind, the likeliest first. The input is the rotor if a quantity is said, too.
 The filling may accompany all others; any other word shows a command, a speed or the like."""
@@ -40,8 +40,6 @@ FOREIGN = {*_SHARES.split(), *_OTHERS.split()}
 _CERTAIN = {'time', 'stamp', 'timestamp', 'timestamps', 'zeit', 'zeitstempel'}
 """Words for times that mean them beside unknown words, too, if the numbers rise."""
 _SPEEDS = {'rpm', 'rps', 'dps', 'cps'}
-_IN_BRACKETS = {'rotation': 'rev', 'min': 'minutes', 'h': 'hours'}
-"""Units that mean something else as words of a name, as in position_min."""
 _OF_ONE = re.compile(r't(_[a-z]+|[mol])( ?[\[(].*)?|.*[a-z][./]t')
 """Names that may be the times of one side, such as t_m, but not T_m, a torque or temperature."""
 _NO_UNIT = re.compile(r'-|none|n/a|1|:|utc.*|.*h:m+.*')
@@ -98,6 +96,9 @@ _UNITS = {
     for words in sizes
     for word in words.split()
 }
+
+_IN_BRACKETS = _UNITS | {'rotation': 'rev', 'min': 'minutes', 'h': 'hours'}
+"""Also units that mean something else as words of a name, as in position_min."""
 
 _DOTS = '-.*·⋅∙•×'  # between newton and metre
 _MEGA = rf'MN(?=[{_DOTS}_ ]?m)', 'meganewton'  # so that MN·m is not read as mN·m
@@ -178,15 +179,14 @@ def _role(
         return 'time', (len(_KINDS) + 1 if coarse or words else 9,)
     if times := [word for word in keys if _KINDS.get(word) == 'time']:
         foreign = unit not in {'', *TIME_UNITS} or not {*_SHARES.split()}.isdisjoint(words)
-        if kinds == {'time', None} and _CERTAIN & {*times} and not foreign:  # such as loop_time
+        certain = not (foreign or _CERTAIN.isdisjoint(times))
+        sided = kinds in ({'time', 'rotor'}, {'time', 'output'})  # such as motor_time
+        if (sided and (certain or unit in TIME_UNITS)) or (certain and kinds == {'time', None}):
             return 'time', (len(_KINDS), len(words))
         # The stamp of a message is when it was sampled; a log has when it was received.
         first = 0 if keys == ['stamp'] and 'header' in words and not unit else len(words)
         if kinds == {'time'} and (keys != ['x'] or 'value' in words):
             return 'time', (first, _RANKS[keys[0]])
-        sure = unit in TIME_UNITS or (_CERTAIN & {*times} and not unit)
-        if sure and kinds in ({'time', 'rotor'}, {'time', 'output'}):  # such as motor_time
-            return 'time', (len(_KINDS), len(words))
         return none
     if unit in TORQUE_UNITS and 'angle' not in kinds:
         kinds.add('torque')  # as of load_Nm
@@ -211,8 +211,7 @@ def usual_unit(text: str) -> str:
     plain = re.sub(rf'n(ewton)?[{_DOTS}_]?([cm]?)m(et(er|re)s?)?(?!\w)', r'n\2m', plain)
     outer, _, inner = plain.partition('(')  # as in "° (Degree)" and "(deg)"
     plain = (outer or inner).strip('()[].')
-    plain = _IN_BRACKETS.get(plain, plain)
-    return '' if _NO_UNIT.fullmatch(plain) else _UNITS.get(plain, plain)
+    return '' if _NO_UNIT.fullmatch(plain) else _IN_BRACKETS.get(plain, plain)
 
 
 def known_units(cells: Sequence[str], others: Collection[str] = (), fewest: int = 2) -> list[str]:

@@ -229,11 +229,9 @@ class _Samples:
         else:
             own = {k: v for k, v in own.items() if not are_no_times(v, '', raw[v][filled[v]])}
         for role, times in own.items():
-            alike = [
-                np.array_equal(filled[one], filled[self.found[role].name])
-                for one in (times, usual)
-            ]
-            if times != usual and (named or alike == [True, False]):
+            own_rows, rows, usual_rows = (filled[k] for k in (times, self.found[role].name, usual))
+            alone = np.array_equal(own_rows, rows) and not np.array_equal(usual_rows, rows)
+            if times != usual and (named or alone):
                 found[role] = times
             elif len({*own.values()}) > 1 and are_apart(raw[usual], raw[times]):
                 one, other = (own.get(side, usual) for side in ('rotor', 'output'))
@@ -269,7 +267,9 @@ class _Samples:
         for role, angles in values.items():
             if 'counts' in self.found[role].unit:
                 values[role] = signed(angles, self.found[role].scale)
-        gaps = alone * np.cumsum(np.abs(np.diff(chosen, prepend=chosen[0])) > _GAP)
+        steps = np.diff(chosen, prepend=chosen[0])
+        in_turn = alone and (np.all(steps >= 0) or np.all(steps <= 0))  # otherwise sorted by time
+        gaps = in_turn * np.cumsum(np.abs(steps) > _GAP)
         return _Series(stamp, values, gaps)
 
     def unwrapped(self, role: str, period: float = 0.0) -> Array:
@@ -342,9 +342,8 @@ class _Samples:
         ):
             turned = self.unwrapped('rotor', period) if self._sources.as_recorded else rotor
             if differ_as_degrees(both.at_measured(turned), both.measured):
-                cause = (
-                    f'{of_output.name} differs from {of_rotor.name} by more than gears do in rad'
-                )
+                names = f'{of_output.name} differs from {of_rotor.name}'
+                cause = f'{names} by more than gears do in rad, as in degrees'
                 lone = {'output': f'{of_output.name} [deg]'} if of_rotor.unit else {'unit': 'deg'}
-                raise ColumnsError(f'{cause}, as in degrees', 'the unit', **lone)
+                raise ColumnsError(cause, 'the unit', **lone)
         return both

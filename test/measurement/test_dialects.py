@@ -376,12 +376,10 @@ ENCODERS = {
     'hours of MATLAB': plain(time='{:.7f} hr', unit=1.0 / 3600.0),
     'durations of polars': plain(time='PT{:.2f}S'),
     'durations of Python': plain(time=lambda v: f'"1 day, {timedelta(seconds=v)}"'),
-    'dates of matplotlib': lambda t, r, o: written(
-        [20783.4 + t / 86400.0, r, o], NAMES, ('{:.10f}', '{:.5f}', '{:.5f}')),
     'serial dates of MATLAB': lambda t, r, o: written([740312.4 + t / 86400.0, r, o], NAMES,
                                                       ('{:.10f}', '{:.5f}', '{:.5f}')),
     'a trend of Rockwell': lambda t, r, o: written(
-        [t, r, o], 'Trend,3\nHeader:,Date,Time,DB1.Motor [rad],Payload.Output [rad]',
+        [t, r, o], 'Trend,3\nHeader:,Date,Time,Msg.Motor [rad],Payload.Output [rad]',
         (lambda v: f'Data,11/26/2026,{moment(" ", decimals=";")(v)[11:-3]}', '{:.5f}', '{:.5f}')),
     'a date in place of a time': plain('Date,rotor,output', time=moment(' ')),
     'a whole day beside times of each side': lambda t, r, o: written(
@@ -625,6 +623,7 @@ def test_every_dialect_is_read(tmp_path, gear, reference, dialect):
         both, (_, *angles) = recording.encoders, reference(kind)
         for found, true in zip((both.rotor.turned, both.measured), angles, strict=True):
             assert np.ptp(found) == pytest.approx(np.ptp(true), rel=1e-3)
+        assert np.ptp(both.rotor.segment) == 0
         if dialect not in READ_IN_TURN:
             lost = lost_on_reversals(both)
             assert lost == pytest.approx(18.0 * ARCMIN, abs=0.6 * ARCMIN)
