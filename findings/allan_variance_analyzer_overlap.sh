@@ -1,16 +1,16 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# allan-variance-analyzer 1.0.4: a gyroscope with a noise of 10 mrad/s in 1 s is found with 1 mrad/s, and with 0.1 in
-# 10 s instead of 3.2.
+# allan-variance-analyzer 1.0.4: with its default overlap, a gyroscope's noise of 10 mrad/s in 1 s is found as 1 mrad/s,
+# and one of 3.2 mrad/s in 10 s as 0.1 mrad/s.
 #
 # The Allan deviation of white noise falls with the square root of the time: samples with 0.1 rad/s at 100 Hz have
-# 0.1 / sqrt(100) = 10 mrad/s in 1 s, from the differences of averages that follow each other. What happens: the overlap
-# is turned into a number of samples, but compute_bin_averages() takes it as a fraction, so that each average begins one
-# sample after the one before, and the differences are those of two samples alone, divided by their number. So the
-# deviation falls with the time itself, the noise density at 1 s is a tenth of the right one, and an imu.yaml made of it
-# trusts the gyroscope a hundred times too much in variance. With overlap=0 the averages follow each other, and the
-# deviations are right.
-# For us: call compute_allan_variances() with overlap=0.
+# 0.1 / sqrt(100) = 10 mrad/s in 1 s, from the differences of averages that follow each other. What happens in
+# compute_allan_variances(), whose overlap is 0.5 by default: the overlap is turned into a number of samples, but
+# compute_bin_averages() takes it as a fraction, so that each average begins one sample after the one before, and the
+# differences are those of two samples alone, divided by their number. So the deviation falls with the time itself, and
+# the noise density at 1 s is a tenth of the right one. Nothing warns. The class AllanVarianceAnalyzer has an overlap of
+# 0 by default, with which the averages follow each other and the deviations are right.
+# For us: give overlap=0 wherever the library takes an overlap.
 #
 # Exit code 0: still so. Installs the version into a temporary folder, and loads its statistics without its plots.
 set -eu
