@@ -120,7 +120,7 @@ class States:
     def add(self, rotor: TopicMessages, encoder: TopicMessages | None) -> None:
         """Add the next messages of both topics."""
         data, later = self._clock.restored(rotor)
-        new = self._gear.samples(data, rotor.received)
+        new = self._gear.input.accept_batch(data, rotor.received)
         segment = new.segment + later[new.row]
         self._inputs.add((new.stamp, new.turns, new.angle, new.effort, segment))
         if encoder:

@@ -117,10 +117,8 @@ class GearState:
         self.sample = sample = rotor.accept(data, now)
         self.segment = segment = rotor.segment
         self.referenced = referenced = rotor.turns.referenced
-        if referenced:
-            self.withheld = False
-        else:
-            self.withheld = self._withholding
+        self.withheld = self._withholding and not referenced
+        if not referenced:
             self.monitor.unreferenced += 1
             self.monitor.withheld += self.withheld
         if self.corrector:  # also without a listener, to follow the motion
@@ -177,10 +175,6 @@ class GearState:
             reports['preload'] = self.preload_monitor.report()
         return reports
 
-    def samples(self, messages: Sequence[bytes], received: Sequence[int]) -> RotorSamples:
-        """Process many messages of the rotor for their samples; see `RotorInput.accept_batch`."""
-        return self.input.accept_batch(messages, received)
-
     def batch(
         self, messages: Sequence[tuple[str, int, bytes]], rotor: str, encoder: str = ''
     ) -> RotorAnswers:
@@ -210,7 +204,7 @@ class GearState:
                 correction = Correction(*columns)
             return RotorAnswers(samples, correction, errors)
         places = [row for row, (topic, *_) in enumerate(messages) if topic == rotor]
-        samples = self.samples(
+        samples = self.input.accept_batch(
             [messages[row][2] for row in places], [messages[row][1] for row in places]
         )
         samples = samples._replace(row=np.array(places, np.int64)[samples.row])

@@ -222,7 +222,7 @@ class Validator:
         messages = batch[self.given.rotor]
         field = self._state.input.effort_field
         was_real = field.real
-        self.samples = samples = self._state.samples(messages.data, messages.received)
+        self.samples = samples = self._state.input.accept_batch(messages.data, messages.received)
         self._inputs.update(samples.received, samples.stamp, samples.rejected)
         self._health.update(samples)
         columns = {name: getattr(samples, name) for name, _ in SAMPLES[4:]}

@@ -201,7 +201,7 @@ def read_loads(task: LoadTask, progress: ReportProgress | None = None) -> Record
         gear, loads = GearState(parameters), LoadEstimator(parameters)
         try:
             for messages in batches:
-                samples = gear.samples(messages.data, messages.received)
+                samples = gear.input.accept_batch(messages.data, messages.received)
                 found = loads.follow_batch(samples)
                 rows = [TURN * samples.turns + samples.angle, found.torque]
                 for _, mesh, cam, _, _, couple, _ in found.branches:
