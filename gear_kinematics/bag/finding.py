@@ -31,7 +31,7 @@ TABLES = {
     '.tdms': 'tdms',
     **dict.fromkeys(('.mf4', '.mdf'), 'mf4'),
     **dict.fromkeys(('.xlsx', '.xlsm'), 'workbook'),
-    **dict.fromkeys(('.json', '.jsonl'), 'json'),
+    '.jsonl': 'json',
 }
 """Formats of tables by the ends of their names."""
 

@@ -209,14 +209,12 @@ def _workbook(path: Path) -> TableFile:
 
 
 def _json(path: Path) -> TableFile:
-    """Read objects, one in each line or all in an array, whose fields and arrays are columns."""
+    """Read an object in each line, whose fields and arrays are columns."""
     import pandas as pd  # noqa: PLC0415, of an extra
 
-    text = path.read_text('utf-8-sig').strip()
-    rows = json.loads(
-        text if text[:1] == '[' else f'[{",".join(filter(None, text.splitlines()))}]'
-    )
-    return open_text(path, pd.json_normalize(rows).to_csv(index=False).encode())
+    lines = path.read_text('utf-8-sig').splitlines()
+    rows = pd.json_normalize([*map(json.loads, filter(None, lines))])
+    return open_text(path, rows.to_csv(index=False).encode())
 
 
 _READERS: Mapping[str, Callable[[Path], TableFile]] = {

@@ -1143,13 +1143,6 @@ def json_lines(path, time, rotor, output):
     return Sources()
 
 
-def json_array(path, *columns):
-    names = 'time', 'rotor', 'output'
-    rows = zip(*columns, strict=True)
-    path.write_text(json.dumps([dict(zip(names, row, strict=True)) for row in rows]))
-    return Sources()
-
-
 def workbook(path, time, rotor, output):
     pytest.importorskip('openpyxl')
     pd = pytest.importorskip('pandas')
@@ -1211,8 +1204,11 @@ FORMATS |= {'timeseries.mat': timeseries, 'groups.mat': asammdf_export}
 FORMATS |= {'fields.mat': fields_with_times, 'structs.parquet': structs}
 FORMATS |= {'long.parquet': long_table, 'joints.parquet': joint_states}
 FORMATS |= {'unnamed.mat': scope_without_labels, 'dspace.mat': control_desk}
-FORMATS |= {'jsonl': json_lines, 'json': json_array}
-FORMATS |= {'xlsx': workbook, **dict.fromkeys(('csv.gz', 'tsv.zst', 'TXT.zip', 'log'), text)}
+FORMATS |= {
+    'jsonl': json_lines,
+    'xlsx': workbook,
+    **dict.fromkeys(('csv.gz', 'tsv.zst', 'TXT.zip', 'log'), text),
+}
 
 
 @pytest.mark.parametrize('name', FORMATS)
