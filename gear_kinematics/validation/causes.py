@@ -16,7 +16,7 @@ class FindingCause(Enum):
     """The cause of a finding in a recording."""
 
     # The messages of an output topic, and their fields
-    NOTHING_COMPARED = 'no message could be compared: none has the stamp of an input'
+    NOTHING_COMPARED = 'no message could be compared'
     MISSING = '{messages} missing' + _FIRST
     EXTRA = '{messages} too many' + _FIRST
     OUT_OF_ORDER = '{messages} out of order' + _FIRST
