@@ -156,7 +156,7 @@ class Mcap(Storage):
         stream, piece, size = self._stream, list[Message](), 0
         self._offset = stream.seek(start)
         try:
-            while header := stream.read(_RECORD.size):  # an unfinished file has no footer
+            while header := stream.read(_RECORD.size):
                 if len(header) < _RECORD.size:
                     raise ValueError(_CUT_OFF)
                 opcode, length = _RECORD.unpack(header)
@@ -178,6 +178,8 @@ class Mcap(Storage):
                     piece, size = [], 0
                 self._offset += _RECORD.size + length
                 stream.seek(self._offset)
+            else:
+                self.unclosed = True  # there is no record of the end of the data
         except Exception:
             yield piece
             raise

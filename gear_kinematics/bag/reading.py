@@ -81,6 +81,7 @@ class Bag:
     topics: Mapping[str, str]  # types by name, such as sensor_msgs/msg/JointState
     not_cdr: frozenset[str]  # topics whose messages are of another encoding
     message_count: int | None  # number of messages on all topics; None without metadata.yaml
+    unclosed = False  # whether a file that was read was never closed, as by a killed recorder
     joints: dict[tuple[str, ...], dict[str, list[str]]]  # what `roles.joints_on` has returned
 
     def __init__(self, path: Path | str) -> None:
@@ -208,6 +209,7 @@ class Bag:
                     storage.read += len(piece)
                     yield piece
             read += storage.read
+            self.unclosed |= storage.unclosed
 
 
 def _plain(pieces: Iterator[list[Message]], limits: ReadLimits) -> Iterator[list[Message]]:

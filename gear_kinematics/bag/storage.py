@@ -79,6 +79,7 @@ class Storage:
         """Start with the limits on the files of the bag."""
         self.limits = limits
         self.read = 0  # number of messages that the caller has taken from `pieces`
+        self.unclosed = False  # whether it ended, when it was read, as if more could follow
         self.any_encoding = False  # whether messages are read that are not CDR, too
         self.publish_times = False  # whether messages are `Published` if the file has the times
 

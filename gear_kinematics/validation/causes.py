@@ -125,6 +125,10 @@ class FindingCause(Enum):
     NAN_FOR_ALL = '{field} is NaN for all of {joints}, and should be empty: {messages}' + _FIRST
     # The recorder
     RECORDER_LOST = 'the recorder says that it lost {messages}'
+    NOT_CLOSED = (
+        'the recording was never closed, as its recorder was killed or still writes: its last '
+        'messages may be missing; mcap recover closes it'
+    )
     TWICE = (
         '{messages} recorded twice, as where merged recordings overlap: they and their outputs '
         'are judged once'

@@ -139,7 +139,8 @@ def _judged(task: Task, bag: Bag, progress: ReportProgress | None) -> BagReport:
         known -= {each.further.get(TRANSMISSION_ERROR, '') for each in validators}
     actuators = [each.parameters.actuator for each in tasks]
     left_out = _not_compared(bag, topics, known, actuators)
-    return report.adding(*twice, *_losses(lost, judged), *left_out)
+    closed = [Finding(FindingCause.NOT_CLOSED)] if bag.unclosed else []
+    return report.adding(*closed, *twice, *_losses(lost, judged), *left_out)
 
 
 def _validator(task: Task, bag: Bag, topics: Topics) -> Validator:

@@ -82,6 +82,7 @@ def test_a_bag_of_every_kind_is_read_whole(kind, recorded, tmp_path):
         messages = list(bag.messages(TYPES))
         assert messages == recorded
         assert {type(data) for _, _, data in messages} == {bytes}
+        assert bag.unclosed == kind.startswith('unfinished')
         # A second time, and only some.
         wanted = [message for message in recorded if message[0] == '/body_poses']
         assert list(bag.messages(['/body_poses', '/nothing'])) == wanted

@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import replaying
-from made_bags import folder, read
+from made_bags import folder, mcap_file, read
 from replaying import SECOND
 from rosbag2_recorder import Message, record
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
@@ -190,6 +190,13 @@ def test_a_fault_is_found_wherever_it_is(traffic, config, seed, fault, place):
     report = validate(change(recording(traffic, seed), place), config)
     assert report.verdict == Verdict.FAIL
     assert any(said in finding.text for finding in findings(report))
+
+
+@pytest.mark.parametrize('finish', [True, False])
+def test_recording_that_was_never_closed_is_named(traffic, config, finish, tmp_path):
+    report = validate_bag(Task(mcap_file(tmp_path / 'b.mcap', traffic[50], finish=finish), config))
+    assert report.passed
+    assert (Finding(FindingCause.NOT_CLOSED) in report.findings) is not finish
 
 
 @pytest.mark.parametrize('doubled_input', [True, False])
