@@ -3,7 +3,7 @@
 # MuJoCo 4.0.0: with the LuGre friction of dcmotor and implicitfast, a sliding rotor accelerates as if it were heavier.
 #
 # A rotor of 0.01 kg·m² has 0.1 N·m and a LuGre friction of 0.02 N·m at any speed, with a bristle stiffness of 1000
-# N·m/rad and a damping of 6 N·m·s/rad, which is critical for it. Expected while it slides: 8 rad/s². What happens with
+# N·m/rad and a damping of 6 N·m·s/rad, nearly the critical one. Expected while it slides: 8 rad/s². What happens with
 # the integrators implicit and implicitfast at the usual time step of 2 ms: 3.6 rad/s², although actuator_force is
 # -0.02 N·m and all other forces are 0; at 5 ms 2, at 0.2 ms 7.1 rad/s². The inertia seems to be greater by the time
 # step times the bristle damping, which is taken as the derivative of the friction also where it does not depend on the
