@@ -94,12 +94,14 @@ class Actuator:
         except RuntimeError as error:  # after the joint was changed, too
             none = f'no valid {topics.ROTOR_STATE} has come yet'
             raise RefusedError(none, '; check the driver') from error
-        if (speed := abs(ratio.output_rate(self._present_speed))) > limit:
-            too_fast = f', faster than home_max_speed, {limit:g} rad/s; stop it and home it again'
-            raise RefusedError(f'the shaft turns at {speed:.3g} rad/s', too_fast)
+        speed = abs(ratio.output_rate(self._present_speed))
         age, span = time.monotonic() - self._seen, _SPEED_SPAN / SECOND
         rejected = (self.state.monitor.last_input or 0.0) - self._seen > span
-        if age > parameters.input_timeout or rejected or speed * age > limit * span:
+        unseen = age > parameters.input_timeout or rejected
+        if speed > limit and not unseen:
+            too_fast = f', faster than home_max_speed, {limit:g} rad/s; stop it and home it again'
+            raise RefusedError(f'the shaft turns at {speed:.3g} rad/s', too_fast)
+        if unseen or speed * age > limit * span:
             last = f'the last valid {topics.ROTOR_STATE} came {age:.1f} s ago'
             raise RefusedError(last, '; check the driver')
         whole, rest = ratio.output_angle(*before, math)

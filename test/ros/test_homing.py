@@ -142,6 +142,7 @@ def test_turns_that_the_output_encoder_adds_are_no_speed(homing):
     ('speed', 'age', 'then', 'refused'),
     [
         (0.0, 1234.5, (), True),
+        (50.0, 1234.5, (), True),  # how fast it turned then says nothing
         (0.0, 5.5, (), False),
         (0.0, 5.5, [math.nan], True),  # rejected messages do not show where the shaft is
         (0.2, 5.5, (), True),  # it turned, at less than home_max_speed
