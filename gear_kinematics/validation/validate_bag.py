@@ -41,7 +41,7 @@ from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.report import BagReport, Finding, unusable
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validator import Validator
-from gear_kinematics.wire.cdr import MalformedMessageError, messages_lost
+from gear_kinematics.wire.cdr import STAMP_BYTES, MalformedMessageError, messages_lost
 from gear_kinematics.wire.topics import (
     BODY_POSES,
     CORRECTED_TOPICS,
@@ -56,7 +56,6 @@ from gear_kinematics.wire.topics import (
 
 _LOSSES = 'rosbag2_interfaces/msg/MessagesLostEvent'  # of recorders since Lyrical
 _OF_BODIES = JOINT_STATES, *LOAD_TOPICS  # further topics, if the bodies of the gear are known
-_STAMP = slice(4, 12)  # bytes of a header's stamp in CDR
 _BATCH = 8192  # messages of a live node that are validated together
 
 
@@ -139,8 +138,8 @@ def _judged(task: Task, bag: Bag, progress: ReportProgress | None) -> BagReport:
         known -= {each.further.get(TRANSMISSION_ERROR, '') for each in validators}
     actuators = [each.parameters.actuator for each in tasks]
     left_out = _not_compared(bag, topics, known, actuators)
-    closed = [Finding(FindingCause.NOT_CLOSED)] if bag.unclosed else []
-    return report.adding(*closed, *twice, *_losses(lost, judged), *left_out)
+    unclosed = [Finding(FindingCause.NOT_CLOSED)] if bag.unclosed else []
+    return report.adding(*unclosed, *twice, *_losses(lost, judged), *left_out)
 
 
 def _validator(task: Task, bag: Bag, topics: Topics) -> Validator:
@@ -270,7 +269,7 @@ def _differs(before: tuple[int, bytes], messages: TopicMessages) -> list[bool]:
     if not any(map(eq, [last, *received], received)):
         return []
     rows = zip([last, *received], received, [content, *data], data, strict=False)
-    return [a < b or c != d or not any(d[_STAMP]) for a, b, c, d in rows]
+    return [a < b or c != d or not any(d[STAMP_BYTES]) for a, b, c, d in rows]
 
 
 def _losses(lost: Counter[str], topics: Iterable[str]) -> Iterator[Finding]:
