@@ -619,6 +619,10 @@ def test_every_dialect_is_read(tmp_path, gear, reference, dialect):
             shares = (0.2, 0.8)
             turned = np.quantile(found - found[0], shares)
             np.testing.assert_allclose(turned, np.quantile(values - values[0], shares), rtol=1e-2)
+        # The area of the loops, to which angle and torque of each row contribute together.
+        (a, q), locked = true, recording.locked
+        area = (locked.angle[1:] @ np.diff(locked.torque)) / (a[1:] @ np.diff(q))
+        assert area == pytest.approx(1.0, rel=0.02)
     if kind == 'encoders':
         both, (_, *angles) = recording.encoders, reference(kind)
         for found, true in zip((both.rotor.turned, both.measured), angles, strict=True):
