@@ -1,48 +1,52 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# allan-variance-analyzer 1.0.4: with its default overlap, a gyroscope's noise of 10 mrad/s in 1 s is found as 1 mrad/s,
-# and one of 3.2 mrad/s in 10 s as 0.1 mrad/s.
+# allan-variance-analyzer 1.0.4: with an overlap of 0.5, an IMU is found to have a twentieth of its noise.
 #
-# The Allan deviation of white noise falls with the square root of the time: samples with 0.1 rad/s at 100 Hz have
-# 0.1 / sqrt(100) = 10 mrad/s in 1 s, from the differences of averages that follow each other. What happens in
-# compute_allan_variances(), whose overlap is 0.5 by default: the overlap is turned into a number of samples, but
-# compute_bin_averages() takes it as a fraction, so that each average begins one sample after the one before, and the
-# differences are those of two samples alone, divided by their number. So the deviation falls with the time itself, and
-# the noise density at 1 s is a tenth of the right one. Nothing warns. The class AllanVarianceAnalyzer has an overlap of
-# 0 by default, with which the averages follow each other and the deviations are right.
-# For us: give overlap=0 wherever the library takes an overlap.
+# Samples of white noise with 0.1 m/s² and 0.1 rad/s at 100 Hz have densities of 0.1 / sqrt(100) = 0.01 m/s²/√Hz and
+# 0.01 rad/s/√Hz. Expected in imu.yaml, which Kalibr reads: these, whatever the overlap of the averages is. What happens
+# in AllanVarianceAnalyzer with overlap=0.5, the default of its compute_allan_variances(): the overlap is turned into
+# a number of samples, which is then taken for a fraction, so that each average begins one sample after the one before.
+# Their differences are those of two samples alone, and both densities are 0.0005. Nothing warns. And each analysis
+# turns the speeds in the array that it is given into degrees: the same array, analysed again, has 57 times the noise.
+# For us: leave the overlap at 0, the default of the class, and give each analysis a copy.
 #
-# Exit code 0: still so. Installs the version into a temporary folder, and loads its statistics without its plots.
+# Exit code 0: still so. Installs the versions into a temporary folder, without attrdict and pyaml, which are not used.
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-python3 -m venv "$folder/venv"
-"$folder/venv/bin/pip" install --quiet --disable-pip-version-check numpy==2.4.6 tqdm==4.67.1
-"$folder/venv/bin/pip" install --quiet --disable-pip-version-check --no-deps allan-variance-analyzer==1.0.4
-cd "$folder"/venv/lib/python3*/site-packages/allan_variance_analyzer
-timeout 100 "$folder/venv/bin/python" - <<'PYTHON'
-import importlib.util
+cd "$folder"
+python3 -m venv venv
+venv/bin/pip install --quiet --disable-pip-version-check \
+    numpy==2.4.6 scipy==1.17.1 tqdm==4.67.1 loguru==0.7.3 matplotlib==3.11.2 PyYAML==6.0.4
+venv/bin/pip install --quiet --disable-pip-version-check --no-deps allan-variance-analyzer==1.0.4
+MPLBACKEND=Agg timeout 100 venv/bin/python - 2> progress.log <<'PYTHON' || { cat progress.log; exit 1; }
+import contextlib
+import io
+from pathlib import Path
 
 import numpy as np
+import yaml
+from allan_variance_analyzer import AllanVarianceAnalyzer
 
-spec = importlib.util.spec_from_file_location('allan_variance_analyzer.statistics', 'statistics.py')
-statistics = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(statistics)
-
-RATE, NOISE = 100, 0.1
-data = np.random.default_rng(1).normal(0.0, NOISE, (200_000, 6))
-times = np.array([0.1, 1.0, 10.0])
-right = NOISE / np.sqrt(times * RATE)
+NOISE, RATE, RIGHT = 0.1, 100, 0.01
+Path('sensor.yaml').write_text(f'imu_rate: {RATE}\nmeasure_rate: {RATE}\n')
+record = np.random.default_rng(1).normal(0.0, NOISE, (40_000, 6))
 
 
-def deviations(**options):
-    """Return the deviation at each time, averaged over the six axes."""
-    return np.sqrt(statistics.compute_allan_variances(data, times, RATE, **options).mean(axis=1))
+def densities(data, overlap):
+    """Return the noise densities of the accelerometer and of the gyroscope in imu.yaml."""
+    with contextlib.redirect_stdout(io.StringIO()):
+        AllanVarianceAnalyzer('sensor.yaml', '.', overlap=overlap, period_max=20)(data)
+    found = yaml.safe_load(Path('imu.yaml').read_text())
+    return found['accelerometer_noise_density'], found['gyroscope_noise_density']
 
 
-found, apart = deviations(), deviations(overlap=0)
-for time, default, separate, expected in zip(times, found, apart, right):
-    print(f'{time} s: {1e3 * default:.2f} mrad/s, without overlap {1e3 * separate:.2f}; {1e3 * expected:.2f} is right')
-assert np.allclose(apart, right, rtol=0.1)
-assert np.allclose(found, NOISE / (times * RATE), rtol=0.1)
+apart, half = densities(record.copy(), 0), densities(record.copy(), 0.5)
+used = record.copy()
+densities(used, 0)
+again = densities(used, 0)
+print('without overlap', apart, 'with half an overlap', half, 'the same array again', again)
+assert np.allclose(apart, RIGHT, rtol=0.15)
+assert np.allclose(half, RIGHT / 19.4, rtol=0.05)
+assert np.allclose((again[0], again[1]), (apart[0], np.degrees(apart[1])))
 PYTHON

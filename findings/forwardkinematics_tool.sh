@@ -6,9 +6,9 @@
 # link. Expected of numpy() and of casadi(), for a number and for a symbol: the tool is at (0, 1.2), as Pinocchio 4.1.0
 # gives it. What happens: numpy() gives (0.2, 1), as it multiplies the tool from the left; casadi() is right. With
 # parent_link='upper' it is the other way round: numpy() gives the last link in the upper arm, (1, 0), and casadi()
-# ignores the parent and gives it in the base, (0, 1). And a joint with the axis "0 0 2", which turns about z, stretches
-# the arm to 2 m, without an error. A controller that is made by casadi() and checked by numpy() differs for each.
-# For us: multiply numpy(q, link) by the tool, and make axes of length 1.
+# ignores the parent and gives it in the base, (0, 1). So a controller that is made by casadi() differs from its check
+# by numpy(). Nothing warns.
+# For us: give neither; multiply the pose of the link by the tool, and the inverse of the parent's pose by it, yourself.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
 set -eu
@@ -28,18 +28,16 @@ cat > arm.urdf <<'URDF'
     <axis xyz="0 0 1"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
 </robot>
 URDF
-sed '0,/xyz="0 0 1"/s//xyz="0 0 2"/' arm.urdf > long_axis.urdf
 timeout 60 pinocchio/bin/python - <<'PYTHON'
 import numpy as np
 import pinocchio
 
-for name in ('arm.urdf', 'long_axis.urdf'):
-    model = pinocchio.buildModelFromUrdf(name)
-    data = model.createData()
-    pinocchio.framesForwardKinematics(model, data, np.array([np.pi / 2, 0]))
-    tool = data.oMf[model.getFrameId('lower')].act(np.array([0.2, 0, 0]))
-    print('Pinocchio: tool at', tool)
-    assert np.allclose(tool, (0, 1.2, 0))
+model = pinocchio.buildModelFromUrdf('arm.urdf')
+data = model.createData()
+pinocchio.framesForwardKinematics(model, data, np.array([np.pi / 2, 0]))
+tool = data.oMf[model.getFrameId('lower')].act(np.array([0.2, 0, 0]))
+print('Pinocchio: tool at', tool)
+assert np.allclose(tool, (0, 1.2, 0))
 PYTHON
 timeout 60 venv/bin/python -W ignore - <<'PYTHON'
 import casadi
@@ -48,21 +46,20 @@ from forwardkinematics.urdfFks.generic_urdf_fk import GenericURDFFk
 
 angles, tool = np.array([np.pi / 2, 0]), np.eye(4)
 tool[0, 3] = 0.2
+with open('arm.urdf') as file:
+    arm = GenericURDFFk(file.read(), 'base', ['lower'])
 
 
-def places(name, **choice):
+def places(**choice):
     """Return the place of the last link by numpy() and by casadi(), in the plane of the arm in m."""
-    with open(name) as file:
-        arm = GenericURDFFk(file.read(), 'base', ['lower'])
     symbol = casadi.SX.sym('q', 2)
     pose = casadi.Function('pose', [symbol], [arm.casadi(symbol, 'lower', **choice)])(angles)
     both = np.array(arm.numpy(angles, 'lower', **choice))[:2, 3], np.array(pose)[:2, 3]
-    print(name, *choice, 'numpy()', both[0], 'casadi()', both[1])
+    print(*choice, 'numpy()', both[0], 'casadi()', both[1])
     return both
 
 
-assert np.allclose(places('arm.urdf'), ((0, 1), (0, 1)))
-assert np.allclose(places('arm.urdf', link_transformation=tool), ((0.2, 1), (0, 1.2)))
-assert np.allclose(places('arm.urdf', parent_link='upper'), ((1, 0), (0, 1)))
-assert np.allclose(places('long_axis.urdf'), ((0, 2), (0, 2)))
+assert np.allclose(places(), ((0, 1), (0, 1)))
+assert np.allclose(places(link_transformation=tool), ((0.2, 1), (0, 1.2)))
+assert np.allclose(places(parent_link='upper'), ((1, 0), (0, 1)))
 PYTHON

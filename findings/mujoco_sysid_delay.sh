@@ -16,7 +16,8 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 python3 -m venv "$folder/venv"
 "$folder/venv/bin/pip" install --quiet --disable-pip-version-check mujoco==4.0.0 numpy==2.4.6 scipy==1.17.1 \
-    absl-py==2.5.1 colorama==0.4.6 ImageIO==2.38.1 Jinja2==3.1.6 matplotlib==3.11.2 plotly==7.1.0 PyYAML==6.0.4 tabulate==0.10.0 typing_extensions==4.16.0 
+    absl-py==2.5.1 colorama==0.4.6 ImageIO==2.38.1 Jinja2==3.1.6 matplotlib==3.11.2 plotly==7.1.0 PyYAML==6.0.4 \
+    tabulate==0.10.0 typing_extensions==4.16.0
 MPLBACKEND=Agg timeout 60 "$folder/venv/bin/python" - <<'PYTHON'
 import numpy as np
 from mujoco import sysid

@@ -4,11 +4,12 @@
 # turn.
 #
 # The index of an encoder or a narrow mark gives a pulse of 5 V once a turn, with a noise of 10 mV. Expected of
-# tacho_to_rpm(): 600 rpm, or an error. What happens: the level and the hysteresis of the trigger are found from the
-# 1st and the 99th percentile of the signal. A pulse that is shorter than 1 % of a turn is above the 99th, so that both
-# percentiles and the level lie in the noise, and its crossings are counted. More than a hundred false pulses a turn are
-# taken, and the speed is 100 000 rpm and more, also in the middle of the record, without an error or a warning. A pulse
-# of 2 % of a turn is right. Without any noise there is an error, that no pulses were found.
+# tacho_to_rpm(): 600 rpm, or an error. What happens: as documented, the level and the hysteresis of the trigger are
+# found from the 1st and the 99th percentile of the signal. A pulse that is shorter than 1 % of a turn lies above the
+# 99th, so that both percentiles, and the level with them, lie in the noise, whose crossings are counted: more than a
+# hundred a turn, which make 100 000 rpm and more, also in the middle of the record, without an error or a warning. The
+# documentation does not say so. A pulse of 2 % of a turn is right, and without any noise no pulses are found, which is
+# an error.
 # For us: give level and hysteresis, here 2.5 and 1 V.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
