@@ -10,14 +10,14 @@ import argparse
 import math
 import statistics
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from gear_kinematics.kinematics import RotorSample, split_turns
 from gear_kinematics.kinematics.loads import Bodies
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.loads import LoadEstimator, PreloadMonitor
-from gear_kinematics.state.state_messages import state_messages
+from gear_kinematics.state.state_messages import Row, state_messages
 from gear_kinematics.wire.topics import BODY_POSES, LOAD_TOPICS, OUTPUT_STATE
 
 _MESSAGES = 500
@@ -40,17 +40,19 @@ def main() -> None:
         if sample is samples[-1]:
             monitor.report()
 
-    def encoded(of: LoadEstimator, sample: RotorSample) -> list[bytes]:
-        rows = of.rows(of.follow(sample, 0), LOAD_TOPICS)
+    def encoded(sample: RotorSample, rows: Iterable[Row]) -> list[bytes]:
         return [template.encode(sample.stamp, numbers) for _, template, numbers in rows]
 
+    def loads(of: LoadEstimator, sample: RotorSample) -> list[bytes]:
+        return encoded(sample, of.rows(of.follow(sample, 0), LOAD_TOPICS))
+
     jobs: dict[str, Callable[[RotorSample], object]] = {
-        'output_state and body_poses': lambda sample: list(
-            messages.encode(sample, (OUTPUT_STATE, BODY_POSES))
+        'output_state and body_poses': lambda sample: encoded(
+            sample, messages.rows(sample, (OUTPUT_STATE, BODY_POSES))
         ),
         'margin of the preload': margin,
-        'branch_loads and joint_loads': lambda sample: encoded(braced, sample),
-        'both, of bodies with mass': lambda sample: encoded(heavy, sample),
+        'branch_loads and joint_loads': lambda sample: loads(braced, sample),
+        'both, of bodies with mass': lambda sample: loads(heavy, sample),
     }
     samples = [
         RotorSample(k * 1_000_000, split_turns(0.1 * k), 100.0, math.sin(0.01 * k))

@@ -8,7 +8,7 @@ other.
 import math
 import os
 import struct
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -18,7 +18,7 @@ import sensor_msgs.msg
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.serialization import deserialize_message
 
-from gear_kinematics.kinematics import Branch, Mechanism
+from gear_kinematics.kinematics import Branch, Mechanism, RotorSample
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.state_messages import StateMessages
@@ -32,6 +32,7 @@ from gear_kinematics.wire.cdr import (
     pose_array_layout,
 )
 from gear_kinematics.wire.joint_reader import RejectedInputError
+from gear_kinematics.wire.topics import STATE_TOPICS
 
 SEPARATOR = b'\xff<>\xff'
 
@@ -227,6 +228,11 @@ def _check_pose_batch(messages: Sequence[bytes], arrays: Sequence[PoseArray | No
             _assert_same(batch.poses[row].ravel().tolist(), list(array.numbers))
 
 
+def _encoded(sample: RotorSample, topics: Iterable[str]) -> dict[str, bytes]:
+    rows = _STATES.rows(sample, topics)
+    return {topic: template.encode(sample.stamp, numbers) for topic, template, numbers in rows}
+
+
 def _check_rotor_input(messages: Sequence[bytes], encoder: str) -> None:
     """Take messages one by one and at once, with the same outcome; what is taken has a state."""
     settings = replace(_SETTINGS, rotor_encoder=encoder)
@@ -250,8 +256,8 @@ def _check_rotor_input(messages: Sequence[bytes], encoder: str) -> None:
     ):  # fmt: skip
         assert getattr(one_by_one, account) == getattr(at_once, account)
     outputs = _STATES.encode_outputs(batch)
-    expected = [dict(_STATES.encode(sample, outputs)) for sample in samples]
+    expected = [_encoded(sample, outputs) for sample in samples]
     assert outputs == {topic: [each[topic] for each in expected] for topic in outputs}
     for sample in samples:
-        for _, message in _STATES.encode(sample):
+        for message in _encoded(sample, STATE_TOPICS).values():
             assert _decoded(decode_joint_state, message) or _decoded(decode_pose_array, message)

@@ -2,7 +2,7 @@
 """The messages that the node publishes for its samples, serialised."""
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from types import ModuleType
 from typing import Any
 
@@ -21,9 +21,7 @@ from gear_kinematics.wire.topics import (
     BODY_POSES,
     CORRECTED_INTERVAL,
     CORRECTED_STATE,
-    CORRECTED_TOPICS,
     OUTPUT_STATE,
-    STATE_TOPICS,
 )
 
 Row = tuple[str, Template, Sequence[float]]  # topic, template and numbers of a message
@@ -31,8 +29,6 @@ Row = tuple[str, Template, Sequence[float]]  # topic, template and numbers of a 
 
 class OutputMessages:
     """Computes the state of the output shaft at a sample and encodes its messages."""
-
-    topics: Collection[str] = (OUTPUT_STATE,)  # topics whose messages are encoded
 
     def __init__(self, ratio: GearRatio, *, output_joint: str) -> None:
         self._ratio = ratio
@@ -46,15 +42,6 @@ class OutputMessages:
         }
         self.angle = self._output_states[False, False]  # of messages with an angle alone
 
-    def encode(
-        self, sample: RotorSample, topics: Iterable[str] | None = None
-    ) -> list[tuple[str, bytes]]:
-        """Return topic and message for a sample, for all or some of `topics`."""
-        rows = self.rows(sample, self.topics if topics is None else topics)
-        return [
-            (topic, template.encode(sample.stamp, numbers)) for topic, template, numbers in rows
-        ]
-
     def rows(self, sample: RotorSample, topics: Iterable[str]) -> list[Row]:
         """Return topics, templates and numbers of the messages for a sample."""
         output_turns, output_rest = self._ratio.output_angle(*sample.position, math)
@@ -64,14 +51,14 @@ class OutputMessages:
 
     @np.errstate(over='ignore')  # an effort can overflow, as it does for a single sample
     def encode_outputs(self, samples: RotorSamples) -> dict[str, list[bytes]]:
-        """Encode the recorded topics among `topics` for many samples, as `encode` does."""
+        """Encode the topics of a recording for many samples, with the numbers of `rows`."""
         output_turns, output_rest = self._ratio.output_angle(samples.turns, samples.angle, np)
         return {OUTPUT_STATE: self._output_states_of(samples, TURN * output_turns + output_rest)}
 
     def corrected_rows(
-        self, sample: RotorSample, correction: Correction, topics: Iterable[str] = CORRECTED_TOPICS
+        self, sample: RotorSample, correction: Correction, topics: Iterable[str]
     ) -> Iterator[Row]:
-        """Yield templates and numbers of the messages on CORRECTED_TOPICS, or some of them."""
+        """Yield templates and numbers of the messages on these of CORRECTED_TOPICS."""
         for topic in topics:
             if topic == CORRECTED_STATE:
                 turns, rest = self._ratio.output_angle(*sample.position, math)
@@ -125,8 +112,6 @@ class OutputMessages:
 class StateMessages(OutputMessages):
     """Computes the state of a mechanism at a sample and encodes its messages."""
 
-    topics = STATE_TOPICS.keys()
-
     def __init__(self, mechanism: Mechanism, *, output_joint: str, frame_prefix: str) -> None:
         super().__init__(mechanism.gear_ratio, output_joint=output_joint)
         self._form = closed_form(mechanism)
@@ -159,7 +144,7 @@ class StateMessages(OutputMessages):
         return rows
 
     def encode_outputs(self, samples: RotorSamples) -> dict[str, list[bytes]]:
-        """Encode the recorded topics among `topics` for many samples, as `encode` does."""
+        """Encode the topics of a recording for many samples, with the numbers of `rows`."""
         _, output_rest = self._ratio.output_angle(samples.turns, samples.angle, np)
         branches = self._form.branches(samples.angle, output_rest, np)
         numbers = self._pose_numbers(output_rest, branches, np)

@@ -21,7 +21,7 @@ from rclpy.qos import QoSProfile
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import Imu, JointState
 from std_msgs.msg import String
-from wire import micro_ros_bytes
+from wire import encoded, micro_ros_bytes
 
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.disorder import Bursts
@@ -166,7 +166,7 @@ class Answers(Participant):
             sample = self.input.accept(delivered, time.time_ns)
         except RejectedInputError:
             return
-        for topic, answer in self._states.encode(sample, STATES):
+        for topic, answer in encoded(self._states, sample, STATES).items():
             zero = self.input.zero_stamps > zero_stamps
             self.expected[topic].append(stamped(answer, 0) if zero else answer)
 

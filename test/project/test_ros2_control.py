@@ -13,6 +13,7 @@ import yaml
 from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible, qos_profile_sensor_data
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
+from wire import encoded
 
 from gear_kinematics.kinematics import RotorSample, split_turns
 from gear_kinematics.parameters import default_value
@@ -45,7 +46,7 @@ def states_of(control: ET.Element) -> set[str]:
 
 def test_hardware_has_a_place_for_every_field_of_the_output(control, actuator):
     sample = RotorSample(5, split_turns(-38.0), 19.0, 0.5)
-    [(_, data)] = StateMessages(actuator, **NAMES).encode(sample, [OUTPUT_STATE])
+    [data] = encoded(StateMessages(actuator, **NAMES), sample, [OUTPUT_STATE]).values()
     message = deserialize_message(data, JointState)
     fields = [
         field for field in ('position', 'velocity', 'effort') if len(getattr(message, field))

@@ -15,6 +15,7 @@ from geometry_msgs.msg import PoseArray
 from rclpy.serialization import deserialize_message, serialize_message
 from rotor_driver import counted_stamp, rotor_motion
 from sensor_msgs.msg import JointState
+from wire import encoded
 
 from gear_kinematics.kinematics import RotorSample, split_turns
 from gear_kinematics.state.state_messages import StateMessages
@@ -57,8 +58,7 @@ def test_lost_disordered_and_wrong_messages_are_counted(actuator, topic, kind):
     for number in range(4):
         position, velocity, effort = rotor_motion(number)
         sample = RotorSample(int(counted_stamp(number)), split_turns(position), velocity, effort)
-        [(_, data)] = states.encode(sample, [topic])
-        right.append(data)
+        right += encoded(states, sample, [topic]).values()
     moved = deserialize_message(right[1], kind)
     nudge(moved)
     a, b, c, d = right

@@ -14,6 +14,7 @@ from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 from shapely import affinity
 from visualization_msgs.msg import Marker, MarkerArray
+from wire import encoded
 
 from gear_kinematics.kinematics import Branch, Mechanism, RotorSample, matrix_method, split_turns
 from gear_kinematics.ros.markers import Markers
@@ -40,7 +41,7 @@ def all_at(mechanism: Mechanism, rotor_angle: float) -> list[Marker]:
     names = {'output_joint': 'output_shaft', 'frame_prefix': ''}
     _, joints = read(urdf(mechanism, module=MODULE, **names))
     sample = RotorSample(START, split_turns(rotor_angle), None, None)
-    [(_, data)] = StateMessages(mechanism, **names).encode(sample, [JOINT_STATES])
+    [data] = encoded(StateMessages(mechanism, **names), sample, [JOINT_STATES]).values()
     states = deserialize_message(data, JointState)
     links = link_poses(joints, dict(zip(states.name, states.position, strict=True)))
     markers = sent(mechanism)

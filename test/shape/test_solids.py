@@ -13,6 +13,7 @@ from live import START
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 from shapely import affinity
+from wire import encoded
 
 from gear_kinematics.kinematics import Branch, Mechanism, RotorSample, split_turns
 from gear_kinematics.parameters.meshes import folder_uri
@@ -155,7 +156,7 @@ class Shown:
         )
         self.data = pin.GeometryData(self.geometry)
         sample = RotorSample(START, split_turns(rotor_angle), None, None)
-        [(_, message)] = StateMessages(mechanism, **NAMES).encode(sample, [JOINT_STATES])
+        [message] = encoded(StateMessages(mechanism, **NAMES), sample, [JOINT_STATES]).values()
         states = deserialize_message(message, JointState)
         positions = dict(zip(states.name, states.position, strict=True))
         q = pinocchio_configuration(model, positions)

@@ -10,6 +10,7 @@ from geometry_msgs.msg import PoseArray
 from links import pinocchio_configuration, read
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
+from wire import encoded
 
 from gear_kinematics.kinematics import Branch, Mechanism, RotorSample, split_turns
 from gear_kinematics.shape.urdf import joint_names, urdf
@@ -110,9 +111,9 @@ def test_pinocchio_puts_the_links_where_the_bodies_are(ring_teeth, satellite_tee
     fastest = max(1.0, 1.0 + 1.0 / abs(mechanism.gear_ratio))
     for angle in generator.uniform(-2000.0, 2000.0, 400) / fastest:
         sample = RotorSample(5, split_turns(float(angle)), 1.0, None)
-        encoded = dict(StateMessages(mechanism, **names).encode(sample))
-        poses = deserialize_message(encoded['body_poses'], PoseArray).poses
-        states = deserialize_message(encoded['mechanism_joint_states'], JointState)
+        messages = encoded(StateMessages(mechanism, **names), sample)
+        poses = deserialize_message(messages['body_poses'], PoseArray).poses
+        states = deserialize_message(messages['mechanism_joint_states'], JointState)
         positions = dict(zip(states.name, states.position, strict=True))
         assert set(positions) == set(model.names[1:])
         pin.framesForwardKinematics(model, data, pinocchio_configuration(model, positions))

@@ -14,6 +14,7 @@ from properties import mechanisms, numbers_of
 from rclpy.serialization import deserialize_message
 from replaying import assert_poses
 from sensor_msgs.msg import JointState
+from wire import encoded
 
 from gear_kinematics.correction.corrector import Correction
 from gear_kinematics.kinematics import RotorPosition, RotorSample, solve, split_turns
@@ -32,9 +33,9 @@ TINY = 1e-20  # rates below: the oracle differentiates numerically, at 50 digits
 
 def encode(mechanism, sample, names=NAMES):
     """The three messages as deserialised by rclpy."""
-    encoded = dict(StateMessages(mechanism, **names).encode(sample))
-    assert list(encoded) == list(TYPES)
-    return [deserialize_message(encoded[topic], kind) for topic, kind in TYPES.items()]
+    messages = encoded(StateMessages(mechanism, **names), sample)
+    assert list(messages) == list(TYPES)
+    return [deserialize_message(messages[topic], kind) for topic, kind in TYPES.items()]
 
 
 def sample_at(rotor_angle, velocity=None, effort=None) -> RotorSample:
@@ -101,8 +102,8 @@ def test_fields_that_the_input_lacks_stay_empty(actuator, velocity, effort):
 def test_only_selected_topics_are_encoded(actuator, topics):
     messages = StateMessages(actuator, **NAMES)
     sample = sample_at(1.9, 3.8, 0.5)
-    every = dict(messages.encode(sample))
-    assert list(messages.encode(sample, topics)) == [(topic, every[topic]) for topic in topics]
+    every = encoded(messages, sample)
+    assert list(encoded(messages, sample, topics).items()) == [(t, every[t]) for t in topics]
 
 
 @pytest.mark.parametrize('stamp', [0, 1, STAMP, -1, 2**31 * 10**9 - 1])
@@ -151,9 +152,9 @@ def test_of_a_gear_with_only_a_ratio_there_is_the_output_alone(velocity, effort)
     """4 × 58 turns and an angle: the output makes 12 turns backwards, and 3/58 of the angle."""
     messages = state_messages(replace(PARAMETERS, gear_ratio='-58/3'))
     sample = RotorSample(7, RotorPosition(4 * 58, 0.5), velocity, effort)
-    ((topic, data),) = messages.encode(sample)
-    assert topic == 'output_state'
-    state = deserialize_message(data, JointState)
+    state = deserialize_message(
+        encoded(messages, sample, ['output_state'])['output_state'], JointState
+    )
     assert list(state.position) == [pytest.approx(-12 * math.tau - 0.5 * 3 / 58, rel=1e-15)]
     rates = [] if velocity is None else [pytest.approx(-velocity * 3 / 58, rel=1e-15)]
     torques = [] if effort is None else [pytest.approx(-effort * 58 / 3, rel=1e-15)]
@@ -173,14 +174,14 @@ def test_corrected_state_is_the_output_state_and_the_correction(
 ):
     states = StateMessages(mechanism, output_joint='left/output_shaft', frame_prefix='left/')
     sample = sample_at(position, velocity, effort)
-    [(_, ideal)] = states.encode(sample, ['output_state'])
-    encoded = encode_corrected(states, sample, Correction(*correction))
-    assert tuple(encoded) == CORRECTED
-    for topic, data in encoded.items():  # or only one of them
+    [ideal] = encoded(states, sample, ['output_state']).values()
+    messages = encode_corrected(states, sample, Correction(*correction))
+    assert tuple(messages) == CORRECTED
+    for topic, data in messages.items():  # or only one of them
         alone = encode_corrected(states, sample, Correction(*correction), [topic])
         assert alone == {topic: data}
     ideal, corrected, interval = (
-        deserialize_message(data, JointState) for data in (ideal, *encoded.values())
+        deserialize_message(data, JointState) for data in (ideal, *messages.values())
     )
     deviation, slope, half_width, _ = correction
     assert corrected.name == interval.name == ['left/output_shaft']
@@ -198,6 +199,6 @@ def test_corrected_state_is_the_output_state_and_the_correction(
 def test_corrected_state_is_finite_for_every_ratio_and_slope(ratio):
     states = state_messages(replace(PARAMETERS, gear_ratio=ratio))
     sample = sample_at(1.0, GREATEST, -GREATEST)
-    encoded = encode_corrected(states, sample, Correction(0.1, 1e6, 0.1, 0.0))
-    corrected = deserialize_message(encoded['corrected_state'], JointState)
+    messages = encode_corrected(states, sample, Correction(0.1, 1e6, 0.1, 0.0))
+    corrected = deserialize_message(messages['corrected_state'], JointState)
     assert all(map(math.isfinite, [*corrected.velocity, *corrected.effort]))

@@ -2,8 +2,13 @@
 """CDR written field by field: of any encapsulation, and with strings as they should not be."""
 
 import struct
+from collections.abc import Iterable
 
 from live import SECOND
+
+from gear_kinematics.kinematics import RotorSample
+from gear_kinematics.state.state_messages import OutputMessages
+from gear_kinematics.wire.topics import STATE_TOPICS
 
 ENCAPSULATIONS = (0, 1, 2, 3, 6, 7, 8, 9, 10, 11)
 """Second bytes of the encapsulations that rclpy takes: XCDR version 2 from 6 on."""
@@ -42,6 +47,14 @@ class Wire:
             self.number('I', len(values))
             for value in values:
                 self.number('d', value)
+
+
+def encoded(
+    messages: OutputMessages, sample: RotorSample, topics: Iterable[str] = STATE_TOPICS
+) -> dict[str, bytes]:
+    """Return the messages of a sample by topic, as the node sends them."""
+    rows = messages.rows(sample, topics)
+    return {topic: template.encode(sample.stamp, numbers) for topic, template, numbers in rows}
 
 
 def micro_ros_bytes(stamp, names, position, velocity=(), effort=()) -> bytes:
