@@ -58,7 +58,7 @@ class OutputMessages:
     def corrected_rows(
         self, sample: RotorSample, correction: Correction, topics: Iterable[str]
     ) -> Iterator[Row]:
-        """Yield templates and numbers of the messages on these of CORRECTED_TOPICS."""
+        """Yield templates and numbers of the messages on some of CORRECTED_TOPICS."""
         for topic in topics:
             if topic == CORRECTED_STATE:
                 turns, rest = self._ratio.output_angle(*sample.position, math)
