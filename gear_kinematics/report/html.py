@@ -5,18 +5,8 @@ import json
 from collections.abc import Iterator, Sequence
 from html import escape
 
-from gear_kinematics.report.document import (
-    OUTCOME,
-    Document,
-    Figure,
-    Layout,
-    Origin,
-    Panel,
-    Section,
-    Sentence,
-    Table,
-    Verdict,
-)
+from gear_kinematics.report import document as doc
+from gear_kinematics.report.document import OUTCOME, Verdict
 from gear_kinematics.report.interactive import interactive
 from gear_kinematics.report.mechanism import Drawings, MovingMechanism
 from gear_kinematics.report.page import page, resource
@@ -26,7 +16,7 @@ _HEIGHT = 34.0  # rem, least height of all panels together
 _FEW_SENTENCES = 6  # most remarks, or findings after the first, that are not folded
 
 
-def to_html(document: Document) -> str:
+def to_html(document: doc.Document) -> str:
     """Write a report as a self-contained page; ModuleNotFoundError if its figures lack plotly."""
     scripts, body = [], ''.join(_body(document.in_order()))
     if any(section.figure for section in document.sections):
@@ -41,7 +31,7 @@ def to_html(document: Document) -> str:
     return page(': '.join(filter(None, [kind, names])), body, scripts)
 
 
-def _body(document: Document) -> Iterator[str]:
+def _body(document: doc.Document) -> Iterator[str]:
     several = len(document.sections) > 1
     yield from _header(document)
     yield '<main>\n'
@@ -58,7 +48,7 @@ def _body(document: Document) -> Iterator[str]:
     yield f'</main>\n{_footer(document.origin)}{drawings.shapes()}'
 
 
-def _header(document: Document) -> Iterator[str]:
+def _header(document: doc.Document) -> Iterator[str]:
     name, verdict, about = document.title, document.verdict, document.totals
     if any(section.verdict == Verdict.FAIL for section in document.sections):
         verdict = Verdict.FAIL  # an unusable recording must not hide it
@@ -69,7 +59,7 @@ def _header(document: Document) -> Iterator[str]:
     yield '</header>\n'
 
 
-def _section(section: Section, number: int, drawings: Drawings) -> Iterator[str]:
+def _section(section: doc.Section, number: int, drawings: Drawings) -> Iterator[str]:
     name, kind = f'figure-{number}', section.verdict or ''
     moments = name if section.figure and section.figure.stacked else ''
     findings = [_sentence(finding, moments) for finding in section.findings]
@@ -87,7 +77,7 @@ def _section(section: Section, number: int, drawings: Drawings) -> Iterator[str]
 
 
 def _figure(
-    figure: Figure | None, mechanism: MovingMechanism | None, name: str, drawings: Drawings
+    figure: doc.Figure | None, mechanism: MovingMechanism | None, name: str, drawings: Drawings
 ) -> Iterator[str]:
     """Write a figure next to the mechanism that moves with it."""
     if not figure:
@@ -110,7 +100,7 @@ def _figure(
 
 
 def _plot(
-    panels: Sequence[Panel], mechanism: MovingMechanism | None, name: str, style: str = ''
+    panels: Sequence[doc.Panel], mechanism: MovingMechanism | None, name: str, style: str = ''
 ) -> str:
     """Write the data of a plot, which page.js draws."""
     data = json.dumps(interactive(panels, mechanism), allow_nan=False, separators=(',', ':'))
@@ -124,7 +114,7 @@ def _plot(
     )
 
 
-def _legend(panels: Sequence[Panel]) -> str:
+def _legend(panels: Sequence[doc.Panel]) -> str:
     lines = {line.name: line for panel in panels if panel.has_legend for line in panel.lines}
     items = ''.join(
         f'<li style="--line: var(--{line.pen})">{escape(name)}</li>'
@@ -141,7 +131,7 @@ def _badge(verdict: Verdict | None) -> str:
     return f'<span class="badge {verdict}">{OUTCOME[verdict]}</span> ' if verdict else ''
 
 
-def _sentence(finding: Sentence, figure: str) -> str:
+def _sentence(finding: doc.Sentence, figure: str) -> str:
     """Write a finding; if it refers to a moment in the figure, as a link to it."""
     text = escape(finding.text)
     if finding.time is None or not figure:
@@ -156,7 +146,7 @@ def _list(items: Sequence[str], name: str) -> str:
     return _folded(name, listed) if len(items) > _FEW_SENTENCES else listed
 
 
-def _footer(origin: Origin | None) -> str:
+def _footer(origin: doc.Origin | None) -> str:
     if not origin:
         return ''
     configs = ''.join(
@@ -170,13 +160,13 @@ def _footer(origin: Origin | None) -> str:
     )
 
 
-def _table(table: Table) -> str:
+def _table(table: doc.Table) -> str:
     if not table.rows:
         return ''
-    return _rows(table) if table.layout == Layout.ROWS else _values(table)
+    return _rows(table) if table.layout == doc.Layout.ROWS else _values(table)
 
 
-def _values(table: Table) -> str:
+def _values(table: doc.Table) -> str:
     """Write a table of one row as labelled values."""
     subject = table.rows[0][0].text
     heading = f'<h3>{escape(table.columns[0])} {escape(subject)}</h3>\n' if subject else ''
@@ -189,7 +179,7 @@ def _values(table: Table) -> str:
     return f'{heading}<dl class="{table.layout}">{items}</dl>\n'
 
 
-def _rows(table: Table, links: Sequence[str] = ()) -> str:
+def _rows(table: doc.Table, links: Sequence[str] = ()) -> str:
     """Write a table; the first cells of rows are links, if any are given."""
     table = table.below_headings()
     classes = ['words' if table.is_words(k) else 'number' for k in range(len(table.columns))]

@@ -6,19 +6,11 @@ from dataclasses import replace
 
 from rich import box
 from rich.console import Console, Group, RenderableType
-from rich.table import Table as RichTable
+from rich.table import Table
 from rich.text import Text
 
-from gear_kinematics.report.document import (
-    OUTCOME,
-    Cell,
-    Document,
-    Layout,
-    Section,
-    Table,
-    Tone,
-    Verdict,
-)
+from gear_kinematics.report import document as doc
+from gear_kinematics.report.document import OUTCOME, Tone, Verdict
 
 _PADDING = 2  # number of blank characters between two columns of a table
 _VERDICT_STYLES = {
@@ -30,7 +22,7 @@ _VERDICT_STYLES = {
 _TONE_STYLES = {Tone.PLAIN: '', Tone.NONE: 'dim', Tone.NOTABLE: 'yellow', Tone.BAD: 'bold red'}
 
 
-def render(document: Document, console: Console, *, brief: bool = False) -> None:
+def render(document: doc.Document, console: Console, *, brief: bool = False) -> None:
     """Print a report: tables on a terminal, one row per line elsewhere.
 
     A brief report has of each section its verdict, findings and answer; in a pipe, a section that
@@ -56,7 +48,7 @@ def render(document: Document, console: Console, *, brief: bool = False) -> None
         console.print(Text(document.totals, 'bold'))
 
 
-def lines(document: Document, *, brief: bool = False) -> Iterator[str]:
+def lines(document: doc.Document, *, brief: bool = False) -> Iterator[str]:
     """Yield a row of a table per line, each with the section it belongs to; see `render`."""
     if document.totals:
         yield f'summary: {document.totals}'
@@ -74,7 +66,7 @@ def lines(document: Document, *, brief: bool = False) -> Iterator[str]:
             yield from section_lines(section, brief=brief)
 
 
-def section_lines(section: Section, *, brief: bool = False) -> Iterator[str]:
+def section_lines(section: doc.Section, *, brief: bool = False) -> Iterator[str]:
     """Yield one section line by line; a brief one is without values."""
     name = f'{section.name}: ' if section.name else ''
     findings, answer = list(section.findings), section.answer
@@ -101,18 +93,18 @@ def _joined(text: str, more: str) -> str:
     return f'{text.removesuffix(".")}{"." if more[0].isupper() else ";"} {more}'
 
 
-def _table_lines(table: Table) -> Iterator[str]:
+def _table_lines(table: doc.Table) -> Iterator[str]:
     """Yield a line for each row, or for each fact."""
     for row in table.rows:
         facts = list(replace(table, rows=(row,)).facts())
-        if table.layout == Layout.LINES:
+        if table.layout == doc.Layout.LINES:
             yield from (f'{column}: {cell.with_unit()}' for _, column, cell in facts)
         elif facts:
             values = '; '.join(f'{column}: {cell.with_unit()}' for _, column, cell in facts)
             yield ': '.join(filter(None, [facts[0][0], values]))
 
 
-def _render_section(section: Section, console: Console, *, brief: bool) -> None:
+def _render_section(section: doc.Section, console: Console, *, brief: bool) -> None:
     style = _VERDICT_STYLES[section.verdict]
     if section.name:
         verdict = (f'{OUTCOME[section.verdict].upper()} ', style) if section.verdict else ''
@@ -123,7 +115,7 @@ def _render_section(section: Section, console: Console, *, brief: bool) -> None:
         sentences.insert(first, _bullet(section.answer))
     console.print(*sentences, sep='\n', end='\n' * bool(sentences))
     for table in () if brief else filter(lambda table: table.rows, section.tables):
-        if table.layout == Layout.ROWS:
+        if table.layout == doc.Layout.ROWS:
             console.print()
             console.print(_rows(table, console))
         else:
@@ -136,16 +128,16 @@ def _render_section(section: Section, console: Console, *, brief: bool) -> None:
     console.print()
 
 
-def _bullet(sentence: str, style: str = '') -> RichTable:
+def _bullet(sentence: str, style: str = '') -> Table:
     """Return a sentence with a bullet and a hanging indent."""
-    item = RichTable.grid(padding=(0, 1))
+    item = Table.grid(padding=(0, 1))
     item.add_row(Text('•', style), Text(sentence, overflow='fold'))
     return item
 
 
-def _values(table: Table) -> RenderableType:
+def _values(table: doc.Table) -> RenderableType:
     """Return the values of a single row with their labels, below its subject."""
-    grid = RichTable.grid(padding=(0, 2))
+    grid = Table.grid(padding=(0, 2))
     if subject := table.rows[0][0].text:
         grid.add_row(Text(table.columns[0], 'dim'), Text(subject, 'bold', overflow='fold'))
     for _, column, cell in table.facts():
@@ -154,7 +146,7 @@ def _values(table: Table) -> RenderableType:
     return grid
 
 
-def _rows(table: Table, console: Console) -> RenderableType:
+def _rows(table: doc.Table, console: Console) -> RenderableType:
     """Return rows below headings, or where there is no room, each row as values with labels.
 
     Words may wrap, but only between them, and numbers may not.
@@ -169,7 +161,7 @@ def _rows(table: Table, console: Console) -> RenderableType:
     room = console.width - sum(least + _PADDING for _, least, _ in columns)
     if room < 0:
         return _transposed(table)
-    rich_table = RichTable(
+    rich_table = Table(
         box=box.SIMPLE_HEAD, show_edge=False, padding=(0, 1, 0, 0), header_style='dim'
     )
     for k, (heading, least, widest) in enumerate(columns):
@@ -184,12 +176,12 @@ def _rows(table: Table, console: Console) -> RenderableType:
     return rich_table
 
 
-def _transposed(table: Table) -> RenderableType:
+def _transposed(table: doc.Table) -> RenderableType:
     """Return each row as its subject, with the values and their labels below it."""
     blocks: list[RenderableType] = []
     for subject, *cells in table.rows:
         blocks.append(Text(subject.text, _TONE_STYLES[subject.tone], overflow='fold'))
-        grid = RichTable.grid(padding=(0, 2))
+        grid = Table.grid(padding=(0, 2))
         for column, cell in zip(table.columns[1:], cells, strict=True):
             if cell.says:
                 grid.add_row(Text(f'  {column}', 'dim'), _styled(cell, cell.text))
@@ -197,5 +189,5 @@ def _transposed(table: Table) -> RenderableType:
     return Group(*blocks)
 
 
-def _styled(cell: Cell, text: str) -> Text:
+def _styled(cell: doc.Cell, text: str) -> Text:
     return Text(text, _TONE_STYLES[cell.tone])
