@@ -12,17 +12,7 @@ from gear_kinematics.commands import pins as pinning
 from gear_kinematics.commands.pins import Pins
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.kinematics import vernier
-from gear_kinematics.report.document import (
-    Cell,
-    Document,
-    Figure,
-    Layout,
-    Line,
-    Panel,
-    Pen,
-    Section,
-    Table,
-)
+from gear_kinematics.report import document as doc
 from gear_kinematics.shape.angles import arc, arc_seconds
 
 _NEIGHBOURS = 3  # number of positions listed on either side of the nearest one
@@ -42,7 +32,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     pins = pinning.find(options, gear, math.radians(options.degrees or 0.0), _NEIGHBOURS)
     zk = gear.ring_teeth
     return reporter.write(
-        Document('gearkin index', (_section(pins, zk),), _data(pins, zk)),
+        doc.Document('gearkin index', (_section(pins, zk),), _data(pins, zk)),
         [arguments.config_path(options)],
     )
 
@@ -59,15 +49,15 @@ def _data(pins: Pins, zk: int) -> dict[str, Any]:
     }
 
 
-def _section(pins: Pins, zk: int) -> Section:
+def _section(pins: Pins, zk: int) -> doc.Section:
     count = vernier.distinct_positions(zk)
-    facts = Table.of_values(
-        Layout.LINES,
+    facts = doc.Table.of_values(
+        doc.Layout.LINES,
         ('holes', f'{zk} teeth, {zk + 1} ring holes, {zk + 2} chassis holes'),
         ('positions', f'{count} positions, one every {arc(vernier.step(zk))}'),
         *pins.facts(),
     )
-    return Section(
+    return doc.Section(
         '',
         (facts, _position_table(pins)),
         remarks=(pinning.SENSES,),
@@ -84,25 +74,28 @@ def _sentence(pins: Pins) -> str:
     )
 
 
-def _figure(pins: Pins) -> Figure:
+def _figure(pins: Pins) -> doc.Figure:
     steps = np.array([choice.steps for choice in pins.choices], np.float64)
     error = np.array([arc_seconds(choice.error) for choice in pins.choices])
-    line = Line('position', Pen.FIRST, steps, error, points=True)
+    line = doc.Line('position', doc.Pen.FIRST, steps, error, points=True)
     label = 'position, steps from the nearest'
-    return Figure((Panel('', label, 'error of the turn [″]', (line,), levels=((0.0, 'wanted'),)),))
+    return doc.Figure(
+        (doc.Panel('', label, 'error of the turn [″]', (line,), levels=((0.0, 'wanted'),)),)
+    )
 
 
-def _position_table(pins: Pins) -> Table:
-    rows = []
-    for choice in pins.choices:
-        cells = (
-            f'{choice.steps:+}' if choice.steps else '0',
-            ' or '.join(str(setting.tooth) for setting in choice.settings),
-            str(choice.settings[0].ring_hole),
-            ' or '.join(str(setting.chassis_hole) for setting in choice.settings),
-            arc(choice.ring_turn),
-            f'{arc_seconds(choice.error):+z.3f}',
-        )
-        rows.append(tuple(map(Cell, cells)))
-    columns = ('steps', 'tooth', 'ring hole', 'chassis hole', 'turn', 'error [″]')
-    return Table(columns, tuple(rows), words=())
+def _position_table(pins: Pins) -> doc.Table:
+    return doc.Table.of_items(
+        {
+            'steps': lambda choice: f'{choice.steps:+}' if choice.steps else '0',
+            'tooth': lambda choice: ' or '.join(str(own.tooth) for own in choice.settings),
+            'ring hole': lambda choice: str(choice.settings[0].ring_hole),
+            'chassis hole': lambda choice: ' or '.join(
+                str(own.chassis_hole) for own in choice.settings
+            ),
+            'turn': lambda choice: arc(choice.ring_turn),
+            'error [″]': lambda choice: f'{arc_seconds(choice.error):+z.3f}',
+        },
+        pins.choices,
+        words=(),
+    )
