@@ -17,13 +17,12 @@ from functools import partial
 from pathlib import Path
 
 from rosbags.rosbag2 import Reader, StoragePlugin, Writer
-from validation import compare, repeated
+from validation import TYPES, compare, repeated
 
 from gear_kinematics.bag import Bag
 from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.validation.compute import compute
-from gear_kinematics.wire.topics import RECORDED_TOPICS
 
 _ROTOR = '/rotor_state'
 
@@ -53,11 +52,9 @@ def main() -> None:
 def _ways(folder: Path, storage: str, count: int) -> dict[str, Callable[[], object]]:
     """Make both bags in a folder, and give what is to be compared; the first is the measure."""
     read, written = Path(folder, 'read'), Path(folder, 'written')
-    messages = [
-        message for message in repeated(len(RECORDED_TOPICS) * count) if message[0] == _ROTOR
-    ]
+    messages = [message for message in repeated(len(TYPES) * count) if message[0] == _ROTOR]
     with BagWriter(read, storage) as writer:
-        writer.add_topic(_ROTOR, RECORDED_TOPICS[_ROTOR])
+        writer.add_topic(_ROTOR, TYPES[_ROTOR])
         writer.write_all(messages)
     _compute(storage, read, written)
     ways = {'compute': partial(_compute, storage, read)}

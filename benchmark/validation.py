@@ -34,11 +34,12 @@ from gear_kinematics.report.document import Verdict
 from gear_kinematics.share import share_directory
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validate_bag import validate_bag
-from gear_kinematics.wire.topics import RECORDED_TOPICS
+from gear_kinematics.wire.topics import BODY_POSES, OUTPUT_STATE, ROTOR_STATE, TOPICS
 
 _SOURCE = 'servo_point_to_point'
 _LENGTH = 7  # s, of which the source takes 6
 _SECOND = 1_000_000_000  # ns
+TYPES = {f'/{name}': TOPICS[name].type for name in (ROTOR_STATE, OUTPUT_STATE, BODY_POSES)}
 
 
 def main() -> None:
@@ -76,7 +77,7 @@ def main() -> None:
 def write_repeated(path: Path, count: int, storage: str) -> None:
     """Write a bag of `repeated` messages, compressed where the storage has chunks."""
     with BagWriter(path, storage, 'zstd' if storage == 'mcap' else 'none') as writer:
-        for topic, message_type in RECORDED_TOPICS.items():
+        for topic, message_type in TYPES.items():
             writer.add_topic(topic, message_type)
         for batch in in_batches(repeated(count)):
             writer.write_all(batch)
@@ -85,9 +86,9 @@ def write_repeated(path: Path, count: int, storage: str) -> None:
 def repeated(count: int) -> Iterator[Message]:
     """Give a number of messages of the source, repeated with stamps that go on."""
     with Bag(share_directory() / 'bags' / _SOURCE) as bag:
-        source = list(bag.messages(RECORDED_TOPICS))
+        source = list(bag.messages(TYPES))
     # Whole sets: an input without its outputs would be a failure.
-    for number in range(count - count % len(RECORDED_TOPICS)):
+    for number in range(count - count % len(TYPES)):
         repetition, index = divmod(number, len(source))
         topic, received, data = source[index]
         (seconds,) = struct.unpack_from('<i', data, 4)

@@ -20,7 +20,11 @@ import numpy as np
 from gear_kinematics.bag import MessagesByTopic
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.kinematics import Mechanism, matrix_method
-from gear_kinematics.validation.independent_bodies import ERRORS_OF, own_joints
+from gear_kinematics.validation.independent_bodies import (
+    errors_of_joints,
+    errors_of_poses,
+    own_joints,
+)
 from gear_kinematics.validation.independent_message import (
     IndependentMessage,
     InputTime,
@@ -152,7 +156,7 @@ class Independent:
             found = paired(waiting, self._motions[topic])
             if isinstance(gear, Mechanism) and found:
                 of, _, given_bodies, moved = zip(*found, strict=True)
-                errors_of = ERRORS_OF['poses' if topic == self._topics.poses else 'joints']
+                errors_of = errors_of_poses if topic == self._topics.poses else errors_of_joints
                 for name, errors in errors_of(gear, np.transpose(moved), given_bodies).items():
                     self._note(name, of, errors)
 

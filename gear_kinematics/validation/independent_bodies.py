@@ -76,7 +76,3 @@ def errors_of_joints(gear: Mechanism, motions: Array, recorded: Sequence[Any]) -
         for name, part in zip(names, (~slides, slides), strict=True):
             errors[f'{name} of joints'] = error[:, part].max(axis=1)
     return errors
-
-
-ERRORS_OF = {'poses': errors_of_poses, 'joints': errors_of_joints}
-"""What compares them."""

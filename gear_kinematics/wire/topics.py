@@ -67,11 +67,6 @@ def _of_part(part: str) -> Mapping[str, str]:
 STATE_TOPICS, LOAD_TOPICS, CORRECTED_TOPICS = map(_of_part, ('state', 'load', 'correction'))
 """The topics of the state, of the loads and of the corrected output, and their types."""
 
-RECORDED_TOPICS: Mapping[str, str] = {
-    f'/{name}': TOPICS[name].type for name in (ROTOR_STATE, OUTPUT_STATE, BODY_POSES)
-}
-"""The topics in the root namespace that are validated in a recording, and their types."""
-
 
 def topic_of(actuator: str, topic: str) -> str:
     """Return the name of a topic of an actuator, which may be that of all of an arm.

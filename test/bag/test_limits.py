@@ -21,8 +21,7 @@ from blocked_bags import started
 from gear_recordings import old_recording
 from live import rotor_bytes
 from rosbags import rosbag1
-
-from gear_kinematics.wire.topics import RECORDED_TOPICS
+from shipped_bags import TYPES
 
 pytestmark = pytest.mark.slow
 
@@ -190,7 +189,7 @@ def metadata(path: Path, topics: Iterable[str] = (), files: Iterable[str] = ('a.
 
 def database(path: Path, topics: Iterable[str], messages: Iterable[bytes]) -> Path:
     """Write further topics, and messages on /rotor_state."""
-    types = [*RECORDED_TOPICS.items(), *((topic, JOINT_STATE) for topic in topics)]
+    types = [*TYPES.items(), *((topic, JOINT_STATE) for topic in topics)]
     return old_recording(path, types, (('/rotor_state', 9, data) for data in messages))
 
 
@@ -205,7 +204,7 @@ def ros1_chunks_in_turns(path: Path) -> Path:
     with writer:
         rotor, *_ = (
             writer.add_connection(topic, kind, msgdef='uint8[10000] a\n', md5sum='0')
-            for topic, kind in RECORDED_TOPICS.items()
+            for topic, kind in TYPES.items()
         )
         for received in (*range(0, 6000, 2), *range(1, 6000, 2)):
             writer.write(rotor, received, zeros_of_ros1())
