@@ -45,7 +45,6 @@ def document(
 ) -> doc.Document:
     """Return the document on recordings, with a section for each, and then their comparison."""
     sections, recordings = zip(*(_reported(report, limits) for report in reports), strict=True)
-    verdicts = [section.verdict for section in sections if section.verdict]
     mains = [{'recording': printable(report.name), **_main(report)} for report in reports]
     rows = (tuple(map(doc.Cell, main.values())) for main in mains)
     return doc.Document(
@@ -58,7 +57,6 @@ def document(
             'recordings': recordings,
             **(comparison.data if comparison else {}),
         },
-        max(verdicts, key=list(doc.Verdict).index, default=None),
         doc.Table(tuple(mains[0]), tuple(rows)),
         comparison.sentence if comparison else '',
     )

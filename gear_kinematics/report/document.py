@@ -27,6 +27,11 @@ class Verdict(StrEnum):
     UNUSABLE = 'unusable'
 
 
+def worst(verdicts: Iterable[Verdict]) -> Verdict:
+    """Return the worst of verdicts; nothing at all is unusable."""
+    return max(verdicts, key=[*Verdict].index, default=Verdict.UNUSABLE)
+
+
 OUTCOME = {Verdict.PASS: 'passed', Verdict.FAIL: 'failed', Verdict.UNUSABLE: 'unusable'}
 
 
@@ -272,10 +277,15 @@ class Document:
     title: str  #: title such as `gearkin validate`
     sections: tuple[Section, ...]
     data: Mapping[str, Any] = field(default_factory=dict)  #: contents of the JSON
-    verdict: Verdict | None = None
     summary: Table | None = None  #: a row for each section; shown if there are several
     totals: str = ''  #: summary of the sections in one line
     origin: Origin | None = None
+
+    @property
+    def verdict(self) -> Verdict | None:
+        """The worst verdict of the sections; None if these have none."""
+        known = [section.verdict for section in self.sections if section.verdict]
+        return None if self.sections and not known else worst(known)
 
     def of_failed(self) -> Self:
         """Return the document with only those sections that failed or are unusable."""

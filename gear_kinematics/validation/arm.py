@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from gear_kinematics.bag import MessagesByTopic, TopicMessages
-from gear_kinematics.report.document import Verdict
+from gear_kinematics.report.document import worst
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.fields import Array, Occurrences
 from gear_kinematics.validation.load_topics import LoadTopic
@@ -197,7 +197,7 @@ class ArmValidator:
         ]
         report = BagReport(
             str(task.bag),
-            max((each.verdict for each in reports), key=list(Verdict).index),
+            worst(each.verdict for each in reports),
             task.config,
             error='; '.join(named) or None,
             messages=self._messages,

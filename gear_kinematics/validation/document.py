@@ -1,6 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A validation as a document: its tables, its figure and its test cases."""
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
 from typing import Any
@@ -10,25 +11,8 @@ from numpy.typing import ArrayLike
 
 from gear_kinematics.kinematics import solve, split_turns
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.report.document import (
-    OUTCOME,
-    Array,
-    Case,
-    Cell,
-    Document,
-    Figure,
-    Layout,
-    Line,
-    Panel,
-    Pen,
-    Section,
-    Table,
-    Tone,
-    Verdict,
-    counted,
-    number,
-    printable,
-)
+from gear_kinematics.report import document as doc
+from gear_kinematics.report.document import OUTCOME, counted, number, printable, worst
 from gear_kinematics.report.mechanism import MovingMechanism
 from gear_kinematics.validation.findings import (
     answer,
@@ -51,28 +35,25 @@ _VERSION = 1
 _TIME = 'time [s]'
 _LEAST_ERROR = 1e-18  # error, in any unit, as which smaller errors and zeros are drawn
 
-Row = tuple[Cell, ...]
+Row = tuple[doc.Cell, ...]
 
 
-def document(reports: Sequence[BagReport]) -> Document:
+def document(reports: Sequence[BagReport]) -> doc.Document:
     """Return the document of a validation, with a section for each bag and each actuator."""
     parts = [part for report in reports for part in (report, *report.actuators)]
-    count = {verdict: sum(report.verdict == verdict for report in reports) for verdict in Verdict}
-    counts = ', '.join(f'{count[verdict]} {OUTCOME[verdict]}' for verdict in Verdict)
-    # No bags at all count as unusable.
-    verdict = next((v for v in reversed(Verdict) if count[v]), Verdict.UNUSABLE)
+    count = Counter(report.verdict for report in reports)
+    counts = ', '.join(f'{count[verdict]} {OUTCOME[verdict]}' for verdict in doc.Verdict)
     columns = 'bag', 'verdict', 'compared', 'largest error', 'tolerance', 'first finding'
-    return Document(
+    return doc.Document(
         'gearkin validate',
         tuple(map(_section, parts)),
         {
             'schema': _SCHEMA,
             'version': _VERSION,
-            'verdict': verdict,
+            'verdict': worst(report.verdict for report in reports),
             'bags': [_bag(report) for report in reports],
         },
-        verdict,
-        Table(columns, tuple(map(_summary, parts)), words=('', 'verdict', 'first finding')),
+        doc.Table(columns, tuple(map(_summary, parts)), words=('', 'verdict', 'first finding')),
         f'{counted(len(reports), "bag")}: {counts}' if len(reports) != 1 else '',
     )
 
@@ -82,9 +63,9 @@ def _name(report: BagReport) -> str:
     return f'{bag}: {report.actuator}' if report.actuator else bag
 
 
-def _section(report: BagReport) -> Section:
+def _section(report: BagReport) -> doc.Section:
     drawn = figure(report)
-    return Section(
+    return doc.Section(
         _name(report),
         tuple(_tables(report)),
         report.verdict,
@@ -116,34 +97,34 @@ def _bag(report: BagReport) -> dict[str, Any]:
     return content
 
 
-def _cases(report: BagReport) -> Iterator[Case]:
+def _cases(report: BagReport) -> Iterator[doc.Case]:
     """Yield the test cases of JUnit: the bag, its input, and each topic and field."""
     # Even without a finding, an unusable bag must not look as if it had passed.
     texts = tuple(one.text for one in findings(report)) or (f'the bag {OUTCOME[report.verdict]}',)
-    unusable = report.verdict == Verdict.UNUSABLE
-    yield Case('bag', () if report.passed else texts, 'error' if unusable else 'failure')
+    unusable = report.verdict == doc.Verdict.UNUSABLE
+    yield doc.Case('bag', () if report.passed else texts, 'error' if unusable else 'failure')
     if report.rotor:
         # Never fails by itself: its faults appear as wrong or missing outputs.
-        yield Case(printable(f'input {report.rotor.topic}'))
+        yield doc.Case(printable(f'input {report.rotor.topic}'))
     for topic in report.topics:
         for name in (topic.topic, *(field_name(topic, field) for field in topic.fields)):
             at_fault = (sentence(one, report) for one in faults(report) if one.topic == name)
-            yield Case(printable(name), tuple(at_fault))
+            yield doc.Case(printable(name), tuple(at_fault))
 
 
-def _tables(report: BagReport) -> Iterator[Table]:
+def _tables(report: BagReport) -> Iterator[doc.Table]:
     """Yield the tables about a bag; the first describes the reference of the comparison."""
-    yield Table.of_values(
-        Layout.INLINE,
+    yield doc.Table.of_values(
+        doc.Layout.INLINE,
         ('config', printable(report.config)),
         ('gear ratio', printable(report.gear_ratio)),
         ('messages', str(report.messages)),
     )
     if report.rotor:
         yield _input_table(report.rotor)
-    yield Table.of_items(TOPIC, report.topics)
+    yield doc.Table.of_items(TOPIC, report.topics)
     fields = (_field(field_name(t, field), field) for t in report.topics for field in t.fields)
-    yield Table(_FIELDS, tuple(fields))
+    yield doc.Table(_FIELDS, tuple(fields))
 
 
 def _summary(report: BagReport) -> Row:
@@ -152,24 +133,24 @@ def _summary(report: BagReport) -> Row:
     error, tolerance = (field.max_error, field.tolerance) if field else (None, None)
     unit = printable(field.unit) if field else ''
     return (
-        Cell(_name(report)),
-        Cell(OUTCOME[report.verdict], Tone.PLAIN if report.passed else Tone.BAD),
-        Cell(str(sum(topic.compared for topic in report.every_topic))),
+        doc.Cell(_name(report)),
+        doc.Cell(OUTCOME[report.verdict], doc.Tone.PLAIN if report.passed else doc.Tone.BAD),
+        doc.Cell(str(sum(topic.compared for topic in report.every_topic))),
         _measured(error, unit),
         _measured(tolerance, unit),
-        Cell('' if report.passed else next((found.text for found in findings(report)), '')),
+        doc.Cell('' if report.passed else next((found.text for found in findings(report)), '')),
     )
 
 
-def _input_table(rotor: InputReport) -> Table:
+def _input_table(rotor: InputReport) -> doc.Table:
     rejected = {f'rejected, {printable(cause)}': n for cause, n in sorted(rotor.rejected.items())}
     counts = {'rejected': sum(rotor.rejected.values()), **rejected, 'gaps': rotor.gaps}
-    return Table.of_values(
-        Layout.INLINE,
+    return doc.Table.of_values(
+        doc.Layout.INLINE,
         ('joint', printable(rotor.joint)),
         ('messages', str(rotor.messages)),
         ('valid', str(rotor.valid)),
-        *((name, _count(count, Tone.NOTABLE)) for name, count in counts.items()),
+        *((name, _count(count, doc.Tone.NOTABLE)) for name, count in counts.items()),
         ('rate', _measured(rotor.rate, 'Hz', digits=6)),
         ('duration', _measured(rotor.duration, 's', digits=6)),
         ('max speed', _measured(rotor.max_speed, 'rad/s', digits=6)),
@@ -177,14 +158,16 @@ def _input_table(rotor: InputReport) -> Table:
     )
 
 
-TOPIC: Mapping[str, Callable[[TopicReport], str | Cell]] = {
+TOPIC: Mapping[str, Callable[[TopicReport], str | doc.Cell]] = {
     'topic': lambda topic: printable(topic.topic),
     'messages': lambda topic: str(topic.messages),
-    'compared': lambda topic: Cell(str(topic.compared), *[Tone.BAD] * (not topic.compared)),
+    'compared': lambda topic: doc.Cell(
+        str(topic.compared), *[doc.Tone.BAD] * (not topic.compared)
+    ),
     'missing': lambda topic: _count(topic.missing),
     'extra': lambda topic: _count(topic.extra),
     'out of order': lambda topic: _count(topic.out_of_order),
-    'left out': lambda topic: Cell(str(sum(topic.left_out.values()) or ''), Tone.NOTABLE),
+    'left out': lambda topic: doc.Cell(str(sum(topic.left_out.values()) or ''), doc.Tone.NOTABLE),
 }
 """The columns about a topic."""
 _FIELDS = 'field', 'compared', 'absent', 'not finite', 'max error', 'tolerance', 'rms error'
@@ -195,24 +178,24 @@ def _field(name: str, field: FieldReport) -> Row:
     errors = (field.max_error, field.tolerance, field.rms_error) if field.compared else [None] * 3
     greatest, *others = (_measured(error, unit) for error in errors)
     return (
-        Cell(name, unit=unit),
-        Cell(str(field.compared)),
+        doc.Cell(name, unit=unit),
+        doc.Cell(str(field.compared)),
         _count(field.absent),
         _count(field.non_finite),
-        Cell(greatest.text, Tone.BAD if field.is_beyond else Tone.PLAIN, unit),
+        doc.Cell(greatest.text, doc.Tone.BAD if field.is_beyond else doc.Tone.PLAIN, unit),
         *others,
     )
 
 
-def _measured(value: float | None, unit: str, digits: int = 3) -> Cell:
-    return Cell('' if value is None else number(value, digits), unit=unit)
+def _measured(value: float | None, unit: str, digits: int = 3) -> doc.Cell:
+    return doc.Cell('' if value is None else number(value, digits), unit=unit)
 
 
-def _count(count: int, tone: Tone = Tone.BAD) -> Cell:
-    return Cell(str(count), tone if count else Tone.NONE)
+def _count(count: int, tone: doc.Tone = doc.Tone.BAD) -> doc.Cell:
+    return doc.Cell(str(count), tone if count else doc.Tone.NONE)
 
 
-def figure(report: BagReport) -> Figure | None:
+def figure(report: BagReport) -> doc.Figure | None:
     """Plot over time the errors of what failed, or else of the first field; None without any."""
     series = {one.topic: one for one in report.series if one.time}
     compared = [
@@ -226,21 +209,21 @@ def figure(report: BagReport) -> Figure | None:
         return None
     panels = [panel for field, panel in compared if not field.passed] or [compared[0][1]]
     first = report.series[0]
-    line = _line(first.time, 'rotor angle', Pen.FAINT, first.rotor_angle)
-    return Figure((*panels, Panel('', _TIME, 'rotor angle [rad]', (line,))), stacked=True)
+    line = _line(first.time, 'rotor angle', doc.Pen.FAINT, first.rotor_angle)
+    return doc.Figure((*panels, doc.Panel('', _TIME, 'rotor angle [rad]', (line,))), stacked=True)
 
 
-def _error_panel(title: str, field: FieldReport, series: Series) -> Panel:
+def _error_panel(title: str, field: FieldReport, series: Series) -> doc.Panel:
     error = np.abs(np.asarray(series.errors[field.name], float))
     # A logarithmic axis has no zero.
-    line = _line(series.time, 'error', Pen.SECOND, np.maximum(error, _LEAST_ERROR))
+    line = _line(series.time, 'error', doc.Pen.SECOND, np.maximum(error, _LEAST_ERROR))
     levels = ((field.tolerance, 'tolerance'),) if field.tolerance else ()
     label = printable(f'error [{field.unit}]')
-    return Panel(title, _TIME, label, (line,), levels=levels, scale='log')
+    return doc.Panel(title, _TIME, label, (line,), levels=levels, scale='log')
 
 
-def _line(time: Sequence[float], name: str, pen: Pen, values: ArrayLike) -> Line:
-    return Line(name, pen, np.asarray(time, float), np.asarray(values, float))
+def _line(time: Sequence[float], name: str, pen: doc.Pen, values: ArrayLike) -> doc.Line:
+    return doc.Line(name, pen, np.asarray(time, float), np.asarray(values, float))
 
 
 def moving(report: BagReport) -> MovingMechanism | None:
@@ -264,8 +247,8 @@ def moving(report: BagReport) -> MovingMechanism | None:
     )
 
 
-def _degrees(turns: Array, angle: Array) -> Array:
+def _degrees(turns: doc.Array, angle: doc.Array) -> doc.Array:
     """Return angles in degrees, minus the whole turns of the first sample."""
     with np.errstate(invalid='ignore'):  # infinite turns
-        degrees: Array = 360.0 * (turns - turns[0]) + np.degrees(angle)
+        degrees: doc.Array = 360.0 * (turns - turns[0]) + np.degrees(angle)
     return degrees

@@ -19,7 +19,6 @@ from gear_kinematics.statistics.uncertainty import COVERAGE
 def document(fit: Fit, target: str) -> doc.Document:
     """Return the document on a calibration whose file is `target`."""
     made, errors = fit.calibration, fit.calibration.validation
-    verdict = doc.Verdict.PASS if fit.helps else doc.Verdict.FAIL
     if fit.helps:
         what = Observation.ERROR_FALLS
     elif errors.rms_after < errors.rms_before and not interval_holds(made):
@@ -46,7 +45,7 @@ def document(fit: Fit, target: str) -> doc.Document:
     section = doc.Section(
         printable(target),
         (terms,),
-        verdict,
+        doc.Verdict.PASS if fit.helps else doc.Verdict.FAIL,
         (doc.Sentence('finding', str(finding)),),
         tuple(map(printable, sentences)),
         _figure(made.half_width, fit),
@@ -68,7 +67,7 @@ def document(fit: Fit, target: str) -> doc.Document:
         ],
         'remarks': sentences,
     }
-    return doc.Document('gearkin calibrate', (section,), data, verdict)
+    return doc.Document('gearkin calibrate', (section,), data)
 
 
 def _remarks(fit: Fit) -> Iterator[str | Observed]:
@@ -113,7 +112,6 @@ def check_document(path: Path, half_width: float, judgements: Sequence[Judgement
         f'gearkin calibrate --check {printable(path.name)}',
         tuple(_section(half_width, one) for one in judgements),
         data,
-        doc.Verdict.PASS if all(one.holds for one in judgements) else doc.Verdict.FAIL,
     )
 
 

@@ -107,11 +107,10 @@ def document(result: Commissioning, target: str) -> doc.Document:
     remarks, names = [*map(str, result.notes)], [joint.recording.name for joint in result.joints]
     for joint in result.joints:
         remarks += [f'{joint.recording.name}: {what}' for what in joint.recording.sentences]
-    verdict = None if result.between and not wrong else doc.Verdict.FAIL
     section = doc.Section(
         printable(', '.join(names)),
         (table,),
-        verdict,
+        None if result.between and not wrong else doc.Verdict.FAIL,
         tuple(
             doc.Sentence('finding', printable(str(each))) for each in (answer, *result.questions)
         ),
@@ -130,7 +129,7 @@ def document(result: Commissioning, target: str) -> doc.Document:
         'contradicted': [*wrong],
         'remarks': [*remarks, *result.questions],
     }
-    return doc.Document('gearkin commission', (section,), data, verdict)
+    return doc.Document('gearkin commission', (section,), data)
 
 
 def _figure(result: Commissioning) -> doc.Figure | None:

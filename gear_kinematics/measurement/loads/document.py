@@ -44,13 +44,9 @@ class LoadReport(NamedTuple):
 def document(reports: Sequence[LoadReport]) -> doc.Document:
     """Join the reports on recordings."""
     sections = tuple(report.section for report in reports if report.section)
-    verdicts = {section.verdict for section in sections}
-    verdict = next(
-        (each for each in (doc.Verdict.FAIL, doc.Verdict.PASS) if each in verdicts), None
-    )
     data = {'schema': 'gear_kinematics/loads', 'version': 1}
     data |= {'recordings': [report.data for report in reports if report.section]}
-    return doc.Document('gearkin loads', sections, data, verdict)
+    return doc.Document('gearkin loads', sections, data)
 
 
 def report(task: LoadTask, progress: ReportProgress | None = None) -> LoadReport:
