@@ -88,10 +88,10 @@ def _position_table(pins: Pins) -> doc.Table:
     return doc.Table.of_items(
         {
             'steps': lambda choice: f'{choice.steps:+}' if choice.steps else '0',
-            'tooth': lambda choice: ' or '.join(str(own.tooth) for own in choice.settings),
+            'tooth': lambda choice: ' or '.join(str(setting.tooth) for setting in choice.settings),
             'ring hole': lambda choice: str(choice.settings[0].ring_hole),
             'chassis hole': lambda choice: ' or '.join(
-                str(own.chassis_hole) for own in choice.settings
+                str(setting.chassis_hole) for setting in choice.settings
             ),
             'turn': lambda choice: arc(choice.ring_turn),
             'error [″]': lambda choice: f'{arc_seconds(choice.error):+z.3f}',

@@ -28,7 +28,7 @@ class Verdict(StrEnum):
 
 
 def worst(verdicts: Iterable[Verdict]) -> Verdict:
-    """Return the worst of verdicts; nothing at all is unusable."""
+    """Return the worst of some verdicts; UNUSABLE if there is none."""
     return max(verdicts, key=[*Verdict].index, default=Verdict.UNUSABLE)
 
 
