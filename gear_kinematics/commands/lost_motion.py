@@ -71,6 +71,8 @@ def run(options: argparse.Namespace) -> ExitCode:
         if report.recording.damage:
             failed = True
             complain(report.recording.damage)
+        if report.wrong_ratio:  # which makes its section unusable
+            complain(f'{report.name}: {report.wrong_ratio.sentence}')
     code = ExitCode.DONE
     if reports:
         configs = (arguments.config_path(options, path) for path in options.recordings)

@@ -69,21 +69,21 @@ def _reported(report: LostMotion, limits: Limits) -> tuple[doc.Section, Mapping[
     notes = [*recording.sentences, *(found.sentence for found in remarks(report))]
     remarked = tuple(map(printable, notes))
     failed_first = sorted(checks, key=lambda check: check.holds)
-    passed = all(check.holds for check in checks)
+    verdict = doc.Verdict.PASS if all(check.holds for check in checks) else doc.Verdict.FAIL
+    findings = [*(check.why.sentence for check in failed_first), said]
+    if report.wrong_ratio:  # by which all other figures are wrong
+        verdict, findings = doc.Verdict.UNUSABLE, findings[::-1]
     faults = (() if check.holds else (str(check.why),) for check in checks)
     cases = (doc.Case(check.limit, own) for check, own in zip(checks, faults, strict=True))
     section = doc.Section(
         printable(report.name),
         tuple(_tables(report)),
-        (doc.Verdict.PASS if passed else doc.Verdict.FAIL) if checks else None,
-        tuple(
-            doc.Sentence('finding', text)
-            for text in (*(check.why.sentence for check in failed_first), said)
-        ),
+        verdict if checks or report.wrong_ratio else None,
+        tuple(doc.Sentence('finding', text) for text in findings),
         remarked,
         doc.Figure(tuple(_panels(report)), columns=_COLUMNS),
         key=doc.Table.of_values(doc.Layout.INLINE, *_main(report).items()),
-        cases=tuple(cases) or (doc.Case('measured'),),
+        cases=tuple(cases) or (doc.Case('measured', (said,) if report.wrong_ratio else ()),),
     )
     data = {
         'recording': report.name,

@@ -349,6 +349,15 @@ def test_any_ratio_can_be_given(tmp_path, capsys, option):
     assert found['transmission']['forward']['value'] == pytest.approx(2e-3, rel=1e-3)
 
 
+def test_a_recording_of_another_ratio_is_unusable(tmp_path, capsys):
+    words = ['lost-motion', str(another_gear(tmp_path)), '--max-hysteresis', '90', '--junit', '-']
+    assert main(words) == 2
+    said = capsys.readouterr()
+    cause = 'other.csv: The recording does not have the ratio -19: the recorded ratio is 19.33'
+    assert f'gearkin: {cause}' in said.err.replace('-19.33', '19.33')
+    assert 'failures="1"' in said.out
+
+
 @pytest.mark.parametrize(
     ('words', 'code', 'told'),
     [
