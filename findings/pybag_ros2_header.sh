@@ -2,12 +2,12 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # pybag-sdk 0.13.0: of a ROS 1 bag that it converts to MCAP for ROS 2, a ROS 2 node can read no message with a header.
 #
-# "pybag convert" writes MCAP with the profile "ros2" and CDR by default. Expected of a JointState: the message of ROS 2,
-# whose header has a stamp and a frame. What happens: the stamp becomes one of ROS 2, but the field seq, which only ROS 1
-# has, stays in the header and in the schema. A node of ROS 2 knows JointState by its name alone: it takes seq for the
-# seconds and the nanoseconds for the length of frame_id, and rclpy refuses each of 100 messages, whose bytes
-# "ros2 bag play" would send as they are. The command ends with 0 and no warning, and a viewer that reads the schema in
-# the file shows all of it right.
+# "pybag convert" writes MCAP with the profile "ros2" and CDR by default. Expected of a JointState: the message of
+# ROS 2, whose header has a stamp and a frame. What happens: the stamp becomes one of ROS 2, but the field seq, which
+# only ROS 1 has, stays in the header and in the schema. A node of ROS 2 knows JointState by its name alone: it takes
+# seq for the seconds and the nanoseconds for the length of frame_id, and rclpy refuses each of 100 messages, whose
+# bytes "ros2 bag play" would send as they are. The command ends with 0 and no warning, and a viewer that reads the
+# schema in the file shows all of it right.
 # For us: convert such bags by rosbags-convert with --dst-typestore ros2_jazzy.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
