@@ -5,9 +5,9 @@
 # A drive of CiA 402 has a home offset (607C) with ParameterValue=100 in its DCF. A program imports the file, changes
 # the value to 300, gives the target velocity (60FF) the value -700 and another default, and exports all by export_od().
 # Expected: a DCF with 300 and -700. What happens: where the file had a text, that text is written again, so that the
-# home offset stays 100, and the default what it was, in an EDS as well. A negative number is written as 0x-2BC, which is
-# no number: the import of this library passes over it without a word, and load_configuration() then leaves the speed of
-# the drive as it is. Positive values that the file did not have are right.
+# home offset stays 100, and the default what it was, in an EDS as well. A negative number is written as 0x-2BC, which
+# is no number: the import of this library passes over it without a word, and load_configuration() then leaves the
+# speed of the drive as it is. Positive values that the file did not have are right.
 # For us: set value_raw and default_raw to decimal text, as '-700', together with value and default.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
