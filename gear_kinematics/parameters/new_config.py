@@ -74,19 +74,18 @@ def _gear(
     joint: str, ratio: GearRatio, teeth: tuple[int, int] | None, encoder: Mapping[str, str | float]
 ) -> dict[str, str]:
     """Return the parameters that are known of a gear, as scalars of YAML."""
-    values = {'rotor_joint': quoted(joint), 'gear_ratio': quoted(str(ratio))}
+    values = {'rotor_joint': scalar(joint), 'gear_ratio': scalar(str(ratio))}
     if teeth:
         values |= zip(('ring_teeth', 'satellite_teeth'), map(str, teeth), strict=True)
         values['gear_ratio'] = "''"
-    scalars = {
-        name: quoted(v) if isinstance(v, str) else f'{v:.9f}' for name, v in encoder.items()
-    }
-    return values | scalars
+    return values | {name: scalar(value) for name, value in encoder.items()}
 
 
-def quoted(text: str) -> str:
-    """Write a text as a scalar of YAML, in double quotes where single ones cannot hold it."""
-    return str(yaml.safe_dump(text, default_style="'", width=math.inf)).strip()
+def scalar(value: str | float) -> str:
+    """Write a value for YAML: a float to nine decimals, a text in quotes, single if possible."""
+    if isinstance(value, str):
+        return str(yaml.safe_dump(value, default_style="'", width=math.inf)).strip()
+    return f'{value:.9f}' if isinstance(value, float) else str(value)
 
 
 def start_command(topic: str, name: str, encoder: str = '') -> str:

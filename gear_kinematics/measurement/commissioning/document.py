@@ -13,7 +13,7 @@ from gear_kinematics.measurement.sentences import Observation
 from gear_kinematics.measurement.wording import plus_minus, shown
 from gear_kinematics.parameters.arm_file import add_actuators
 from gear_kinematics.parameters.files import write_config
-from gear_kinematics.parameters.new_config import arm_head, quoted, start_command
+from gear_kinematics.parameters.new_config import arm_head, scalar, start_command
 from gear_kinematics.parameters.node_parameters import default_config
 from gear_kinematics.report import document as doc
 from gear_kinematics.report.document import printable
@@ -73,7 +73,7 @@ def _values(result: Commissioning) -> Iterator[str]:
             yield from _comment(f'Open: {found.name}: {found.evidence}.')
         else:
             yield from _comment(str(found.evidence))
-            yield f'{found.name}: {_yaml(found.value)}'
+            yield f'{found.name}: {scalar(found.value)}'
     for note in (*result.notes, *(f'{question}.' for question in result.questions)):
         yield from _comment(str(note))
 
@@ -81,11 +81,6 @@ def _values(result: Commissioning) -> Iterator[str]:
 def _comment(text: str) -> Iterator[str]:
     lines = wrap(printable(text), _WIDTH, break_long_words=False, break_on_hyphens=False)
     return (f'# {line}' for line in lines)
-
-
-def _yaml(value: str | float) -> str:
-    text = f'{value:.9f}' if isinstance(value, float) else str(value)
-    return quoted(text) if isinstance(value, str) else text
 
 
 def document(result: Commissioning, target: str) -> doc.Document:
