@@ -37,8 +37,11 @@ class Ros1(Storage):
         self._reader.open()
         chunks = self._reader.chunks
         for place, chunk in chunks.items():
-            if decompress := _BOUNDED.get(chunk.decompressor):
-                chunks[place] = chunk._replace(decompressor=partial(self._records, decompress))
+            if bounded := _BOUNDED.get(chunk.decompressor):
+                decompress = partial(
+                    decompressed, decompress=bounded, limits=limits, what='a chunk'
+                )
+                chunks[place] = chunk._replace(decompressor=decompress)
 
     def close(self) -> None:
         """Close the file."""
@@ -65,6 +68,3 @@ class Ros1(Storage):
                 store.max_sequence_length = len(data)
                 content = bytes(store.ros1_to_cdr(data, connection.msgtype))
             yield connection.topic, received, content
-
-    def _records(self, decompress: Decompressor, chunk: bytes) -> bytes:
-        return decompressed(chunk, decompress, self.limits, 'a chunk')
