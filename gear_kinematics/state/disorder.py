@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Distinguishes a clock that was set back from late messages, and finds bursts of messages."""
+"""Distinguishes a clock that was set back from late messages, and judges the pace of stamps."""
 
 from itertools import pairwise
 
@@ -14,7 +14,6 @@ _CLOSE = 25  # messages, in which a bag that is looped begins at most once
 ALTERNATING = 3  # resets of the clock so close to each other: as many are no chance
 FASTEST = 100.0  # times the clock: faster than any playback
 _FEWEST, _LEAST = 10, 100_000_000  # stamps, and ns, that tell their pace; no burst takes as long
-_MANY, _SOON = 64, 0.5  # intervals that the usual one is averaged over; share of it
 
 
 class Disorder:
@@ -67,19 +66,6 @@ class Disorder:
     def _note_step(self, last: int, stamp: int) -> None:
         size, at = (last - stamp) / SECOND, last / SECOND
         self.step = Condition.CLOCK_SET_BACK(size=size, time=at)
-
-
-class Bursts:
-    """Finds bursts of messages without a stamp, by their times of reception."""
-
-    def __init__(self) -> None:
-        self._last, self._usual = 0, 0.0  # ns: the last time, and the usual interval
-
-    def go_on(self, received: int) -> bool:
-        """Take a time of reception, ns; return whether it is too soon to show a speed."""
-        elapsed, self._last = min(received - self._last, SECOND), received
-        self._usual += (elapsed - self._usual) / _MANY
-        return elapsed < _SOON * self._usual
 
 
 @once_for_joints

@@ -283,8 +283,6 @@ class Plausibility:
         steps = [self._wrapped(b - a) for a, b in pairwise(positions)]
         stale = min(STALEST, max(spans))
         noise, total = self.noise, sum(spans)
-        if total < 0.0:
-            return Belief.IMPLAUSIBLE
         speed = sum(steps) / total if total else 0.0
         slack = noise + self.limits.acceleration * total * total
         uneven = max(abs(s - speed * t) for s, t in zip(steps, spans, strict=True))
@@ -294,14 +292,16 @@ class Plausibility:
         )
         # A false speed, as of a wrong reading before a jump, must not allow its own unevenness.
         slack += min(abs(speed), _MOST_BEYOND * self.limits.speed) * stale
-        if uneven > slack or not (within or total):
+        if total < 0.0 or uneven > slack or not (within or total):
             return Belief.IMPLAUSIBLE
         first = self._wrapped(positions[0] - self._last[0])
         elapsed = (times[0] - (self._stamp if first else self._last[1])) * 1e-9
         before = self._speed()
         way = abs(speed) * (elapsed + stale) + noise
         continuous = first * speed >= 0.0 and abs(first) <= way and not self.period
-        if abs(speed) > self.limits.speed:
+        held_up = self._held_up.before(times[0] - self._last[1], self._last, self._former)
+        late = 2e-9 * max(0.0, held_up.late(*times[1:]))  # the stamps of a burst tell no speed
+        if abs(speed) * total > self.limits.speed * (total + late):
             self.seen_speed = abs(speed)
             self.limits = self.limits._replace(speed=_MARGIN * abs(speed))
         if self._goes_on(times[0], positions[0], speed):

@@ -12,7 +12,7 @@ from gear_kinematics.kinematics import RotorPosition, RotorSample, RotorTurns, s
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.parameters import PARAMETERS, NodeParameters
 from gear_kinematics.state.belief import BELIEVED, Belief
-from gear_kinematics.state.disorder import Bursts, Disorder, order
+from gear_kinematics.state.disorder import Disorder, order
 from gear_kinematics.state.effort_field import EffortField
 from gear_kinematics.state.plausibility import Plausibility
 from gear_kinematics.state.rotor_samples import RotorSamples, Row
@@ -56,7 +56,7 @@ class RotorInput:
         self.origin: Fact | None = None  # source of the turn count: homing or the output's encoder
         self._restarts = 0  # by homing, references and changed parameters of encoders
         self.rezeroed = 0  # number of these that gave the same motion another zero
-        self.disorder, self._bursts = Disorder(), Bursts()
+        self.disorder = Disorder()
         speed, acceleration, period = limits = _limits(parameters)
         self.plausibility = Plausibility(*limits)
         self.turns = RotorTurns(period=period, max_speed=speed, max_acceleration=acceleration)
@@ -277,8 +277,6 @@ class RotorInput:
         stamp = now()
         if stamp > LATEST:
             raise RejectedInputError(Rejection.STAMP_OUT_OF_RANGE)
-        if self._bursts.go_on(stamp):
-            self.plausibility.reset()
         return stamp
 
     def _take(

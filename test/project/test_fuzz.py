@@ -24,7 +24,6 @@ from std_msgs.msg import String
 from wire import encoded, micro_ros_bytes
 
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.disorder import Bursts
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.wire.joint_reader import RejectedInputError, Rejection
@@ -171,19 +170,18 @@ class Answers(Participant):
             self.expected[topic].append(stamped(answer, 0) if zero else answer)
 
     def is_sure(self, data: bytes) -> bool:
-        """Whether the answer does not depend on how fast messages without stamps arrive.
-
-        Those of a burst are judged like the first one, which the others would not stand.
-        """
+        """Whether the answer does not depend on how fast messages without stamps arrive."""
         if data[4:12] != bytes(8):
             return True
-        alone = deepcopy(self.input)
-        alone._bursts = Bursts()
-        with suppress(RejectedInputError):
-            alone.accept(data + bytes(-len(data) % 4), time.time_ns)
-        doubts, jumps = alone.rejected[Rejection.IMPLAUSIBLE], alone.plausibility.jumps
-        known = self.input.rejected[Rejection.IMPLAUSIBLE], self.input.plausibility.jumps
-        return (doubts, jumps) == known
+        latest, judged = time.time_ns(), set[tuple[int, int]]()
+        for now in (min(latest, self.input.last.stamp), latest):
+            alone = deepcopy(self.input)
+            with suppress(RejectedInputError):
+                alone.accept(data + bytes(-len(data) % 4), partial(int, now))
+            judged.add((alone.rejected[Rejection.IMPLAUSIBLE], alone.plausibility.jumps))
+        return judged == {
+            (self.input.rejected[Rejection.IMPLAUSIBLE], self.input.plausibility.jumps)
+        }
 
     def wait(self, peer) -> None:
         """Wait until every answer has come."""

@@ -118,6 +118,18 @@ ROWS = {
         found=FindingCause.ZERO_STAMPS,
         burst=6,
     ),
+    'driver without stamps restarts in a burst': Row(
+        [{'stamp': 0, 'offset': 100.0 * (k > 62)} for k in range(COUNT)],
+        {'zero_stamps': COUNT, 'rejected': {'implausible': 2}},
+        (
+            Condition.JUMPED(angle=pytest.approx(100.0, abs=2.0), time=pytest.approx(100.6)),
+            Condition.NOT_REFERENCED(),
+            Condition.REJECTED(counts={'implausible': 2}),
+        ),
+        FindingCause.JUMPED,
+        also=FindingCause.ZERO_STAMPS,
+        burst=6,
+    ),
     'no stamp, and a reading that repeats': Row(
         part({'stamp': 0}),
         {'zero_stamps': 1},
