@@ -28,7 +28,7 @@ from gear_kinematics.validation.validate_bag import validate_bag
 from gear_kinematics.validation.validator import Validator
 
 START, MS = 1_700_000_000 * SECOND, SECOND // 1000
-TIMES = np.arange(2000) * 2e-3
+TIMES = np.arange(1000) * 4e-3
 STEP = math.tau / 19  # rad of the output: a turn of the rotor
 MULTI = replace(NodeParameters.load(), output_encoder_reference='absolute')
 SINGLE = replace(MULTI, rotor_encoder='single_turn')
