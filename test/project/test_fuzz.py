@@ -33,7 +33,7 @@ FOREIGN = [
     serialize_message(message)
     for message in (String(data='rotor'), PoseArray(poses=[Pose()] * 4), Imu())
 ]
-COUNT = 20_000  # hostile payloads
+COUNT = 10_000  # hostile payloads
 VALID_EVERY, WAIT_EVERY = 20, 500  # of them; the node's queue holds four times as many
 STEP = SECOND // 1000
 PROBES = START // 2  # ns
@@ -261,7 +261,7 @@ def test_hostile_bytes_change_nothing(tmp_path):
         for found, wanted in zip(messages, answers.expected[topic], strict=True):
             by_clock = struct.unpack_from('<iI', wanted, 4) == (0, 0)
             assert (stamped(found, 0) if by_clock else found) == wanted
-    assert growth <= 5e6
+    assert growth <= 2.5e6
     assert len(lines) == len(live.text().splitlines())
     for cause in rejected:
         warned = [line.time for line in lines if cause in line.text]
