@@ -30,7 +30,7 @@ ENCODER = f'{NAMESPACE}/output_encoder'
 GEARKIN = (sys.executable, '-P', '-m', 'gear_kinematics')
 OTHER = f'{NAMESPACE}/other/gear_state_publisher'
 DEADLINE = 60.0
-ENCODER_RATE = 100  # Hz
+ENCODER_RATE = 50  # Hz
 RATIO = -19  # rotor speed / output speed
 
 
@@ -86,7 +86,7 @@ def node(folder: Path, name: str = NODE):
 
 
 @contextlib.contextmanager
-def driving(rate: int = 200, late: str = 'left out'):
+def driving(rate: int = 100, late: str = 'left out'):
     """Run the drivers, at a rate in Hz: each message takes all who hear it processor time.
 
     To a node, `late` readings that are sent would look like a clock set back.
