@@ -267,7 +267,13 @@ def test_make_demo_says_what_to_install_for_a_virtual_environment(tree, tmp_path
 
 
 def test_make_demo_says_why_it_cannot_install(tree, tmp_path):
+    pip = pytest.importorskip('pip')
     venv, lock = tmp_path / 'venv', tree / 'requirements/demo.txt'
+    # An environment with this pip, as to install another one takes seconds.
+    run(sys.executable, '-m', 'venv', '--without-pip', venv, cwd=tmp_path)
+    [packages] = venv.glob('lib/python3.*/site-packages')
+    (packages / 'pip').symlink_to(Path(pip.__file__).parent)
+    script(venv / 'bin/pip', f'exec {venv}/bin/python -m pip "$@"')
     of_make = (tree, f'PYTHON={sys.executable}', f'VENV={venv}')
     nobody = {'PIP_INDEX_URL': 'http://127.0.0.1:9', 'PIP_RETRIES': '1'}
     assert words_of_make(*of_make, **nobody) == [
