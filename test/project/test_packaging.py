@@ -14,6 +14,7 @@ import tarfile
 import xml.etree.ElementTree as ET
 import zipfile
 from email.message import Message
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -156,16 +157,18 @@ def shared_files(root: Path) -> set[str]:
     return files | {'package.xml'}
 
 
-def imported_names(*folders: str) -> set[str]:
-    """Return the top-level packages that the sources of some folders import, in any place."""
+@cache
+def imported_names() -> frozenset[str]:
+    """Return the top-level packages that the sources import, in any place."""
     names: set[str] = set()
-    for path in (path for folder in folders for path in (ROOT / folder).rglob('*.py')):
+    folders = ROOT / 'gear_kinematics', ROOT / 'launch'
+    for path in (path for folder in folders for path in folder.rglob('*.py')):
         for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
             if isinstance(node, ast.Import):
                 names |= {alias.name.split('.')[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and node.level == 0:
                 names.add(node.module.split('.')[0])
-    return names - set(sys.stdlib_module_names) - {'gear_kinematics'}
+    return frozenset(names) - set(sys.stdlib_module_names) - {'gear_kinematics'}
 
 
 def test_wheel_holds_types_and_share(tree, wheel, manifest):
@@ -327,7 +330,7 @@ def test_build_farm_documents_the_package(manifest):
 
 def test_manifest_names_everything_that_is_imported(manifest):
     declared = {element.text for element in manifest.iterfind('exec_depend')}
-    imported = imported_names('gear_kinematics', 'launch')
+    imported = imported_names()
     assert {'launch', 'numpy'} <= imported
     assert {ROSDEP_KEYS.get(name, name) for name in imported - WITHOUT_KEY} <= declared
 
@@ -336,5 +339,5 @@ def test_requirements_name_everything_that_ros_does_not_bring(metadata):
     required = {
         re.split('[^a-z0-9.-]', line.lower())[0] for line in metadata.get_all('Requires-Dist')
     }
-    imported = {name for name in imported_names('gear_kinematics') if name in ROSDEP_KEYS}
+    imported = {name for name in imported_names() if name in ROSDEP_KEYS}
     assert {PYPI_NAMES.get(name, name) for name in imported} <= required
