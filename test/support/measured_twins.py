@@ -120,7 +120,7 @@ def ramps(put_in: PutIn, simulate: Simulate, folder: Path) -> list[Figure]:
     model = simulate(put_in._replace(errors=()).gear)
     model.rotor_locked = True
     bench = Bench(model)
-    for amplitude, duration in [*5 * [(3.0 * put_in.friction, 1.0)], *3 * [(RATED, 1.5)]]:
+    for amplitude, duration in [*5 * [(3.0 * put_in.friction, 0.6)], *3 * [(RATED, 0.9)]]:
         yielding = float(np.ptp(put_in.turn(np.array([-amplitude, amplitude]))))
         bench.twist(amplitude, duration, yielding)
     noise = NOISE * np.random.default_rng(1).standard_normal(len(bench.torque))
@@ -176,7 +176,7 @@ def strokes(put_in: PutIn, simulate: Simulate, folder: Path) -> Encoded:
     """Move the rotor to and fro three times, by a little more than a turn of the output."""
     parameters, model = put_in.parameters, simulate(put_in.gear)
     driver, ratio = driver_of(model), put_in.gear.ratio
-    shares = [np.linspace(0.0, 1.0, round(each / MILLISECOND)) for each in (1.5, 1.5, 2.0)]
+    shares = [np.linspace(0.0, 1.0, round(each / MILLISECOND)) for each in (1.0, 1.0, 1.3)]
     ways = [0.5 - 0.5 * np.cos(math.pi * (share + k % 2)) for k, share in enumerate(shares)]
     angle = ratio * 7.0 * np.concatenate(ways)
     readings, deviations = [], []

@@ -31,7 +31,7 @@ from gear_kinematics.twin.parameters import TwinParameters
 PRINTED = 'dual_encoders/transmission_stiffness_sspg.csv'
 READ_PRINTED = {'ratio': '36/5', 'on_rotor': True}
 _INNER = 0.97  # of the amplitude: what all loops reach
-_STEPS = 400  # of 5 ms, from peak to peak
+_STEPS = 400  # of 2 ms, from peak to peak
 
 
 class Loops(NamedTuple):
@@ -77,7 +77,7 @@ def real_gear(
             {'branches': ['a'], 'loads.rotor_inertia': 1e-5, 'branch_stiffness': [1e3]}
         ),
         TwinParameters.of(
-            {'play': 0.0, 'friction': 0.0, 'rotor_damping': 0.0, 'output_inertia': 1e-3}
+            {'play': 0.0, 'friction': 0.0, 'rotor_damping': 0.0, 'output_inertia': 2e-4}
         ),
     )
     gear, notes = measured(gear, [report])
@@ -107,7 +107,7 @@ def ramped(model: TwinModel, high: float, low: float) -> tuple[np.ndarray, np.nd
         torques = np.linspace(begin, end, steps + 1)
         wind_ups = []
         for torque in torques.tolist():
-            model.advance(5e-3, 0.0, -torque)
+            model.advance(2e-3, 0.0, -torque)
             wind_ups.append(-model.output_angle)
         ways.append(np.array([torques, wind_ups]))
     _, fall, rise = ways
