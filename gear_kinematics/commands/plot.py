@@ -54,7 +54,7 @@ def _draw(options: argparse.Namespace, config: NodeParameters, path: Path) -> by
     match options.figure:
         case 'output':
             if not moved:
-                raise ValueError('output needs --bag')
+                raise ValueError('output needs --bag and the recording, such as --bag logs/monday')
             figure = plotting.output(config.gear, moved)  # the ratio is enough
         case 'roses':
             figure = plotting.roses(config.mechanism)

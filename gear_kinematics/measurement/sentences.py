@@ -214,6 +214,7 @@ class Observation(Enum):
         '{output:.4g} Hz of the output.'
     )
     LATE = 'The stamps of the output are late by {delay:ms} ms.'
+    EARLY = 'The stamps of the output are early by {delay:ms} ms.'
     NOT_LATE = 'The stamps of the output have no measurable delay.'
     DELAY_OR_HYSTERESIS = (
         'it cannot be separated from hysteresis; turn the output there and back three times, at '

@@ -147,6 +147,7 @@ def test_file_for_two_nodes_is_refused_naming_them(two_nodes, tmp_path, monkeypa
 
 @pytest.mark.parametrize(('arguments', 'cause'), [
     ('', 'arguments are required: COMMAND; see gearkin --help'), ('unknown', "'unknown'"),
+    ('plot output --bag a', 'required: FILE, as in gearkin plot output'),
     ('describe --ring-teeth many', "--ring-teeth: must be a whole number, not 'many'; see"),
     ('validate bag --jobs 1.5', "--jobs: must be a whole number, not '1.5'; see"),
     ('lost-motion a.csv --max-backlash 3′', "must be a number, not '3′'; see"),

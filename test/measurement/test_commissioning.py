@@ -273,6 +273,17 @@ def test_turns_that_pass_in_a_gap_leave_the_ratio_open():
     assert not commissioned(recorded(rotor[seen], output[seen], times[seen])).between
 
 
+@pytest.mark.parametrize(('late', 'named'), [(0.01, 'LATE'), (-0.01, 'EARLY')])
+def test_stamps_of_the_output_are_late_or_early(late, named):
+    times, rotor, output = readings()
+    at = slice(10, -10)
+    found = commissioned(
+        recorded(rotor[at], np.interp(times - late, times, output)[at], times[at])
+    )
+    (delay,) = (what.values['delay'] for what in found.notes if what.what.name == named)
+    assert delay.value == pytest.approx(0.01, abs=1e-3)
+
+
 def test_greatest_speed_is_allowed_twice():
     times, rotor, output = readings()
     fast = recorded(rotor * 40.0, output, times)

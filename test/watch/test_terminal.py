@@ -43,7 +43,7 @@ def test_home_says_where_the_shaft_was_and_is(capsys):
     wait_until(lambda: main(['home', '--node', OTHER]) == 0, 'a node that does not refuse')
     moved = rf'^{OTHER}: the shaft was at -?\d+\.\d° and is now at 0\.0° \(rotor_zero '
     assert re.search(moved, capsys.readouterr().out, re.MULTILINE)
-    service = f'there is no service {OTHER}/elbow/home; did you mean `{OTHER}/home`?'
+    service = f'there is no service {OTHER}/elbow/home, as it has one gear: leave --actuator out'
     assert service in refusal('home', '--node', OTHER, '--actuator', 'elbow')
 
 

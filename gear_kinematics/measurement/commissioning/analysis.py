@@ -7,7 +7,7 @@ backwards.
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import islice
 from typing import Any, Literal, NamedTuple
@@ -128,8 +128,10 @@ def commission(recordings: Sequence[Recording], request: Request) -> Commissioni
         values += _ratio(between, evidence, request)
         values += _zeros(joints, between, request)
         if delay := motion.delay:
-            late = Observation.LATE if delay.clear else Observation.NOT_LATE
-            notes.append(late(delay=delay))
+            late = Observation.LATE(delay=delay) if delay.clear else Observation.NOT_LATE()
+            if delay.clear and delay.value < 0.0:
+                late = Observation.EARLY(delay=replace(delay, value=-delay.value))
+            notes.append(late)
         else:
             values.append(Value('delay', None, Observation.DELAY_OR_HYSTERESIS()))
     elif ratio and ratio.advice and not longest.spoilt:
