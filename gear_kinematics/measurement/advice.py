@@ -32,12 +32,13 @@ _LISTED = 600  # characters of the list of columns
 _WANTED = r'target|action|goal|desire|cmd|command|setpoint|demand|(?<![a-z])(ref|des)(?![a-z])'
 """Words in names of columns of what was commanded, not measured."""
 _NO_ANGLE = re.compile(
-    r'(?i)torq|effort|force|curr|vel(?!_mapper)|speed|rpm|/ ?s(ec)?\b|temp|time|stamp|control|'
-    rf'elec|tau|index|valid|cell|acc(?!um)|dot|err|volt|power|^t$|^[ftm][xyz]|^i_?[qd](?![a-z])|{_WANTED}'
+    r'(?i)torq|effort|force|curr|(?<!tra)vel(?!_mapper)|speed|rpm|/ ?s(ec)?\b|temp|time|stamp|'
+    rf'control|elec|tau|index|valid|cell|acc(?!um)|dot|err|volt|power|^t$|^[ftm][xyz]|^i_?[qd](?![a-z])|{_WANTED}'
 )
 """Words in names of columns that are not proposed as angles."""
 _LIKELY = re.compile(
-    r'(?i)pos|\bq|_q|ang(?!e)|enc(?!y)|theta|winkel|rotation|(rad|deg|rev|inc|cnt|counts)\b'
+    r'(?i)pos|\bq|_q|ang(?!e)|enc(?!y)|theta|winkel|rotation|(rad|deg|rev|inc|cnt|counts)\b|'
+    r'(motor|rotor|joint|link|output)$'
 )
 """Words in names of columns that are proposed first."""
 _NO_NAME = re.compile(r'(?i)(.*\[|(data|ch|channel|column|signal|var|axis|joint|j)[ _]?)?\d+\]?')
@@ -143,14 +144,22 @@ def _examples(table: TableFile) -> Iterator[Mapping[str, str]]:
         left = [name for name in angles if name != rises]
         if left[1:] or not all(_rises(table, k) for k in left):
             angles = left
-    likely = [*filter(_LIKELY.search, angles)]
+    likely = [name for name in angles if units[name] in ANGLE_UNITS or _LIKELY.search(name)]
     raw, _ = table.load((likely if len(likely) > 1 else angles)[:_TRIED])
     raw = {name: array.astype(float) for name, array in raw.items() if array.dtype.kind in 'iuf'}
     pairs = [*_alike(raw, {name: ANGLE_UNITS.get(unit) or 0.0 for name, unit in units.items()})]
     yield from ({'rotor': rotor, 'output': output} for sure, rotor, output in pairs if sure)
-    # Those of the same actuator share most words.
+    # Those of the same actuator share most words; of the axes of a sensor, one is loaded.
     words = {name: {*meaning(name).words} for name in names}
-    both = sorted(product(likely, torques), key=lambda pair: -len(words[pair[0]] & words[pair[1]]))
+    loads = {
+        name: -np.ptp(np.nan_to_num(array)) * TORQUE_UNITS.get(units[name], 1.0)
+        for name, array in table.load(torques[:_TRIED])[0].items()
+        if array.dtype.kind in 'iuf' and len(array)
+    }
+    both = sorted(
+        product(likely, loads),
+        key=lambda pair: (-len(words[pair[0]] & words[pair[1]]), loads[pair[1]]),
+    )
     yield from ({'angle': angle, 'torque': torque} for angle, torque in both if angle != torque)
     yield from ({'rotor': rotor, 'output': output} for sure, rotor, output in pairs if not sure)
 

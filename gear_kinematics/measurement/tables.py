@@ -73,8 +73,8 @@ def read_table(
         read = _Samples(table, sources, ratio)
         encoders = None if 'angle' in read.found else read.encoders(period)
         if both and not encoders:
-            cause = 'not both a rotor and an output: give --rotor-column and --output-column'
-            raise ColumnsError(cause)
+            cause = f'not both a rotor and an output, but {read.found["angle"].name} alone'
+            raise ColumnsError(f'{cause}: give --rotor-column and --output-column')
         if sources.needs_times and not read.timed:
             cause = 'no column of times, such as time_s; name it with --time-column'
             raise ColumnsError(cause, **rising(table))

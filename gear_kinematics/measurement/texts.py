@@ -9,11 +9,12 @@ from typing import IO
 
 BLOCK = 2**17  # characters that are read at a time
 _BOMS = {b'\xef\xbb\xbf': 'utf-8-sig', b'\xff\xfe': 'utf-16', b'\xfe\xff': 'utf-16'}
-_EASTERN = {
+_OTHERS = {
     'cp932': re.compile(rb'(\x83[\x40-\x96]|\x81\x5b){2}'),
+    'cp1251': re.compile(rb'[\xe0-\xff]{4}'),
     'gb18030': re.compile(rb'([\xb0-\xf7][\xa1-\xfe]){2}'),
 }
-"""Two Katakana, or Chinese characters, in succession in encodings of Windows."""
+"""Two Katakana, four Cyrillic or two Chinese characters in succession, in encodings of Windows."""
 
 
 class Rows(io.TextIOBase):
@@ -47,5 +48,5 @@ def encoding_of(head: bytes) -> str:
     try:
         codecs.getincrementaldecoder('utf-8')().decode(head)
     except UnicodeDecodeError:
-        return next((code for code in _EASTERN if _EASTERN[code].search(head)), 'cp1252')
+        return next((code for code in _OTHERS if _OTHERS[code].search(head)), 'cp1252')
     return 'utf-8'

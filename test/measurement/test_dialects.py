@@ -792,6 +792,8 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         (' (1764230000.000000)  can0  141   [2]  A1 00\n', 'a log of CAN frames: decode'),
         ('# Created by Octave 9.2.0, Thu Nov 26\n# name: rotor\n# type: matrix\n 0\n 1\n 2\n',
          'a text of Octave: save the variables with the option -v7'),
+        ('header:\n  stamp:\n    sec: 0\nposition:\n- 1.5\n---\n',
+         'the YAML of ros2 topic echo: add --csv to it'),
         ('t,angle [deg],force [N]\n0,1,2\n1,2,3\n', 'with their units, by --angle-column'),
         (lambda t, r, o: written([t, r, o], 'time,force_N,angle_rad'),
          'with their units, by --angle-column'),
@@ -879,6 +881,10 @@ UNTOLD = {
         'Time [ms];Position actual value [qc];Load position [qc]', 3 * ['{:.0f}'], ';'),
     'a torque beside': lambda t, r, o: written(
         [t, r, o, t], 'time,POSITION,ABS_POSITION,TORQUE', '{:.5f}'),
+    'Russian of Windows': plain('время;Угол двигателя, °;Угол выхода, °', ';', german=True,
+        angle=DEG, code='cp1251'),
+    'sides alone, of two joints': lambda t, r, o: written(
+        [t, r, o, r / 2, o / 2], 'time,j1_motor,j1_link,j2_motor,j2_link', '{:.5f}'),
     'no locked output': lambda t, r, o: written(
         [t, r, o, np.sin(t)], 'time,M1_position_rad,J1_position_rad,torque_Nm', '{:.5f}'),
 }  # fmt: skip
@@ -890,6 +896,10 @@ UNTOLD_RAMPS = {
         for at, angle, torque in zip(t, a, q, strict=True) for k in (1, 2, 3)),
     'a torque in whole numbers': lambda t, a, q: written([t, a, np.round(q * 1e3)],
         'time,angle,torque', ('{:.2f}', '{:.6f}', '{:.0f}')),
+    'a sensor of three axes': lambda t, a, q: written([t, 0 * q + 1.0, 0 * q, q, a * DEG],
+        'Time (s),Tx (Nm),Ty (Nm),Tz (Nm),Encoder (deg)', 5 * ['{:.6f}']),
+    'travel in arc seconds, by the unit alone': lambda t, a, q: written(
+        [t, a * DEG * 3600.0, q], 't,arcsec,torque', 3 * ['{:.6f}']),
     'units of rotation': lambda t, a, q: written(
         [t, a * DEG, q], '"Time","Rotation","Axial Torque"\n"(s)","(Degrees)","(N-m)"',
         3 * ['"{:.6f}"']),
@@ -926,7 +936,8 @@ def test_every_refusal_ends_with_a_command_line_that_works(tmp_path, gear, refer
             read(path, gear, given, both=as_recorded and not ramps)
         recording = read(path, gear, followed(told.value))
         assert (recording.locked is not None) == ramps
-    if 'counts' in untold or 'degrees' in untold or untold in {'both motors', 'two torques'}:
+    sure = {'both motors', 'two torques', 'a sensor of three axes'}
+    if 'counts' in untold or 'degrees' in untold or untold in sure:
         assert_measured(recording, gear)
 
 
