@@ -5,8 +5,8 @@
 #
 # An encoder with a noise of 1 mrad is read at 100 Hz on a joint whose acceleration changes by 200 rad/s². As all of it
 # is linear, a cubature filter has to give what the Kalman filter gives, and UnscentedKalmanFilter does so: errors of
-# 1.0 mrad and 0.61 rad/s, as its covariance says. What happens with CubatureKalmanFilter: 1.0 mrad and 1.42 rad/s, while
-# its covariance says 10 mrad and 2.0 rad/s. Its points go on to the measurement as they were before Q was added, and
+# 1.0 mrad and 0.61 rad/s, as its covariance says. What happens with CubatureKalmanFilter: 1.0 mrad and 1.42 rad/s, and
+# by its covariance 10 mrad and 2.0 rad/s. Its points go on to the measurement as they were before Q was added, and
 # are not drawn anew from the predicted covariance, so that S and the gain leave Q out. With an encoder of 10 mrad and
 # accelerations of 5 rad/s², Q counts little, and the two agree to 1 %. Nothing warns.
 # For us: take UnscentedKalmanFilter.
