@@ -135,11 +135,11 @@ def test_a_node_interrupted_at_any_moment_of_its_start_ends_cleanly(tmp_path):
         process.send_signal(signal.SIGINT)
         assert process.wait(DEADLINE) == 0
     early = 0
-    for code, output, errors in interrupted_starts(NODE, longest, 15, env=environment):
+    for code, output, errors in interrupted_starts(NODE, longest, 10, env=environment):
         assert (code, output) == (0, ''), errors
         assert 'Traceback' not in errors
         early += READY not in errors
-    assert early >= 4, 'most of the signals came too late to tell anything'
+    assert early >= 3, 'most of the signals came too late to tell anything'
 
 
 def test_gearkin_interrupted_at_any_moment_of_its_start_ends_cleanly(tmp_path):
@@ -153,7 +153,7 @@ def test_gearkin_interrupted_at_any_moment_of_its_start_ends_cleanly(tmp_path):
             begun = time.monotonic()
             blocked.reader()
             longest = 1.2 * (time.monotonic() - begun)
-        for ended in interrupted_starts(command, longest, 8):
+        for ended in interrupted_starts(command, longest, 6):
             assert ended == (130, '', '')
             assert not list(folder.iterdir())
 
@@ -268,14 +268,14 @@ def test_an_error_that_cannot_be_said_has_its_exit_code():
         assert gearkin('validate', 'nowhere', stderr=full).returncode == 2
 
 
-@pytest.mark.parametrize('unbuffered', ['', '1'])
 @pytest.mark.parametrize(
-    ('program', 'argument'),
+    ('program', 'argument', 'unbuffered'),
     [
-        ('gearkin', '--version'),
-        ('gearkin', '--help'),
-        ('gearkin', 'describe'),
-        ('gear_simulator', '--help'),
+        ('gearkin', '--help', ''),
+        ('gearkin', '--help', '1'),
+        ('gearkin', 'describe', ''),
+        ('gearkin', 'describe', '1'),
+        ('gear_simulator', '--help', ''),
     ],
 )
 def test_what_cannot_be_printed_is_one_line_and_a_closed_pipe_none(program, argument, unbuffered):
