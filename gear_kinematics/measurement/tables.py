@@ -70,11 +70,8 @@ def read_table(
     """
 
     def recording(table: TableFile, sources: Sources) -> Recording:
-        read = _Samples(table, sources, ratio)
+        read = _Samples(table, sources, ratio, both=both)
         encoders = None if 'angle' in read.found else read.encoders(period)
-        if both and not encoders:
-            cause = f'not both a rotor and an output, but {read.found["angle"].name} alone'
-            raise ColumnsError(f'{cause}: give --rotor-column and --output-column')
         if sources.needs_times and not read.timed:
             cause = 'no column of times, such as time_s; name it with --time-column'
             raise ColumnsError(cause, **rising(table))
@@ -98,7 +95,7 @@ def read_rotor(path: Path, sources: Sources, ratio: Fraction) -> tuple[Array, Ar
     """
 
     def motion(table: TableFile, sources: Sources) -> tuple[Array, Array, Array, str]:
-        read = _Samples(table, replace(sources, on_rotor=True), ratio)
+        read = _Samples(table, replace(sources, on_rotor=True), ratio, both=False)
         if 'torque' not in read.found or not read.timed:
             raise ColumnsError('no times or no torque: give --time-column and --torque-column')
         read.steps()
@@ -138,11 +135,14 @@ class _Series(NamedTuple):
 class _Samples:
     """Columns and samples of a table by role, with remarks and faults."""
 
-    def __init__(self, table: TableFile, sources: Sources, ratio: Fraction) -> None:
+    def __init__(self, table: TableFile, sources: Sources, ratio: Fraction, *, both: bool) -> None:
         """Read the columns; ValueError if they are missing or contain no numbers."""
         self._sources, self._ratio, self._remark = sources, ratio, table.remark
         self.remarks, self.faults = list[Observed](), list[Observed]()
         self.found = find_columns(table.names, sources, table.units, table.clocks, table.first)
+        if both and 'angle' in self.found:
+            cause = f'not both a rotor and an output, but {self.found["angle"].name} alone: give '
+            raise ColumnsError(f'{cause}--rotor-column and --output-column, or join two tables')
         clock = self.found.pop('time', None)
         usual = clock.name if clock else ''
         clocks = {role: table.clocks.get(one.name, usual) for role, one in self.found.items()}

@@ -137,9 +137,10 @@ def test_bag_without_an_output_encoder_is_refused_in_one_line(tmp_path):
 
 def test_a_table_without_an_output_gets_one_line(tmp_path):
     path = tmp_path / 'bad.csv'
-    path.write_text('rotor,torque\n1,2\n')
+    # Two times beside one encoder, as where each topic is in a table of its own, are no matter.
+    path.write_text('log_time_ns,header.stamp,rotor,torque\n1,2e9,1,2\n2e9,4e9,1,2\n')
     line = refusal('calibrate', path, '-o', tmp_path / 'c.yaml')
-    assert 'not both a rotor and an output' in line
+    assert 'not both a rotor and an output, but rotor alone: give --rotor-column' in line
 
 
 def test_recordings_that_cannot_be_read_are_all_told_and_do_not_stop_the_check(
