@@ -35,7 +35,7 @@ _ALIGNED = 0.95  # the square of a correlation from which a factor explains the 
 _FEW = 4  # velocities between readings, of which the mean is that of an oscillation
 _RELATED = 0.5  # the correlation that a motion has with its velocities, at least
 _IMPOSSIBLE = 30.0  # times the travel: any more between two readings is no velocity
-_LONGEST = 10.0  # readings in which velocities that go on show a position that is stuck
+_LONGEST = 10  # readings in which velocities that go on show a position that is stuck
 _FILTERED = 0.5  # share by which what a filter leaves of a motion may differ from a projection
 _LATE, _EXPLAINED = 0.03, 0.9  # s, square of a correlation, from which a delay is reported
 _CHANGES = 4.0
@@ -97,7 +97,7 @@ class VelocityField:
         self._pause_until = 0  # ns, while only a stuck encoder is looked for
         self._total, self._count = 0.0, 0  # of the velocities since the last reading
         self._last: float | None = None  # rad/s, the velocity at the last reading
-        self._held = 0.0  # rad, the way by the velocities while the position did not change
+        self._ways: list[float] = []  # rad, by the velocities since the position changed
         self._readings: list[tuple[int, float, float]] = []
         """Each stamp, ns, its position, rad, and the mean velocity since the one before, rad/s."""
         self._begin_block()
@@ -206,12 +206,13 @@ class VelocityField:
         since, before, _ = self._readings[-1] if self._readings else (stamp, position, 0.0)
         mean, turn = self._total / max(1, self._count), position - before
         expected = mean * (stamp - since) * 1e-9
-        self._held = 0.0 if turn else self._held + expected
+        self._ways = [] if turn else [*self._ways[1 - _LONGEST :], expected]
+        places = [*accumulate(self._ways, initial=0.0)]
         last, now = (math.copysign(v or 0.0, (v or 0.0) * mean) for v in (self._last, velocity))
-        # Behind a stop, the velocities of a filter fall.
+        # Behind a stop, the velocities of a filter fall, and lead to no place and back.
         goes_on = min(last, now) >= 0.5 * abs(mean) and now >= (1.0 - _STEADY) * last
-        held = _TRAVEL <= abs(self._held) <= _LONGEST * abs(expected)
-        stuck = held and goes_on and self.finding is VelocityMeaning.RIGHT
+        stuck = goes_on and abs(places[-1]) >= _TRAVEL and self.finding is VelocityMeaning.RIGHT
+        stuck |= max(places) - min(places) - abs(places[-1]) >= _TRAVEL and not self.contradicts
         if stuck or abs(expected) > _IMPOSSIBLE * (abs(turn) + _TRAVEL):
             return expected / turn if turn else math.inf
         return math.nan
@@ -320,10 +321,9 @@ class VelocityField:
         ):
             return True
         most = (_STEADY if slope else _STANDS) * max(abs(mean), abs(slope))
-        if any(abs(velocity - mean) > most for velocity in velocities):
-            return True
-        if not slope and abs(velocities[-1]) < (1.0 - _STEADY) * abs(velocities[0]):
-            return True  # as behind a filter after a stop
+        fall = not slope and abs(velocities[-1]) < (1.0 - _STEADY) * abs(velocities[0])
+        if fall or any(abs(velocity - mean) > most for velocity in velocities):
+            return True  # velocities fall behind a filter after a stop
         factor = mean / slope if slope else math.inf
         if not (slow and (1.0 / _FAR < factor < _FAR or (self._moved and not factor))):
             self._decide(factor)

@@ -299,7 +299,8 @@ def test_right_velocities_do_not_contradict_positions_that_wrap_unexpectedly(spe
     (lambda t: 50.0 + 25.0 * math.sin(3.0 * t), True),
     (lambda t: 300.0 * math.exp(-10.0 * t), False),  # of a filter behind a rotor that stops
     (lambda t: 300.0 * math.exp(-2.0 * t), False),
-    (lambda t: 20.0 * math.sin(20.0 * t), False),
+    (lambda t: 20.0 * math.sin(20.0 * t), False),  # within a step of the encoder
+    (lambda t: 40.0 * math.sin(20.0 * t), True),
 ])  # fmt: skip
 def test_velocities_of_an_unsteady_motion_show_that_an_encoder_is_stuck(velocity, stuck):
     rotor, _ = heard(lambda time: (1.0, velocity(time)), 200, 3.0)
