@@ -205,7 +205,7 @@ class RotorTurns:
         """Forget the position and the turns; the next update counts as the first."""
         self._position: tuple[int, float] | None = None
         self.forget_turns()
-        self.longest_gap = 0.0  # s; may have hidden a period since the turns were last known
+        self.longest_gap: float | None = None  # s, that made the turns unknown; None: nothing did
         self._gaps, self._gap = 0, 0.0
         """By how many the gaps too long for the speed outnumber the others; their mean, s."""
         self.periods = 0
@@ -271,7 +271,7 @@ class RotorTurns:
             if wide or outside > _NOISE + (period - width - outside) / 5.0:
                 self.referenced, since = False, None
                 self.unknown_gaps += 1
-                self.longest_gap = max(self.longest_gap, gap)
+                self.longest_gap = max(self.longest_gap or 0.0, gap)
                 self.unseen_travel += self.max_speed * gap + 0.5 * period
             self._since_gap = since
             self.periods += more
@@ -333,7 +333,7 @@ class RotorTurns:
     def refer(self) -> None:
         """Treat the counted turns as known from now on."""
         self.referenced, self.unseen_travel, self.lost = True, 0.0, False
-        self.longest_gap = 0.0
+        self.longest_gap = None
 
     def zero_for(self, rotor_angle: float, direction: int) -> float:
         """Return the zero that `home` would give, and change nothing.

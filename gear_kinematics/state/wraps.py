@@ -122,10 +122,11 @@ class Wraps:
 
 def why_unknown(turns: RotorTurns) -> Fact | None:
     """Return how a gap, or a step within one that hides no turn, made the turns unknown."""
-    gap = turns.longest_gap
+    if (gap := turns.longest_gap) is None:
+        return too_seldom(*turns.usual_gap)
     hides = 2.0 * turns.max_speed * gap >= turns.period
     which = Condition.GAP if hides else Condition.TURNED_TOO_FAR
-    return too_seldom(*turns.usual_gap) or (which(gap=gap) if gap else None)
+    return too_seldom(*turns.usual_gap) or which(gap=gap)
 
 
 def too_seldom(

@@ -203,6 +203,16 @@ ROWS = {
         FindingCause.JUMPS,
         SINGLE,
     ),
+    'impossible step at the same stamp': Row(
+        [
+            {'stamp': START + (k - (k > 59)) * PERIOD, 'offset': 1.7 * (k > 59)}
+            for k in range(COUNT)
+        ],
+        {'duplicates': 1, 'jumps': 1},
+        (Condition.TURNED_TOO_FAR(gap=pytest.approx(0.0)), Condition.NOT_REFERENCED()),
+        FindingCause.JUMPS,
+        replace(SINGLE, max_rotor_speed=200.0),
+    ),
     'driver restarts': Row(
         moved(offset=100.0),
         {'rejected': {'implausible': 2}},
