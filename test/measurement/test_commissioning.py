@@ -292,6 +292,13 @@ def test_greatest_speed_is_allowed_twice():
     assert speed == pytest.approx(2.0 * 40.0 * 19.0 * 15.0 / 9.0, rel=0.01)
 
 
+@pytest.fixture(scope='module')
+def found_before(tmp_path_factory) -> NodeParameters:
+    times, rotor, output = readings(zeros=(2.5, 0.3), wraps=(True, True))
+    result = commissioned(recorded(rotor, output, times))
+    return parameters(result, tmp_path_factory.mktemp('before'))
+
+
 @pytest.mark.parametrize(
     ('change', 'contradicted'),
     [
@@ -306,13 +313,11 @@ def test_greatest_speed_is_allowed_twice():
         ({'max_rotor_speed': 3.0}, {'max_rotor_speed'}),
     ],
 )
-def test_check_names_what_a_new_recording_contradicts(change, contradicted, tmp_path):
-    times, rotor, output = readings(zeros=(2.5, 0.3), wraps=(True, True))
-    file = parameters(commissioned(recorded(rotor, output, times)), tmp_path)
+def test_check_names_what_a_new_recording_contradicts(change, contradicted, found_before):
     times, rotor, output = readings(
         zeros=(2.5, 0.3), wraps=(True, True), profile=ramped_strokes(9.0, 7.0, 1.0)
     )
-    file = replace(file, **change)
+    file = replace(found_before, **change)
     result = commissioned(recorded(rotor, output, times), ratio=file.gear.gear_ratio, file=file)
     assert set(document(result, 'a.yaml').data['contradicted']) == contradicted
     assert (result.between is None) == (change == {'gear_ratio': '-18'})

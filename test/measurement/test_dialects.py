@@ -8,6 +8,7 @@ import re
 import shlex
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
+from functools import cache
 
 import numpy as np
 import pytest
@@ -590,9 +591,12 @@ RAMPS = {
 
 @pytest.fixture(scope='module')
 def reference(shared_path):
+    @cache
     def columns(name):
         path = shared_path(f'data/faults/file_0_reference_{name}.csv')
-        return np.genfromtxt(path, delimiter=',', skip_header=1).T
+        found = np.genfromtxt(path, delimiter=',', skip_header=1).T
+        found.setflags(write=False)
+        return found
 
     return columns
 
