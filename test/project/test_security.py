@@ -14,6 +14,7 @@ import sys
 import xml.etree.ElementTree as ET
 from contextlib import closing
 from fnmatch import fnmatch
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -308,7 +309,7 @@ def downloaded(tmp_path) -> Path:
 @pytest.mark.live
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    'arguments', [['validate', '--jobs', '2', 'one', 'two'], ['demo']], ids=['--jobs', 'demo']
+    'arguments', [['--jobs', '2', 'one', 'two'], ['--live', 'one']], ids=lambda words: words[0]
 )
 def test_nothing_in_the_current_folder_is_run_or_obeyed(
     arguments, downloaded, tmp_path, monkeypatch
@@ -317,7 +318,7 @@ def test_nothing_in_the_current_folder_is_run_or_obeyed(
         monkeypatch.delenv(f'{library}_DEFAULT_PROFILES_FILE', raising=False)
     program = tmp_path / 'gearkin'  # a script, beside which Python looks and not in its folder
     program.write_text(f"if __name__ == '__main__': {GEARKIN}")
-    done = finished([sys.executable, program, *arguments], cwd=downloaded)
+    done = finished([sys.executable, program, 'validate', *arguments], cwd=downloaded)
     assert done.returncode == 0, done.stderr
     assert not (downloaded / 'trap.sprung').exists()
 
@@ -339,14 +340,19 @@ def test_matplotlibrc_in_the_current_folder_is_not_obeyed(tmp_path):
 # What the documents claim.
 
 
+@cache
+def defined_tests() -> frozenset[str]:
+    texts = (path.read_text('utf-8') for path in (ROOT / 'test').rglob('test_*.py'))
+    definition = re.compile(r'^(?:async )?def (test_\w+)\(', re.MULTILINE)
+    return frozenset(name for text in texts for name in definition.findall(text))
+
+
 @pytest.mark.parametrize('name', ['docs/security.md', 'docs/paper.md', 'QUALITY_DECLARATION.md'])
 def test_evidence_is_there(name):
     """Every test and file that a document cites is there."""
     text = (ROOT / name).read_text('utf-8')
-    tests = '\n'.join(path.read_text('utf-8') for path in (ROOT / 'test').rglob('test_*.py'))
-    defined = set(re.findall(r'^(?:async )?def (test_\w+)\(', tests, re.MULTILINE))
     cited = set(re.findall(r'`(test_\w+)`', text))
     assert cited
-    assert cited <= defined
+    assert cited <= defined_tests()
     links = re.findall(r'\]\((?!http)([^)#]+)', text)
     assert all((ROOT / name).parent.joinpath(link).exists() for link in links)
