@@ -3,7 +3,7 @@
 
 import math
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from itertools import pairwise
 
 import numpy as np
@@ -148,6 +148,7 @@ def stamps(
     clock: Column | None,
     times: Array | None,
     kept: Array,
+    columns: Collection[Array],
     remarks: list[Observed],
     faults: list[Observed],
     *,
@@ -155,12 +156,15 @@ def stamps(
 ) -> tuple[Array, Array]:
     """Return stamps, ns, of the kept rows that are in order, and the indices of these rows.
 
+    Rows that repeat both the times and all columns of the one before are left out.
+
     Where a clock was set back, the stamps go on if there are no other rows (`alone`), and end
     otherwise. ValueError if the times cannot be read.
     """
     rows = np.flatnonzero(kept)
     if clock is None or times is None:
         return np.arange(len(rows)) * SECOND, rows
+    rows = _once(rows, times, columns, remarks)
     times = times[rows]
     if times.dtype.kind == 'M':
         readable = ~np.isnat(times)
@@ -205,6 +209,19 @@ def stamps(
         places = np.arange(len(stamp)) - np.repeat(new, counts)
         stamp = stamp + (np.repeat(steps / counts, counts) * places).astype(np.int64)
     return stamp, rows
+
+
+def _once(rows: Array, times: Array, columns: Collection[Array], remarks: list[Observed]) -> Array:
+    """Leave out rows that a logger wrote again.
+
+    Times with so few digits that different rows share them are no sign of such rows.
+    """
+    same = [one[rows[1:]] == one[rows[:-1]] for one in (times, *columns)]
+    once = np.delete(rows, 1 + np.flatnonzero(np.all(same, axis=0)))
+    if len(once) == len(rows) or np.any(times[once[1:]] == times[once[:-1]]):
+        return rows
+    remarks.append(Observation.ROWS_AGAIN(rows=len(rows) - len(once)))
+    return once
 
 
 def _by_time(times: Array) -> Array | slice:

@@ -262,7 +262,8 @@ class _Samples:
         if (left_out := np.count_nonzero(~kept)) and alone:
             self.remarks.append(Observation.ROWS_LEFT_OUT(rows=left_out))
         clock = self._clock and self._clock._replace(name=name)
-        stamp, chosen = stamps(clock, times, kept, self.remarks, self.faults, alone=alone)
+        columns, said = data.values(), (self.remarks, self.faults)
+        stamp, chosen = stamps(clock, times, kept, columns, *said, alone=alone)
         values = {role: np.where(np.abs(v) < _LEAST, 0.0, v)[chosen] for role, v in data.items()}
         for role, angles in values.items():
             if 'counts' in self.found[role].unit:

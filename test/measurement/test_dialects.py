@@ -167,6 +167,8 @@ ENCODERS = {
     'cp1252': plain('Prüfling 3\ntime,rotor [°],output [°]', angle=DEG, code='cp1252'),
     'CR LF': lambda t, r, o: written([t, r, o], NAMES).replace('\n', '\r\n'),
     'the newest row first': lambda t, r, o: written([t[::-1], r[::-1], o[::-1]], NAMES),
+    'each row three times': lambda t, r, o: written(
+        [np.repeat(one, 3) for one in (t, r, o)], NAMES),
     'rows by the angle of the output': lambda t, r, o: written(
         [column[np.argsort(o)] for column in (t, r, o)], NAMES),
     'the newest date first': lambda t, r, o: written(
