@@ -85,7 +85,7 @@ def scalar(value: str | float) -> str:
     """Write a value for YAML: a float to nine decimals, a text in quotes, single if possible."""
     if isinstance(value, str):
         return str(yaml.safe_dump(value, default_style="'", width=math.inf)).strip()
-    return f'{value:.9f}' if isinstance(value, float) else str(value)
+    return str(value) if isinstance(value, int) else f'{value:.9f}'
 
 
 def start_command(topic: str, name: str, encoder: str = '') -> str:
