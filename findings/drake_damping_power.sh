@@ -2,10 +2,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # Drake 1.51.1: the non-conservative power of an arm that loses 1.2 W to the damping of its joint is 0.
 #
-# Expected of CalcNonConservativePower() of a MultibodyPlant, for a joint at 2 rad/s with a damping of 0.3 N·m·s/rad:
-# -1.2 W, and -1.2 + 2 W with a motor that gives 1 N·m. What happens: 0 in both cases, although the damping and the
-# motor act in the dynamics: the acceleration is 0.08 rad/s² with both, 0.4 N·m divided by 5 kg·m². So an integral of
-# this power does not explain the change of the energy.
+# The documentation says that this power is negative "if the non-conservative forces are dissipative", and that PE + KE
+# less its integral "should be conserved by any physically-correct model". Expected of CalcNonConservativePower() of a
+# MultibodyPlant, for a joint at 2 rad/s with a damping of 0.3 N·m·s/rad: -1.2 W, and -1.2 + 2 W with a motor that gives
+# 1 N·m. What happens: 0 in both cases, although both act in the dynamics: the acceleration is 0.08 rad/s², 0.4 N·m
+# divided by 5 kg·m². So a check of the energy blames the model, or finds nothing wrong with a motor that does work.
 # For us: compute these powers from the torques and the velocity of the joint.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
