@@ -6,7 +6,7 @@
 # less its integral "should be conserved by any physically-correct model". Expected of CalcNonConservativePower() of a
 # MultibodyPlant, for a joint at 2 rad/s with a damping of 0.3 N·m·s/rad: -1.2 W, and -1.2 + 2 W with a motor that gives
 # 1 N·m. What happens: 0 in both cases, although both act in the dynamics: the acceleration is 0.08 rad/s², 0.4 N·m
-# divided by 5 kg·m². So a check of the energy blames the model, or finds nothing wrong with a motor that does work.
+# divided by 5 kg·m². So a check of the energy says that a right model is wrong.
 # For us: compute these powers from the torques and the velocity of the joint.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
