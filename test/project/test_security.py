@@ -326,15 +326,10 @@ def test_nothing_in_the_current_folder_is_run_or_obeyed(
 @pytest.mark.slow
 def test_matplotlibrc_in_the_current_folder_is_not_obeyed(tmp_path):
     pytest.importorskip('matplotlib')
-    drawn = []
-    for folder in (tmp_path / 'clean', tmp_path / 'trapped'):
-        folder.mkdir()
-        if folder.name == 'trapped':
-            (folder / 'matplotlibrc').write_text('savefig.facecolor: ff0000')
-        done = gearkin('describe', '--plot', 'figure.svg', cwd=folder)
-        assert done.returncode == 0, done.stderr
-        drawn.append((folder / 'figure.svg').read_bytes())
-    assert drawn[0] == drawn[1]
+    (tmp_path / 'matplotlibrc').write_text('savefig.facecolor: ff0000')
+    done = gearkin('describe', '--plot', 'figure.svg', cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert '#ff0000' not in (tmp_path / 'figure.svg').read_text('utf-8')
 
 
 # What the documents claim.
