@@ -41,6 +41,8 @@ _WRAPPED = re.compile(r'(?<![^,;\t\n])"[^"\n]*(\n[^"\n]*){1,3}"(?=[,;\t\n])')
 """Cells with line breaks, as of names in workbooks."""
 _LOGGED = re.compile(r'(?m)^(?:\[([^]\n]*\d:\d\d[^]\n]*)\]|(\d\d:\d\d:\d\d[.]\d+) -?>)[ \t]*')
 """Stamps that terminals, such as the Arduino IDE and Tera Term, write before each line."""
+_LABEL = re.compile(r'(?m)(?:(?<=[\s,;])|^)([^\W\d]\w*) ?[:=] ?(?=[-+.\d])')
+"""Names before each number, as sketches print them for the plotter of the Arduino IDE."""
 _PADDED = re.compile(r'(?<=[,;|\t]) +(?=")')  # which would hide quotation marks
 _TYPES = re.compile(r'(?i)[iuf]\d+|(float|double|u?int)\d*|(type|interp|blockpath|portindex): *.+')
 """Cells of rows that give types, as INCA and Simulink write them."""
@@ -122,6 +124,10 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
         mark = max(_SEPARATORS, key=inner.count)
         joint = 'T' if mark == ' ' else ' '
         plain = partial(_LOGGED.sub, lambda at: (at[1] or at[2]).replace(' ', joint) + mark)
+    logged, labels = plain, [*map(_LABEL.findall, text.split('\n')[1:_ROWS])]
+    if several := len(labels) > 1 and labels[0] == labels[-2] != labels[0][:1]:
+        plain = lambda text: _LABEL.sub('', logged(text))  # noqa: E731
+        text = ','.join([*['time of the line'] * (logged is not str), *labels[0]]) + '\n' + text
     lines = [*io.StringIO(plain(text), newline=None)]
     if size > _HEAD and not (lines := lines[:-1]):
         raise ValueError(f'the first row is longer than {_HEAD} characters')
@@ -134,7 +140,7 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
         rows = frame.assign(key=key)[frame['key'].isna()]
         return loaded(*series_of(rows, '.', 'key', 'value', {}))
     layout = _layout([_PADDED.sub('', line.replace('\v', ' ')) for line in lines])
-    start = layout.start + ''.join(lines[: layout.start]).count('\v')
+    start = layout.start - several + ''.join(lines[: layout.start]).count('\v')
 
     def read(places: Sequence[int], every: int, kind: Any = None) -> Any:
         with decoded() as file:

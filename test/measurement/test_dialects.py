@@ -208,6 +208,11 @@ ENCODERS = {
     'stamps of the Arduino IDE alone': lambda t, r, o: written(
         [t, r, o], '09:59:40.000 -> rotor,output', (
             lambda v: f'{moment()(v)[11:-3]} ->', '{:.5f}', '{:.5f}')).replace('>,', '> '),
+    'a label before each number': lambda t, r, o: written(
+        [t * 1e3, r, o], '', ('t_ms:{:.0f}', 'motor: {:.5f}', 'output={:.5f}'), '\t'),
+    'labels behind stamps of the Arduino IDE': lambda t, r, o: written(
+        [t, r, o], '', (lambda v: f'{moment()(v)[11:-3]} -> motor:0', '{:.5f}', '{:.5f}')
+        ).replace('motor:0,', 'motor:').replace(',', ',output:'),
     'milliseconds in a column of their own': lambda t, r, o: written(
         [t, t, r, o], 'Number,Date&Time,ms,Motor angle,Output angle\nNO.,Time,ms,rad,rad', (
             lambda v: f'7,{moment(" ")(v)[:19]}', lambda v: moment()(v)[20:23],
