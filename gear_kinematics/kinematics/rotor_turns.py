@@ -208,10 +208,10 @@ class RotorTurns:
         self.longest_gap: float | None = None  # s, that made the turns unknown; None: nothing did
         self._gaps, self._gap = 0, 0.0
         """By how many the gaps too long for the speed outnumber the others; their mean, s."""
-        self.periods = 0
-        """Number of periods that are added to the readings."""
+        self.periods = 0  #: number of periods that are added to the readings
         self._offset = 0, 0, 0.0  # periods, and their sum as turns and angle, rad
         self._reading, self._stamp = 0.0, 0
+        self.narrowed = 0  # ns, the stamp after the last gap whose turn depends on velocities
         self._velocity: float | None = None
         self._since_gap: tuple[_Speed, float, float, float] | None = None
         """Velocity before a gap that velocities narrowed, rad/s; turn, rad, and time since, s;
@@ -228,7 +228,7 @@ class RotorTurns:
         self.forget_turns()
 
     def lose_unseen(self) -> None:
-        """Treat known turns as lost, because the rotor may turn while its encoder is stuck."""
+        """Treat known turns as lost, because their readings or velocities are in doubt."""
         if self.referenced:
             self.unknown_gaps += 1
             self.lose()
@@ -260,7 +260,7 @@ class RotorTurns:
                 self._gap += (elapsed - self._gap) / (self._gaps + 1)
             self._gaps = min(self._gaps + 1, _MOST_GAPS) if wide else max(self._gaps - 1, 0)
             if 2.0 * self.max_speed * elapsed >= period:
-                since = self._velocity, 0.0, 0.0, elapsed
+                since, self.narrowed = (self._velocity, 0.0, 0.0, elapsed), stamp
             if since:
                 before, turned, time = since[0], since[1] + turn, since[2] + elapsed
                 middle, between = self._possible_turn(time, before, velocity)
@@ -333,7 +333,7 @@ class RotorTurns:
     def refer(self) -> None:
         """Treat the counted turns as known from now on."""
         self.referenced, self.unseen_travel, self.lost = True, 0.0, False
-        self.longest_gap = None
+        self.longest_gap, self.narrowed = None, 0
 
     def zero_for(self, rotor_angle: float, direction: int) -> float:
         """Return the zero that `home` would give, and change nothing.

@@ -322,7 +322,8 @@ class RotorInput:
             return None
         position = self._unwrapped(position)
         field.note(stamp, position, velocity, self.plausibility.noise)
-        if self.turns.period and field.positions_stand:
+        doubtful = field.contradicts and self.turns.narrowed > max(0, field.confirmed)
+        if self.turns.period and (field.positions_stand or doubtful):
             self.turns.lose_unseen()
         return None if field.contradicts else velocity
 

@@ -19,7 +19,7 @@ from gear_kinematics.wire.batches import Array
 from gear_kinematics.wire.cdr import SECOND
 
 SPAN = 100_000_000  # ns, between the readings that are compared; four times that decides
-_PAUSE = 10 * SPAN  # after velocities that were found right
+_PAUSE = 10 * SPAN  # after velocities that were found right, for all but a stuck encoder
 _READINGS = 4
 _STRIDES = 1, 4, 16  # noted readings between compared ones: more while the rotor is slow
 _MOST = 1 + (_READINGS - 1) * _STRIDES[-1]  # noted readings
@@ -94,7 +94,7 @@ class VelocityField:
         """Forget the readings, but not what was found."""
         self.due = 0  # ns, the stamp from which on the next reading is wanted
         self.quiet_until = 0  # ns: `due`, or 0 while the velocities are not to be used
-        self._pause_until = 0  # ns, while only a stuck encoder is looked for
+        self.confirmed = -_PAUSE  # ns, the stamp of the last reading that showed them right
         self._total, self._count = 0.0, 0  # of the velocities since the last reading
         self._last: float | None = None  # rad/s, the velocity at the last reading
         self._ways: list[float] = []  # rad, by the velocities since the position changed
@@ -179,7 +179,7 @@ class VelocityField:
             readings.clear()
         if not math.isnan(factor := self._impossible(stamp, position, velocity)):
             self._decide(factor, certain=True)
-        if stamp < self._pause_until:
+        if stamp < self.confirmed + _PAUSE and not self.contradicts:
             readings[:] = [(stamp, position, 0.0)]
             self._last, self._total, self._count = velocity, 0.0, 0
             self.quiet_until = self.due
@@ -338,7 +338,7 @@ class VelocityField:
                 self._past = Condition.VELOCITIES_WERE(time=stamp / SECOND, doubt=self.meaning)
             self.finding, self.factor = found, factor
             self.contradicts = found is not VelocityMeaning.RIGHT
-            self._pause_until = 0 if self.contradicts else stamp + _PAUSE
+            self.confirmed = self.confirmed if self.contradicts else stamp
         self._candidate = found
 
     def _meaning_of(self, factor: float) -> VelocityMeaning:

@@ -288,6 +288,29 @@ def test_turns_that_pass_while_a_single_turn_encoder_is_stuck_stay_unknown(setti
     assert rotor.turns.unknown_gaps == 2 * settings.single_turn
 
 
+@pytest.mark.parametrize(('factor', 'gap', 'referenced'), [
+    (1.0, 0.3, True),
+    (-1.0, 0.0, True),
+    (-1.0, 0.3, False),
+])  # fmt: skip
+def test_turns_that_wrong_velocities_showed_in_a_gap_are_not_known(factor, gap, referenced):
+    limits = {'max_rotor_speed': 100.0, 'max_rotor_acceleration': 100.0}
+    settings = replace(SETTINGS, rotor_encoder='single_turn', **limits)
+    rotor, rate = RotorInput(settings), 100
+    for k in range(3 * rate):
+        time = k / rate
+        if k and time < gap:
+            continue
+        position, velocity = math.remainder(20.0 * time, TURN), factor * 20.0
+        rotor.accept(
+            rotor_bytes(SECOND + k * SECOND // rate, position=[position], velocity=[velocity]), int
+        )
+        if not k:
+            rotor.home(0.0)
+    assert rotor.velocity_field.contradicts == (factor < 0.0)
+    assert rotor.referenced == referenced
+
+
 @pytest.mark.parametrize('speed', [2.0, 40.0, 200.0])
 def test_right_velocities_do_not_contradict_positions_that_wrap_unexpectedly(speed):
     rotor, _ = heard(lambda time: (speed * time % TURN, speed), 1000, 10.0, doubted=True)
