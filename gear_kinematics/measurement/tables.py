@@ -315,8 +315,8 @@ class _Samples:
             measured=angle.on_output,
         )
         if locked.not_locked:
-            other = 'or the unit is another, which --angle-unit gives'
-            raise ColumnsError(f'{locked.not_locked}, {other}')
+            of = ", or the angle is the motor's (--on-rotor)" * (angle.on_rotor == angle.on_output)
+            raise ColumnsError(f'{locked.not_locked}, or the unit is another (--angle-unit){of}')
         return locked
 
     def encoders(self, period: float) -> Encoders:

@@ -824,7 +824,7 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         *((f'time,angle,{name}\n0,0,2\n1,0.001,3\n',
            f'{name} does not say that it is a torque: .* --torque-column .{name} .N·m')
           for name in ('load', 'Iq')),
-        ('arm_moves_freely', 'the output turns by 100° under torque'),
+        ('arm_moves_freely', r'the output turns by 100° under torque: .* \(--on-rotor\)'),
         ('degrees_without_unit', 'speeds of .* as in degrees: .* --angle-unit'),
         ('vesc_tool', 'not say .* an angle: .* --angle-unit'),
     ],
