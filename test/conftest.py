@@ -61,6 +61,9 @@ from gear_kinematics.parameters import NodeParameters  # noqa: E402
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / 'shared'
 
+# A tenth of the time of tests went into garbage collections; so they are rarer in this process.
+gc.set_threshold(50_000)
+
 hypothesis.settings.register_profile('default', deadline=None)
 hypothesis.settings.register_profile(
     'ci', parent=hypothesis.settings.get_profile('default'), derandomize=True
