@@ -30,7 +30,7 @@ if not (what := parser.parse_args().what).endswith('.csv'):
 loads = node.create_publisher(Float64, '/load_torque', 10)
 call('lock_rotor', SetBool, data=True)  # who answers has discovered the publisher before
 node.create_subscription(JointState, '/output_encoder', output.append, 10)
-rows, ramps = ['angle,torque'], [(0.4, 40)] * 5 + [(4.0, 120)] * 3 + [(0.0, 1)]  # N·m, steps
+rows, ramps = ['angle,torque'], [(0.4, 60)] * 5 + [(4.0, 200)] * 3  # N·m, steps there and back
 for torque in [most * asin(sin(tau * k / n)) / asin(1) for most, n in ramps for k in range(n)]:
     loads.publish(Float64(data=torque))
     while output[-1].effort[0] != torque or abs(output[-1].velocity[0]) > resting:
