@@ -118,9 +118,12 @@ def test_actuator_is_added_to_the_file_of_an_arm(bag, tmp_path, capsys, monkeypa
 
 
 def test_open_ratio_writes_nothing_unless_it_is_confirmed(positions, tmp_path, capsys):
-    times, rotor, output = (each[100:200] for each in positions)  # 9/19 rad
+    times, rotor, output = (
+        np.interp(np.arange(300) / 3.0, np.arange(100), each[100:200])  # 9/19 rad
+        for each in positions
+    )
     rows = {'time': times, 'rotor_deg': np.degrees(rotor), 'output_deg': np.degrees(output)}
-    csv = write_csv(tmp_path / 'short.csv', **{n: np.repeat(v, 3) for n, v in rows.items()})
+    csv = write_csv(tmp_path / 'short.csv', **rows)
     target = tmp_path / 'a.yaml'
     assert main(['commission', str(csv), '-o', str(target)]) == 1
     assert 'short.csv: verdict: failed: The ratio is undetermined: -' in capsys.readouterr().out
