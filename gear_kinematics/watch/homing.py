@@ -43,10 +43,10 @@ def home(wanted: str, actuator: str) -> Answer:
         client = homing_client(node, name, actuator)
         service = client.srv_name
         if not client.wait_for_service(_SEARCH if service in known else _DELAY):
-            homes = [each for each in known if each.startswith(f'{name}/') and 'home' in each]
-            several = any(each.count('/') > name.count('/') + 1 for each in homes)
-            alone = ', as it has one gear: leave --actuator out'
-            hint = among(service, homes) if several or not actuator else alone
+            homes = {each for each in known if each.startswith(f'{name}/') and 'home' in each}
+            alone = actuator and homes == {f'{name}/home'}
+            one = ', as it has one gear: leave --actuator out'
+            hint = one if alone else among(service, homes)
             raise ValueError(f'there is no service {service}{hint}')
         asked = client.call_async(Trigger.Request())
         with SingleThreadedExecutor(context=node.context) as executor:
