@@ -125,10 +125,9 @@ class _Parser(argparse.ArgumentParser):
         if found:
             whole = 'whole ' * (found[1] == 'int')
             message = message.replace(found[0], f'must be a {whole}number, not ')
-        if 'are required' in message and (
-            example := (self.epilog or '').partition('example:\n  ')[2]
-        ):
-            message += f', as in {example}'
+        command = self.prog.partition(' ')[2]
+        if 'are required' in message and command:
+            message += f', as in gearkin {COMMANDS[command][1]}'
         complain(f'{message}; see {self.prog} --help')
         raise SystemExit(ExitCode.UNUSABLE)
 
