@@ -122,11 +122,12 @@ class Wraps:
 
 def why_unknown(turns: RotorTurns) -> Fact | None:
     """Return how a gap, or a step within one that hides no turn, made the turns unknown."""
-    if (gap := turns.longest_gap) is None:
-        return too_seldom(*turns.usual_gap)
+    rarely, gap = too_seldom(*turns.usual_gap), turns.longest_gap
+    if rarely or gap is None:
+        return rarely
     hides = 2.0 * turns.max_speed * gap >= turns.period
     which = Condition.GAP if hides else Condition.TURNED_TOO_FAR
-    return too_seldom(*turns.usual_gap) or which(gap=gap)
+    return which(gap=gap)
 
 
 def too_seldom(

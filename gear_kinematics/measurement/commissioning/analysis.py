@@ -128,10 +128,9 @@ def commission(recordings: Sequence[Recording], request: Request) -> Commissioni
         values += _ratio(between, evidence, request)
         values += _zeros(joints, between, request)
         if delay := motion.delay:
-            late = Observation.LATE(delay=delay) if delay.clear else Observation.NOT_LATE()
-            if delay.clear and delay.value < 0.0:
-                late = Observation.EARLY(delay=replace(delay, value=-delay.value))
-            notes.append(late)
+            which = Observation.EARLY if delay.value < 0.0 else Observation.LATE
+            late = which(delay=replace(delay, value=abs(delay.value)))
+            notes.append(late if delay.clear else Observation.NOT_LATE())
         else:
             values.append(Value('delay', None, Observation.DELAY_OR_HYSTERESIS()))
     elif ratio and ratio.advice and not longest.spoilt:
