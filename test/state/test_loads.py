@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState, MultiDOFJointState
+from wire import of_rows
 
 from gear_kinematics.kinematics import MechanismError, RotorSample, loads, solve, split_turns
 from gear_kinematics.kinematics.loads import Bodies
@@ -52,8 +53,7 @@ def test_messages_are_those_of_the_contract():
     parameters = replace(BRACED, frame_prefix='left_')
     followed = LoadEstimator(parameters)
     sample = RotorSample(5, split_turns(0.3), 10.0, 0.5)
-    rows = followed.rows(followed.follow(sample, 0), LOAD_TOPICS)
-    encoded = {topic: template.encode(5, numbers) for topic, template, numbers in rows}
+    encoded = of_rows(followed.rows(followed.follow(sample, 0), LOAD_TOPICS), 5)
     branches = deserialize_message(encoded['branch_loads'], JointState)
     assert branches.name == ['left_branch_a', 'left_branch_b']
     # i τ2 = -9.5 N·m is beyond the threshold of A, -3 (1 + kB/kAe) = -5.1: B carries all of it.

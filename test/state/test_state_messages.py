@@ -14,7 +14,7 @@ from properties import mechanisms, numbers_of
 from rclpy.serialization import deserialize_message
 from replaying import assert_poses
 from sensor_msgs.msg import JointState
-from wire import encoded
+from wire import encoded, of_rows
 
 from gear_kinematics.correction.corrector import Correction
 from gear_kinematics.kinematics import RotorPosition, RotorSample, solve, split_turns
@@ -143,8 +143,7 @@ CORRECTED = ('corrected_state', 'corrected_interval')
 
 
 def encode_corrected(states, sample, correction, topics=CORRECTED):
-    rows = states.corrected_rows(sample, correction, topics)
-    return {topic: template.encode(sample.stamp, numbers) for topic, template, numbers in rows}
+    return of_rows(states.corrected_rows(sample, correction, topics), sample.stamp)
 
 
 @pytest.mark.parametrize(('velocity', 'effort'), [(3.0, -0.5), (None, 0.25), (2.0, None)])

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from live import SECOND
 
 from gear_kinematics.kinematics import RotorSample
-from gear_kinematics.state.state_messages import OutputMessages
+from gear_kinematics.state.state_messages import OutputMessages, Row
 from gear_kinematics.wire.topics import STATE_TOPICS
 
 ENCAPSULATIONS = (0, 1, 2, 3, 6, 7, 8, 9, 10, 11)
@@ -53,8 +53,12 @@ def encoded(
     messages: OutputMessages, sample: RotorSample, topics: Iterable[str] = STATE_TOPICS
 ) -> dict[str, bytes]:
     """Return the messages of a sample by topic, as the node sends them."""
-    rows = messages.rows(sample, topics)
-    return {topic: template.encode(sample.stamp, numbers) for topic, template, numbers in rows}
+    return of_rows(messages.rows(sample, topics), sample.stamp)
+
+
+def of_rows(rows: Iterable[Row], stamp: int) -> dict[str, bytes]:
+    """Return the messages of rows by topic, with a stamp, ns."""
+    return {topic: template.encode(stamp, numbers) for topic, template, numbers in rows}
 
 
 def micro_ros_bytes(stamp, names, position, velocity=(), effort=()) -> bytes:
