@@ -88,32 +88,44 @@ class EncoderFit:
         near = (np.interp(then[kept] + k * STEP, time, sign) for k in (-1, 1))
         steady = (signs[kept] * speed)[np.all([each == signs[kept] for each in near], axis=0)]
         parts = np.array_split(steady, max(1, min(_MEANS, len(steady))))
-        self.tells_delay = tells_delay(steady, np.array([np.mean(part) for part in parts]))
+        means = np.array([part.sum() / len(part) for part in parts])
+        self.tells_delay = tells_delay(steady, means)
         """Whether the speed varies enough to separate a delay from play."""
         self.travel = float(np.ptp(at))
         # The measured angle must not explain itself, so that errors are periodic in the rotor's.
-        columns = _columns(at, slope, signs[kept], speed)
+        model = _terms(at, slope, signs[kept], speed)
         # The same holds for reading errors: the acceleration does not contain the reading itself.
         acceleration = slope * (first - early - after + last) / (3.0 * STEP**2)
         left = rest = output[kept] - slope * at - np.mean(output[kept] - slope * at)
         course = (then[kept] - np.mean(then[kept])) / np.ptp(then[kept])
         drifts = _PLAY * course, _DELAY * course * speed
         waves = _PLAY * signs[kept, None] * _waves(slope * at)
-        others = np.column_stack([_LAG * acceleration, *drifts, waves, rest])
-        blocks = np.array_split(np.hstack([columns, others]), _BLOCKS)
-        self._products = np.array([block.T @ block for block in blocks])
-        self._model = list(range(columns.shape[1]))
+        self._model = list(range(len(model)))
+        terms = np.stack([*model, _LAG * acceleration, *drifts, *waves.T, rest])
+        blocks = np.array_split(terms, _BLOCKS, axis=1)
+        self._products = np.array([block @ block.T for block in blocks])
         self._equations = NormalEquations(self._products)
         for _ in range(_ROUNDS):
             self._equations.noise = max(_noise(left), _LEAST_NOISE**2)
-            left = rest - columns @ self._equations.solve(self._model, slice(1))[0]
-        self._terms = self._equations.solve(self._model)
-        self.slope = slope + self._terms[:, _SLOPE] / self.travel
+            whole = self._equations.solve(self._model, slice(1))[0]
+            left = rest - whole @ terms[: len(whole)]
+        self._slope = slope
+
+    @cached_property
+    def _found(self) -> Array:
+        """Coefficients of the model, (1 + blocks, terms)."""
+        return self._equations.solve(self._model)
+
+    @property
+    def slope(self) -> Array:
+        """Output angle over rotor angle, (1 + blocks,)."""
+        return self._slope + self._found[:, _SLOPE] / self.travel
 
     def refined(self) -> 'EncoderFit':
         """Fit again, from the slope and the delay found."""
-        late = self._late - _DELAY * float(self._terms[0, _LATE])
-        return EncoderFit(*self._angles, float(self.slope[0]), late)
+        whole = self._equations.solve(self._model, slice(1))[0]
+        late = self._late - _DELAY * float(whole[_LATE])
+        return EncoderFit(*self._angles, self._slope + float(whole[_SLOPE]) / self.travel, late)
 
     def slope_estimate(self, period: float) -> Estimate:
         """Estimate the slope, output angle over rotor angle.
@@ -132,7 +144,7 @@ class EncoderFit:
         parts = (
             self._equations.spreads(self._model)[_SLOPE],
             _ACCURACY,
-            (lagging[0, _SLOPE] - self._terms[0, _SLOPE]) / math.sqrt(3.0),
+            (lagging[0, _SLOPE] - self._found[0, _SLOPE]) / math.sqrt(3.0),
             curved[0, _SLOPE] / math.sqrt(3.0),
         )
         return jackknife(self.slope, *(Component(float(part) / self.travel) for part in parts))
@@ -231,18 +243,18 @@ def play_bounds(x: Array, radius: float) -> Array:
     return np.concatenate(parts, axis=1)
 
 
-def _columns(rotor: Array, slope: float, sign: Array, speed: Array) -> Array:
-    """Terms scaled to their expected size, (n, terms): slope, offset, play, delay, then errors."""
+def _terms(rotor: Array, slope: float, sign: Array, speed: Array) -> list[Array]:
+    """Terms scaled to their expected size, (n,) each: slope, offset, play, delay, then errors."""
     x = (rotor - np.mean(rotor)) / np.ptp(rotor)
-    columns = [x, np.ones(len(x)), _PLAY * sign, _DELAY * speed]
+    terms = [x, np.ones(len(x)), _PLAY * sign, _DELAY * speed]
     amplitudes = ENCODER_ERROR, (abs(slope) + _ROTOR_SHARE) * ENCODER_ERROR
     for angle, amplitude, most in zip((slope * rotor, rotor), amplitudes, _ORDERS, strict=True):
         power = once = np.exp(1j * angle)  # cos + j sin of k times the angle
         for k in range(1, most + 1):
             size = amplitude / (_TO_STANDARD * k)
-            columns += [size * power.real, size * power.imag]
+            terms += [size * power.real, size * power.imag]
             power = power * once
-    return np.stack(columns, axis=1)
+    return terms
 
 
 def _waves(angle: Array) -> Array:

@@ -65,7 +65,11 @@ class NormalEquations:
         places, ridge = list(chosen), np.array(_RIDGE)
         if self.noise is not None:
             ridge = np.maximum(self.noise / self._scale[places] ** 2, _ROUNDING)
-        return np.asarray(self.products[fits, places][:, :, places] + ridge * np.eye(len(places)))
+        regular = np.array(self.products[fits, : len(places), : len(places)])
+        if (diagonal := [*range(len(places))]) != places:
+            regular = self.products[fits, places][:, :, places]
+        regular[:, diagonal, diagonal] += ridge
+        return regular
 
     def solve(self, chosen: Sequence[int], fits: slice = _ALL) -> Array:
         """Coefficients of the chosen columns, (fits, chosen)."""
@@ -101,7 +105,9 @@ class NormalEquations:
         of columns.
         """
         places, whole = list(chosen), self.solve(chosen, _WHOLE)[0]
-        left = self._blocks[:, places][:, :, [*places, -1]] @ np.append(-whole, 1.0)
+        factors = np.zeros(len(self._scale))
+        factors[places], factors[-1] = -whole, 1.0
+        left = (self._blocks @ factors)[:, places]
         changes = np.linalg.solve(self.regular(places, _WHOLE)[0], (left / self._scale[places]).T)
         return np.vstack([whole, whole - changes.T / self._scale[places]])
 

@@ -15,6 +15,7 @@ Values = Sequence[float] | NDArray[np.float64]
 COVERAGE = 0.95  #: coverage probability of expanded uncertainties
 _NORMAL = 1.959963984540054  # Student's quantile for infinitely many degrees of freedom
 _FEWEST = 3  # groups of blocks from which a standard error is estimated
+_ROUNDING = 1e-15  # rad
 _MAX_DEGREES = 10_000  # of freedom; the quantile is within 1.3e-4 of the normal one
 
 
@@ -156,13 +157,14 @@ def student_t(degrees: int) -> float:
     """
     if degrees >= _MAX_DEGREES:
         return _NORMAL
-    low, high = 0.0, 0.5 * math.pi
-    while low < (middle := 0.5 * (low + high)) < high:
-        if _share_within(middle, degrees) < COVERAGE:
-            low = middle
-        else:
-            high = middle
-    return math.sqrt(degrees) * math.tan(middle)
+    density = math.exp(math.lgamma(0.5 * (degrees + 1)) - math.lgamma(0.5 * degrees))
+    density *= 2.0 / math.sqrt(math.pi)  # of the angle at 0
+    angle, step = math.atan(_NORMAL / math.sqrt(degrees)), 1.0
+    while step > _ROUNDING:  # Newton's steps rise to the angle, as the density falls with it
+        step = (COVERAGE - _share_within(angle, degrees)) / density
+        step /= math.cos(angle) ** (degrees - 1)
+        angle += step
+    return math.sqrt(degrees) * math.tan(angle)
 
 
 def _share_within(angle: float, degrees: int) -> float:
