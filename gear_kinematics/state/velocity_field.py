@@ -177,8 +177,9 @@ class VelocityField:
         self.add(velocity)
         if not self._count or (readings and stamp > readings[-1][0] + 2 * SPAN):
             readings.clear()
-        if not math.isnan(factor := self._impossible(stamp, position, velocity)):
-            self._decide(factor, certain=True)
+            self._ways.clear()
+        if readings:
+            self._follow_way(stamp, position, velocity)
         if stamp < self.confirmed + _PAUSE and not self.contradicts:
             readings[:] = [(stamp, position, 0.0)]
             self._last, self._total, self._count = velocity, 0.0, 0
@@ -201,9 +202,9 @@ class VelocityField:
                 break
         self.quiet_until = 0 if self.contradicts else self.due
 
-    def _impossible(self, stamp: int, position: float, velocity: float | None) -> float:
-        """Return the factor of velocities that are too great, or go on at a standstill, or NaN."""
-        since, before, _ = self._readings[-1] if self._readings else (stamp, position, 0.0)
+    def _follow_way(self, stamp: int, position: float, velocity: float | None) -> None:
+        """Decide on velocities that are too great, or go on while the position stands."""
+        since, before, _ = self._readings[-1]
         mean, turn = self._total / max(1, self._count), position - before
         expected = mean * (stamp - since) * 1e-9
         self._ways = [] if turn else [*self._ways[1 - _LONGEST :], expected]
@@ -214,8 +215,7 @@ class VelocityField:
         stuck = goes_on and abs(places[-1]) >= _TRAVEL and self.finding is VelocityMeaning.RIGHT
         stuck |= max(places) - min(places) - abs(places[-1]) >= _TRAVEL and not self.contradicts
         if stuck or abs(expected) > _IMPOSSIBLE * (abs(turn) + _TRAVEL):
-            return expected / turn if turn else math.inf
-        return math.nan
+            self._decide(expected / turn if turn else math.inf, certain=True)
 
     def _follow(self, travel: float, noise: float) -> None:
         """Decide on a motion of more than `travel`, rad, however unsteady, of the latest readings.
@@ -239,7 +239,7 @@ class VelocityField:
                 self._products_of_changes[k] += off * change
                 self._change_squares[k] += change * change
         if self._turns >= _FEWEST and self._path >= travel:
-            if self._change_squares[0] >= self._turns * (_CHANGES * noise) ** 2:
+            if self._moved and self._change_squares[0] >= self._turns * (_CHANGES * noise) ** 2:
                 self._note_delay()
             least = _ALIGNED * self._squares * self._velocity_squares
             if self._products * self._products >= least > 0.0:

@@ -211,6 +211,11 @@ def test_right_velocities_are_not_too_great_after_a_pause_of_the_driver():
     assert {*said} == {None}
 
 
+def test_velocities_of_0_beside_a_vibration_are_not_late():
+    time = np.arange(600) / 100
+    assert {*meanings(time, 0.8 * np.sin(8.0 * math.pi * time), 0.0 * time)} == {None}
+
+
 @pytest.mark.parametrize(('eccentric', 'noise'), [(0.02, 0.0), (0.0, 0.01)])
 def test_errors_of_positions_at_a_steady_speed_are_no_delay(eccentric, noise):
     """Even where readings, 0.1 s apart, take them half a turn apart."""
@@ -339,6 +344,13 @@ def test_an_encoder_that_is_stuck_beside_right_velocities_is_named(rate, begin, 
 
     rotor, _ = heard(fields, rate, begin + within + 1.5 / rate)
     assert rotor.velocity_field.positions_stand
+
+
+def test_an_encoder_that_is_stuck_over_a_pause_of_the_driver_is_named():
+    time = np.delete(np.arange(320) / 100, np.s_[235:260])
+    braking = np.interp(time, [2.0, 2.35, 2.351], [20.0, 12.0, 14.0])
+    *_, said = meanings(time, 20.0 * np.minimum(time, 2.0), braking)
+    assert said is Condition.POSITIONS_STAND
 
 
 @pytest.mark.parametrize('lag', [0.02, 0.1, 0.5])
