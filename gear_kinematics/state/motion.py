@@ -76,7 +76,8 @@ def all_in_reach(
     held_up = known.held_up
     for k in np.flatnonzero(ended[1:] | np.append(~regular, False)).tolist():
         place, began = places[k + 1], int(changed[k])
-        prior = places[k], 0, float(step[k]), int(span[k])
+        prior_stamp = int(until[k - 1]) if k else known.former[1]
+        prior = places[k], prior_stamp, float(step[k]), int(span[k])
         if ended[k + 1]:
             moving = place, began, float(moved[k + 1]), int(took[k + 1])
             if limits.least_speed(moving, prior, noise[k], held_up):
@@ -90,7 +91,7 @@ def all_in_reach(
                 return None
     if len(rows):
         before = float(positions[rows[-2]]) if len(rows) > 1 else position
-        former = before, int(changed[-2]), float(step[-2]), int(span[-2])
+        former = before, int(until[-2]), float(step[-2]), int(span[-2])
     latest = float(positions[-1]), int(changed[-1]), float(step[-1]), int(span[-1])
     held_up = max(held_up, pauses[-1])
     return Motion(latest, former, moving, int(stamps[-1]), float(noise[-1]), held_up)

@@ -125,13 +125,13 @@ class Plausibility:
     def judge(self, position: float, stamp: int) -> Belief:
         """Take the next reading, rad, with a stamp, ns, not before the last believed one."""
         last = self._last
-        before, changed, former, _ = last
+        before, changed, former, took = last
         step = position - before
         even, square, shortest, longest = self._even
         if 0.0 < step * step <= square and -even <= step - former <= even:
             span = stamp - changed
             if shortest <= span <= longest:
-                self._former = last
+                self._former = before, self._stamp, former, took
                 self._last = position, stamp, step, span
                 self._stamp = stamp
                 return BELIEVED
@@ -200,7 +200,8 @@ class Plausibility:
             self._last = position, changed, last_step + step, last_span
             self._repeated = stamp
         else:
-            self._former, self._last = last, (position, stamp, step, span)
+            self._former = before, self._stamp, last_step, last_span
+            self._last = position, stamp, step, span
         self._stamp = stamp
         self._look_always()
         usual = (span + last_span) // 2

@@ -21,8 +21,9 @@ _FASTEST = 250_000  # ns between the readings of a driver; those of a burst can 
 _CLOSE = 750_000  # ns, below which readings can be those of a burst, rather than of a fast driver
 
 Reading = tuple[float, int, float, int]
-"""The first believed reading with a position: rad; ns; the step from the one before, rad, and the
-time since that, ns, which is 0 if it is not known, or after a standstill."""
+"""A believed reading: rad; ns; the step from the one before, rad, and the time since that, ns,
+which is 0 if it is not known, or after a standstill. Of several with one position, the stamp is that
+of the first where they are the latest readings, and of the last where they are former ones."""
 
 
 class HeldUp(NamedTuple):
@@ -47,6 +48,7 @@ class HeldUp(NamedTuple):
     def before(self, span: int, last: Reading, former: Reading) -> 'HeldUp':
         """Take the time until a reading, ns, after two others, and return the pause before it."""
         _, end, _, length = last
+        length = min(length, end - former[1])  # messages in between show that there was no pause
         since = end - self.end
         if 7 * span >= 4 * length or length <= self.length - since:
             return self

@@ -390,6 +390,17 @@ def test_regular_readings_of_a_rotor_at_rest_are_no_pauses():
             assert judge.judge(3.0, stamp + 1000) is Belief.IMPLAUSIBLE
 
 
+@pytest.mark.parametrize('after', [100, 101, 102, 108])
+def test_readings_that_flicker_at_rest_are_no_pauses(after):
+    """One count for 8 ms, and another for 2 ms."""
+    judge = Plausibility(*LIMITS)
+    stamps = range(START, START + after * 1_000_000, 1_000_000)
+    assert all(
+        judge.judge(0.002 * (k % 10 < 8), stamp) is BELIEVED for k, stamp in enumerate(stamps)
+    )
+    assert judge.judge(4.0, START + after * 1_000_000) is Belief.IMPLAUSIBLE
+
+
 def test_a_pause_behind_the_first_reading_hides_no_wrong_one():
     arrivals = [START, *(START + 90_000_000 + 2_000_000 * np.arange(20)).tolist()]
     judge = Plausibility(*LIMITS)
