@@ -209,8 +209,7 @@ class Plausibility:
             shortest, longest = (1.0 - REGULAR) * usual, (1.0 + REGULAR) * usual
             if shortest <= span <= longest:
                 # A step that differs tells of the resolution, as long as that is coarse.
-                known = self.noise == FLOOR
-                even = self.limits.even_step(usual) if known else EQUAL
+                even = self.limits.even_step(usual) if self.noise == FLOOR else EQUAL
                 if self.period:
                     even = min(even, 0.25 * self.period)
                 most = self.limits.speed * shortest * 1e-9

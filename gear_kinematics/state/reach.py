@@ -22,8 +22,8 @@ _CLOSE = 750_000  # ns, below which readings can be those of a burst, rather tha
 
 Reading = tuple[float, int, float, int]
 """A believed reading: rad; ns; the step from the one before, rad, and the time since that, ns,
-which is 0 if it is not known, or after a standstill. Of several with one position, the stamp is that
-of the first where they are the latest readings, and of the last where they are former ones."""
+which is 0 if it is not known, or after a standstill. Of several with one position, the stamp is
+that of the first if they are the latest readings, and that of the last if they are former ones."""
 
 
 class HeldUp(NamedTuple):
