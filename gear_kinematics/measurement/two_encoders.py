@@ -4,8 +4,9 @@
 The output angle is slope · rotor angle + offset + play by direction - delay · speed + errors that
 repeat with each turn of output or rotor. An error of k cycles per turn has an amplitude of at most
 `ENCODER_ERROR`/k, with a probability of 95 %. Over more than a turn these errors are fitted; what
-a shorter travel leaves open is in the uncertainties. Everything else is in the scatter of fits
-that each leave out one block of successive samples.
+a shorter travel leaves open is in the uncertainties, and so is a zero that walks at random, as by
+temperature. Everything else is in the scatter of fits that each leave out one block of successive
+samples.
 """
 
 import math
@@ -47,6 +48,9 @@ _LAG = 6e-5
 1/ω² of an output that oscillates at 20 Hz on the springs of its gear, as robot arms do."""
 _SLOPE, _DIRECTION, _LATE = 0, 2, 3  # columns of the fit; 1 is the offset
 _LEAST_NOISE = 1e-7  # rad, the step of an encoder of 26 bits; below it, rounding falsifies ratios
+_LAGS, _GROWS = 16, 1.2
+"""Lags in a recording, and growth of the squared change from one lag to two: it is 2 for a zero
+that walks at random, and about 1 for noise and for errors that repeat."""
 _ROUNDS = 5  # estimates of the noise, each from the residuals before; after 3, ± is 50 % off
 
 
@@ -109,7 +113,8 @@ class EncoderFit:
             self._equations.noise = max(_noise(left), _LEAST_NOISE**2)
             whole = self._equations.solve(self._model, slice(1))[0]
             left = rest - whole @ terms[: len(whole)]
-        self._slope = slope
+        self._terms, self._slope = terms, slope
+        self._runs = 1 + int(np.count_nonzero(np.diff(signs[kept])))
 
     @cached_property
     def _found(self) -> Array:
@@ -147,13 +152,18 @@ class EncoderFit:
             (lagging[0, _SLOPE] - self._found[0, _SLOPE]) / math.sqrt(3.0),
             curved[0, _SLOPE] / math.sqrt(3.0),
         )
-        return jackknife(self.slope, *(Component(float(part) / self.travel) for part in parts))
+        return jackknife(
+            self.slope,
+            self._wander(self._model, _SLOPE, 1.0 / self.travel),
+            *(Component(float(part) / self.travel) for part in parts),
+        )
 
     def delay(self, unit: float = 1.0) -> Estimate:
         """Estimate the delay of the output's samples, in a unit of 1/`unit` s."""
         spread = Component(unit * _DELAY * float(self._equations.spreads(self._clear)[_LATE]))
         fits = self._equations.solve(self._clear)[:, _LATE]
-        return jackknife(unit * (self._late - _DELAY * fits), spread)
+        wander = self._wander(self._clear, _LATE, unit * _DELAY)
+        return jackknife(unit * (self._late - _DELAY * fits), spread, wander)
 
     @cached_property
     def _even(self) -> list[int]:
@@ -180,6 +190,18 @@ class EncoderFit:
             if abs(estimate.value) >= times * estimate.expanded
         ]
 
+    def _wander(self, chosen: Sequence[int], place: int, unit: float) -> Component:
+        """Uncertainty of a coefficient, times a unit, if the zero walks at random as residuals do.
+
+        A step of the zero changes the coefficient by the sum of the weights of all later samples.
+        """
+        whole = self._equations.solve(chosen, slice(1))[0]
+        walk = _walk(self._terms[-1] - whole @ self._terms[list(chosen)])
+        # Terms that repeat with each run follow a share of the walk.
+        walk *= self._runs / max(self._runs - 1, 1)
+        weights = self._equations.weights(chosen, place) @ self._terms
+        return Component(unit * math.sqrt(walk * np.sum(np.cumsum(weights) ** 2)), _LAGS)
+
     def lost_motion(self, *others: Component, delay: bool, even: bool = False) -> Estimate:
         """Estimate the angle lost on a reversal, rad, separate from a delay or including it.
 
@@ -197,7 +219,8 @@ class EncoderFit:
         # Both the spread and the scatter of blocks contain the noise: the greater of them counts.
         scatter = jackknife(fits).standard or 0.0
         rest = Component(math.sqrt(max(spread**2 - scatter**2, 0.0)))
-        return jackknife(fits, rest, *others)
+        wander = self._wander(chosen, _DIRECTION, 2.0 * _PLAY)
+        return jackknife(fits, rest, wander, *others)
 
 
 def output_by_rotor(rotor: Array, measured: Array) -> float | None:
@@ -271,3 +294,10 @@ def _noise(residual: Array) -> float:
         most = max(most, size * float(np.mean(means**2)))
         means, size = (means[:-1:2] + means[1::2]) / 2.0, 2 * size
     return most
+
+
+def _walk(residual: Array) -> float:
+    """Variance of the steps, from one sample to the next, of a zero that walks at random, rad²."""
+    lag = len(residual) // _LAGS
+    near, far = (float(np.mean((residual[k:] - residual[:-k]) ** 2)) for k in (lag, 2 * lag))
+    return max(far - _GROWS * near, 0.0) / ((2.0 - _GROWS) * lag)

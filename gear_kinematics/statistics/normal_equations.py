@@ -111,6 +111,13 @@ class NormalEquations:
         changes = np.linalg.solve(self.regular(places, _WHOLE)[0], (left / self._scale[places]).T)
         return np.vstack([whole, whole - changes.T / self._scale[places]])
 
+    def weights(self, chosen: Sequence[int], place: int) -> Array:
+        """Factors of the columns whose sum weighs the samples for one coefficient, (size,)."""
+        places, weights = list(chosen), np.zeros(len(self._scale))
+        one = (np.array(places) == place) / self._scale[place]
+        weights[places] = np.linalg.solve(self.regular(places, _WHOLE)[0], one)
+        return weights / self._scale
+
     def spreads(self, chosen: Sequence[int]) -> Array:
         """Standard uncertainties of the chosen coefficients by noise that is white, (chosen,)."""
         variances = np.diagonal(np.linalg.inv(self.regular(chosen, _WHOLE)[0]))

@@ -74,6 +74,23 @@ def test_slow_drifts_of_zero_and_clock_are_no_play(clock):
 
 
 @pytest.mark.slow
+def test_a_zero_that_walks_at_random_is_in_the_uncertainty():
+    """Two to eight strokes show little of how far it walks from one to the next."""
+    inside, seeds = 0, 40
+    for seed in range(seeds):
+        strokes = 2 + seed % 7
+        drive = Drive(PLAY, ERRORS, noise=0.05 * ARC_MINUTE, **STEPS)
+        profile = ramped_strokes(3.0, 5.0, 1.0)
+        times, rotor, output = drive.readings(profile, 5.0 * strokes, 50.0, seed)
+        steps = np.random.default_rng([seed, 1]).normal(size=len(times))
+        output += 2.0 * ARC_MINUTE * np.cumsum(steps) / math.sqrt(len(times))
+        found = figures(encoders(rotor, output, stamps(times), COUNTS, OUTPUT_COUNTS)).reversals
+        inside += abs(found.value - PLAY) <= found.uncertainty
+    # By the scatter of blocks alone, 28 of 40 are.
+    assert inside >= 34
+
+
+@pytest.mark.slow
 def test_a_filter_of_the_output_is_no_play():
     """It delays less while strokes begin and end, which become ever faster."""
     drive = Drive(PLAY, ERRORS, noise=0.05 * ARC_MINUTE, **STEPS)

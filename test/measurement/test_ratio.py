@@ -359,4 +359,4 @@ def test_a_given_ratio_is_not_confirmed_by_a_temperature():
     nowhere = Channel('', '')
     result = commission([recording], Request(rotor=nowhere, output=nowhere, ratio=GearRatio(6)))
     assert result.between is None
-    assert 'not have the ratio 6: the output does not follow the rotor' in str(result.answer)
+    assert 'ratio is undetermined: the output does not follow the rotor' in str(result.answer)
