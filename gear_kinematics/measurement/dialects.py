@@ -9,7 +9,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
-from itertools import takewhile, zip_longest
+from itertools import chain, takewhile, zip_longest
 from operator import itemgetter
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -220,8 +220,11 @@ def _layout(lines: Sequence[str]) -> _Layout:
     filled = [k for k, line in enumerate(lines) if line.strip() and not line.startswith(_COMMENT)]
     last = [lines[k] for k in filled[-_ROWS:]]
     last = last[len(last) // 2 :]
+    divided = {
+        one: [*filter(None, chain(*(cells_of(k, one) for k in last)))] for one in _SEPARATORS
+    }
     choices = [(one, point) for one in _SEPARATORS for point in '.,']
-    separator, point = max(choices, key=lambda choice: _score(last, *choice))
+    separator, point = max(choices, key=lambda choice: _score(divided[choice[0]], choice[1]))
     rows = {k: cells_of(lines[k], separator) for k in filled}
     known = [rows[k] for k in filled[-len(last) :]] if filled else []
     width = max(Counter(map(len, known)).items(), key=itemgetter(1), default=(0, 0))[0]
@@ -264,10 +267,9 @@ def _layout(lines: Sequence[str]) -> _Layout:
     return _Layout(separator, point, start, row, *found, ' '.join(titles), interval)
 
 
-def _score(lines: Sequence[str], separator: str, point: str) -> float:
-    """Count the numbers in lines that are divided so, less the other cells and what is in them."""
-    cells = (cell for line in lines for cell in cells_of(line, separator) if cell)
-    return sum(weight(cell, point) or -len(re.split('[;\t]', cell)) for cell in cells)
+def _score(cells: Iterable[str], point: str) -> float:
+    """Count the numbers in cells, less the other cells and what is in them."""
+    return sum(weight(k, point) or -1 - k.count(';') - k.count('\t') for k in cells if k)
 
 
 def _names(
