@@ -3,10 +3,13 @@
 
 import itertools
 import json
+import math
 import os
 import re
+import struct
 import time
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -71,14 +74,26 @@ def rotor_bytes(
     *,
     little_endian=True,
 ) -> bytes:
-    """Serialise the message with rosbags, which is neither ROS nor the code under test."""
-    types, (seconds, nanoseconds) = TYPESTORE.types, divmod(stamp, SECOND)
-    arrays = (np.array(values, dtype=np.float64) for values in (position, velocity, effort))
-    header = types['std_msgs/msg/Header'](
-        types['builtin_interfaces/msg/Time'](seconds, nanoseconds), frame_id
-    )
+    """Serialise the message as rosbags does, which is neither ROS nor the code under test."""
+    arrays = position, velocity, effort
+    data, places = _layout(tuple(names), tuple(map(len, arrays)), frame_id, little_endian)
+    made, order = bytearray(data), '<' if little_endian else '>'
+    struct.pack_into(f'{order}iI', made, 4, *divmod(stamp, SECOND))
+    for place, values in zip(places, filter(len, arrays), strict=True):
+        struct.pack_into(f'{order}{len(values)}d', made, place, *values)
+    return bytes(made)
+
+
+@cache
+def _layout(names, counts, frame_id, little_endian) -> tuple[bytes, list[int]]:
+    """Serialise a message with rosbags, and find where the numbers of each array begin."""
+    types = TYPESTORE.types
+    arrays = [math.pi * (k + 1) + np.arange(count) for k, count in enumerate(counts)]
+    header = types['std_msgs/msg/Header'](types['builtin_interfaces/msg/Time'](0, 0), frame_id)
     message = types['sensor_msgs/msg/JointState'](header, list(names), *arrays)
-    return encode(message, little_endian=little_endian)
+    data = encode(message, little_endian=little_endian)
+    kind = f'{"<" if little_endian else ">"}f8'
+    return data, [data.index(array.astype(kind).tobytes()) for array in arrays if len(array)]
 
 
 class Participant:
