@@ -34,6 +34,68 @@ from gear_kinematics.watch.server import Server  # noqa: E402, needs it
 expect = sync_api.expect
 
 
+# Without the page of a driver, which draws all the time
+
+
+@contextmanager
+def shown(browser, view):
+    """Open a page of one view, and give it with what it is asked for."""
+    ended, watcher = threading.Event(), WatcherStandIn(view)
+    server = Server(watcher)
+    thread = threading.Thread(target=lambda: asyncio.run(server.run(ended.is_set)))
+    thread.start()
+    page = browser.new_page()
+    try:
+        page.goto(server.address)
+        yield page, watcher.asked
+    finally:
+        page.close()
+        ended.set()
+        thread.join(DEADLINE)
+
+
+def test_names_are_text_on_the_page(browser):
+    hostile = '<img src=x onerror=alert(1)>'
+    view = View(
+        node=hostile,
+        state='connected',
+        message=hostile,
+        values=(Entry(hostile, hostile, hostile),),
+        diagnostics=(Entry(hostile, hostile),),
+        drivers=(Entry(hostile, hostile, hostile),),
+        joints=((hostile, hostile), (hostile, 'b')),
+        guide=Guide(hostile, 0.5, (Entry(hostile, hostile, hostile),)),
+        output=-1e-9,
+    )
+    with shown(browser, view) as (page, _):
+        parts = '#node', '#message', '#values dt', '#values dd', '#diagnostics dd', '#drivers dt'
+        for part in (*parts, '#drivers dd', '#guide p', '#guide .detail', '#guide dd'):
+            expect(page.locator(part).first).to_have_text(hostile)
+        option = page.locator('#commission option').first
+        expect(option).to_have_text(f'{hostile} on {hostile}')
+        assert page.locator('img').count() == 0
+        caption = page.locator('#curve figcaption')
+        expect(caption).to_have_text('output angle, 10 s: 0.0 to 0.0°')
+
+
+def test_a_question_that_was_cancelled_just_before_does_not_home_as_well(browser):
+    with shown(browser, View(state='connected', question='Set it?', revision=7)) as (page, asked):
+        expect(page.locator('#home')).to_be_enabled()
+        page.evaluate("""for (const answer of ['Cancel', 'Set it']) {
+            document.getElementById('home').click();
+            const buttons = [...document.querySelectorAll('#question button')];
+            buttons.find(button => button.textContent === answer).click();
+        }""")
+        expect(page.locator('#answer')).to_have_text('home.')
+        page.evaluate('new Promise(done => requestAnimationFrame(() => setTimeout(done)))')
+        page.get_by_role('button', name='Home').click()
+        page.get_by_role('button', name='Cancel').click()
+    assert asked == [{'do': 'home', 'revision': 7}]
+
+
+# Beside a driver
+
+
 @pytest.fixture(scope='module')
 def folder(tmp_path_factory):
     return tmp_path_factory.mktemp('watch')
@@ -220,62 +282,6 @@ CONTRAST = """element => {
     return (Math.max(...both) + 0.05) / (Math.min(...both) + 0.05);
 }"""
 """Contrast as WCAG 2 defines it."""
-
-
-@contextmanager
-def shown(browser, view):
-    """Open a page of one view, and give it with what it is asked for."""
-    ended, watcher = threading.Event(), WatcherStandIn(view)
-    server = Server(watcher)
-    thread = threading.Thread(target=lambda: asyncio.run(server.run(ended.is_set)))
-    thread.start()
-    page = browser.new_page()
-    try:
-        page.goto(server.address)
-        yield page, watcher.asked
-    finally:
-        page.close()
-        ended.set()
-        thread.join(DEADLINE)
-
-
-def test_names_are_text_on_the_page(browser):
-    hostile = '<img src=x onerror=alert(1)>'
-    view = View(
-        node=hostile,
-        state='connected',
-        message=hostile,
-        values=(Entry(hostile, hostile, hostile),),
-        diagnostics=(Entry(hostile, hostile),),
-        drivers=(Entry(hostile, hostile, hostile),),
-        joints=((hostile, hostile), (hostile, 'b')),
-        guide=Guide(hostile, 0.5, (Entry(hostile, hostile, hostile),)),
-        output=-1e-9,
-    )
-    with shown(browser, view) as (page, _):
-        parts = '#node', '#message', '#values dt', '#values dd', '#diagnostics dd', '#drivers dt'
-        for part in (*parts, '#drivers dd', '#guide p', '#guide .detail', '#guide dd'):
-            expect(page.locator(part).first).to_have_text(hostile)
-        option = page.locator('#commission option').first
-        expect(option).to_have_text(f'{hostile} on {hostile}')
-        assert page.locator('img').count() == 0
-        caption = page.locator('#curve figcaption')
-        expect(caption).to_have_text('output angle, 10 s: 0.0 to 0.0°')
-
-
-def test_a_question_that_was_cancelled_just_before_does_not_home_as_well(browser):
-    with shown(browser, View(state='connected', question='Set it?', revision=7)) as (page, asked):
-        expect(page.locator('#home')).to_be_enabled()
-        page.evaluate("""for (const answer of ['Cancel', 'Set it']) {
-            document.getElementById('home').click();
-            const buttons = [...document.querySelectorAll('#question button')];
-            buttons.find(button => button.textContent === answer).click();
-        }""")
-        expect(page.locator('#answer')).to_have_text('home.')
-        page.evaluate('new Promise(done => requestAnimationFrame(() => setTimeout(done)))')
-        page.get_by_role('button', name='Home').click()
-        page.get_by_role('button', name='Cancel').click()
-    assert asked == [{'do': 'home', 'revision': 7}]
 
 
 def test_page_connects_again_after_the_node_was_restarted(connected, folder):
