@@ -215,13 +215,12 @@ def elements_of(frame: Any, names: Sequence[str], places: Iterable[int]) -> dict
     return found
 
 
-def key_of(names: Sequence[str], sample: Any) -> tuple[str, str]:
+def key_of(names: Sequence[str], columns: Sequence[Sequence[str]]) -> tuple[str, str]:
     """Return the column that says which series or joint a row is of, and that of its value.
 
     The first is empty if a row has all series, the second if it has several values of a joint. The
-    columns of the sample have texts, or NaN where a row is short.
+    columns of the first rows have fewer cells where a row is short.
     """
-    columns = [sample[place].dropna().tolist() for place in sample]
     roles, lower = {meaning(name).role for name in names}, [n.lower().strip('_') for n in names]
     if 'value' in lower and not {'rotor', 'output'} <= roles:
         for place in (lower.index(name) for name in _TOPICS.split('|') if name in lower):

@@ -161,12 +161,14 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
 
     rows = [cells_of(line, layout.separator) for line in lines[layout.start :][:_ROWS]]
     columns = dict(enumerate(zip_longest(*rows)))  # None where a row is short
-    sample = pd.DataFrame(columns).reindex(columns=range(len(layout.names)))
-    key, value = key_of(layout.names, sample)
+    places = range(len(layout.names))
+    sample = pd.DataFrame(columns).reindex(columns=places)
+    cells = [[one for one in columns.get(k, ()) if one is not None] for k in places]
+    key, value = key_of(layout.names, cells)
     if key:
-        frame = read(range(len(layout.names)), 1).set_axis(layout.names, axis=1)
+        frame = read(places, 1).set_axis(layout.names, axis=1)
         return loaded(*series_of(frame, layout.point, key, value, layout.units))
-    arrays = [place for place in sample if are_arrays(sample[place].dropna())]
+    arrays = [place for place in places if are_arrays(cells[place])]
     elements = elements_of(sample, layout.names, arrays)
     names = [name for k, name in enumerate(layout.names) if k not in arrays] + [*elements]
     beside = {k for k, name in enumerate(layout.names) if name.endswith('name')} | {*arrays}

@@ -59,8 +59,8 @@ def _parquet(path: Path) -> TableFile:
     if frame.index.dtype.kind in 'mMf':
         frame = frame.rename_axis(index=frame.index.name or 'time').reset_index()
     names = [*map(str, frame)]
-    texts = [frame[name].head(_ROWS).dropna().astype(str) for name in frame]
-    key, value = key_of(names, dict(enumerate(texts)))
+    texts = [frame[name].head(_ROWS).dropna().astype(str).tolist() for name in frame]
+    key, value = key_of(names, texts)
     if key:
         return loaded(*series_of(frame.set_axis(names, axis=1), '.', key, value, {}))
     for name, column in zip(names, map(frame.get, frame), strict=True):
