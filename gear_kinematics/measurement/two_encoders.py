@@ -258,8 +258,9 @@ def play_bounds(x: Array, radius: float) -> Array:
         low, high = part - radius, part + radius
         step = 1
         while step < len(part):
-            bounds = low[step:].copy(), high[step:].copy()
-            low[step:], high[step:] = np.clip(low[:-step], *bounds), np.clip(high[:-step], *bounds)
+            least, most = low[step:].copy(), high[step:].copy()
+            for bound in (low, high):  # as np.clip, which takes twice as long
+                bound[step:] = np.minimum(np.maximum(bound[:-step], least), most)
             step *= 2
         parts.append(np.clip(before, low, high))
         before = parts[-1][:, -1:]
