@@ -30,7 +30,8 @@ def test_ci_ends_a_run_that_hangs_and_all_that_it_started(tmp_path):
         pytest.skip('a source distribution has no .ci')
     shutil.copytree(ROOT / '.ci', tmp_path / '.ci')
     # No environment is made for other tests; nothing is newer than this Python.
-    for name in ('apt-get', 'debootstrap', 'python3'):
+    (tmp_path / 'build/kilted/.venv/bin').mkdir(parents=True)
+    for name in ('apt-get', 'debootstrap', 'python3', 'build/kilted/.venv/bin/python'):
         (tmp_path / name).write_text('#!/bin/sh\necho Python 99.0\nexit 1\n')
         (tmp_path / name).chmod(0o755)
     (tmp_path / 'test_import.py').write_text(f'{HANG}\nhang()\n')
