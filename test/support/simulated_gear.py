@@ -223,4 +223,8 @@ def _coloured(shape: tuple[int, int], time: float, random: np.random.Generator) 
     keep = math.exp(-1.0 / (time * RATE))
     values = random.standard_normal(shape)
     values[1:] *= math.sqrt(1.0 - keep * keep)
-    return np.array([*accumulate(values, lambda before, new: keep * before + new)])
+    # Of single numbers, which take a tenth of the time of rows with one number for each gear.
+    columns = values.T.tolist()
+    return np.array(
+        [[*accumulate(column, lambda before, new: keep * before + new)] for column in columns]
+    ).T
