@@ -93,7 +93,7 @@ def wait_until(condition, what):
     while not (result := condition()):
         now = time.monotonic()
         assert now < deadline, f'waited in vain for {what}'
-        time.sleep(max(0.01, 4.0 * (now - begin)))  # so that others have the processor
+        time.sleep(max(0.01, 15.0 * (now - begin)))  # so that others have the processor
         begin = time.monotonic()
     return result
 
