@@ -119,7 +119,8 @@ def standard_error(
     for size in together:
         count = len(values) // size
         if count >= (_FEWEST if size > 1 else 2):
-            means = [float(np.mean(group)) for group in np.array_split(values, count)]
+            groups = np.array_split(values, count) if size > 1 else []
+            means = [float(group.sum()) / len(group) for group in groups] or values
             errors.append((deviation(means) / math.sqrt(count), count - 1))
     return max(errors)
 
