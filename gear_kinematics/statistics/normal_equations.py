@@ -65,8 +65,10 @@ class NormalEquations:
         places, ridge = list(chosen), np.array(_RIDGE)
         if self.noise is not None:
             ridge = np.maximum(self.noise / self._scale[places] ** 2, _ROUNDING)
-        regular = np.array(self.products[fits, : len(places), : len(places)])
-        if (diagonal := [*range(len(places))]) != places:
+        diagonal = [*range(len(places))]
+        if places == diagonal:  # as usual; lists would copy the matrices twice
+            regular = self.products[fits, : len(places), : len(places)].copy()
+        else:
             regular = self.products[fits, places][:, :, places]
         regular[:, diagonal, diagonal] += ridge
         return regular
