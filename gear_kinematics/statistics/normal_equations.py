@@ -71,7 +71,7 @@ class NormalEquations:
         else:
             regular = self.products[fits, places][:, :, places]
         regular[:, diagonal, diagonal] += ridge
-        return regular
+        return np.asarray(regular)
 
     def solve(self, chosen: Sequence[int], fits: slice = _ALL) -> Array:
         """Coefficients of the chosen columns, (fits, chosen)."""
