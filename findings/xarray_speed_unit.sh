@@ -4,10 +4,10 @@
 #
 # The angle of a shaft is kept with its stamps, which are equal instants in s, ms, µs or ns. Expected of
 # differentiate('time'): the same speed of all four, or an error, as no unit is asked for. What happens: it is per unit
-# in which the stamps happen to be kept, which depends on the version of pandas and on the file: pandas 2
-# made ns, pandas 3 makes µs, so that a threshold or a plot changes by 1000. integrate() of a speed of 2 rad/s over 10 s
-# is 20, 20 000, 2e7 or 2e10 rad likewise. polyfit() gives the slope per ns for all four. Stamps are compared, selected
-# and averaged rightly in each unit.
+# in which the stamps happen to be kept, which depends on the file and on the version of pandas: ns by pandas 2, µs by
+# pandas 3, so that a threshold or a plot changes by 1000. integrate() of a speed of 2 rad/s over 10 s is 20, 20 000,
+# 2e7 or 2e10 rad likewise. polyfit() gives the slope per ns for all four. With datetime_unit='s' the speed of all four
+# is 2 rad/s.
 # For us: always give datetime_unit='s', and divide the slope of polyfit() by 1e-9.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
