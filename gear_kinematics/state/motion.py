@@ -86,7 +86,10 @@ def all_in_reach(
             last = place, began, float(step[k + 1]), int(span[k + 1])
             held_up = max(held_up, pauses[seen[rows[k]]])  # the later one
             held_up = held_up.before(int(when[k]) - began, last, prior)
-            reach = limits.reach(int(when[k]), int(until[k]), last, prior, noise[k], held_up)
+            times = int(until[k]), int(when[k])
+            if moving[1] == began and limits.continues(moving, *times, steps[k], noise[k]):
+                return None
+            reach = limits.reach(times[1], times[0], last, prior, noise[k], held_up)
             if not reach[0] <= steps[k] <= reach[1]:
                 return None
     if len(rows):

@@ -38,10 +38,8 @@ _AGREEING = 3  # doubted readings in a row that are believed
 _MOST_OF = 0.8  # a period: where so much is in reach, nothing is doubted
 _MARGIN = 1.5  # of raised limits above what was seen
 _MOST_BEYOND = 2.0  # times the limit: speeds at which a driver may repeat readings
-_LONGEST_REPEAT = 1.0  # s, for which a driver repeats a reading while the rotor turns on
-_REPEATED = 0.05  # of the way meanwhile: what it may differ by from that at a steady speed
-_STEADY = 0.25  # of the speed: what it may change by meanwhile
 _FEW_STEPS = 3.0  # between readings: what a drive whose clock begins anew may turn meanwhile
+_LONGER = 1.5  # times what was seen: for which a driver repeats readings, as stamps are uneven
 _UPTIME = 10**17  # ns, 3 years: stamps below are the time since a start, no date
 _LEAST_MOTION = 0.01  # rad between two readings of a rotor that moves
 _UNKNOWN = math.nan, 0, 0.0, 0
@@ -65,6 +63,7 @@ class Plausibility:
         """Change the limits from now on."""
         self.limits = RotorLimits(max_speed, max_acceleration, period or math.inf)
         self.period, self.wraps = period, Wraps(period)
+        self._repeats: float = STALEST_NS  # ns, for which a driver repeats readings in motion
         self.seen_speed = self.seen_acceleration = 0.0
         """rad/s and rad/s², of motions beyond the limits, which are raised above them."""
 
@@ -142,7 +141,7 @@ class Plausibility:
 
     def believes(self, stamps: NDArray[np.int64], positions: NDArray[np.float64]) -> bool:
         """Take readings in order of time if `judge` would believe each; else change nothing."""
-        if self.period or not len(stamps):
+        if self.period or self._repeats > STALEST_NS or not len(stamps):
             return not len(stamps)
         fresh = math.isnan(self._last[0])
         if fresh:
@@ -175,8 +174,17 @@ class Plausibility:
             return self._hold(position, stamp)
         if self.period:
             step = last_step + math.remainder(step - last_step, self.period)
+        until = self._stamp
+        if self._doubted and self._doubted[-1][1] == before:
+            until = self._doubted[-1][0]
+        moving = last if last_step else self._moving
+        stood = until - changed > self._repeats and moving[1] == changed and not self.period
+        if stood and self.limits.continues(moving, until, stamp, step, self.noise):
+            self._repeats, last = _LONGER * (until - changed), moving
+            last_step, last_span = last[2:]
+        until = self._stamp if self._stamp - changed > self._repeats else changed
         held_up = self._held_up.before(stamp - changed, last, former)
-        low, high = self.limits.reach(stamp, self._stamp, last, former, self.noise, held_up)
+        low, high = self.limits.reach(stamp, until, last, former, self.noise, held_up)
         if self.period:
             middle = 0.5 * (low + high)
             step = middle + math.remainder(step - middle, self.period)
@@ -194,7 +202,7 @@ class Plausibility:
             if EQUAL < size < 0.5 * self.noise:
                 self.noise = max(2.0 * size, FLOOR)
         span = stamp - changed
-        if self._stamp - changed > STALEST_NS:  # it stood until then
+        if until > changed:  # it stood until then
             span = stamp - self._stamp or span
         if not span:
             self._last = position, changed, last_step + step, last_span
@@ -239,7 +247,7 @@ class Plausibility:
         A rotor that has turned fast cannot stand at once.
         """
         held = stamp - self._last[1]
-        if held > STALEST_NS:
+        if held > self._repeats:
             time = held * 1e-9 - STALEST
             known = self._last, self._former, self.noise, self._held_up
             if speed := self.limits.least_speed(*known):
@@ -285,11 +293,9 @@ class Plausibility:
         noise, total = self.noise, sum(spans)
         speed = sum(steps) / total if total else 0.0
         slack = noise + self.limits.acceleration * total * total
-        uneven = max(abs(s - speed * t) for s, t in zip(steps, spans, strict=True))
-        within = all(
-            abs(s) <= self.limits.speed * (t + stale) + noise
-            for s, t in zip(steps, spans, strict=True)
-        )
+        ways = list(zip(steps, spans, strict=True))
+        uneven = max(abs(way - speed * t) for way, t in ways)
+        within = all(abs(way) <= self.limits.speed * (t + stale) + noise for way, t in ways)
         # A false speed, as of a wrong reading before a jump, must not allow its own unevenness.
         slack += min(abs(speed), _MOST_BEYOND * self.limits.speed) * stale
         if total < 0.0 or uneven > slack or not (within or total):
@@ -304,7 +310,10 @@ class Plausibility:
         if abs(speed) * total > self.limits.speed * (total + late):
             self.seen_speed = abs(speed)
             self.limits = self.limits._replace(speed=_MARGIN * abs(speed))
-        if self._goes_on(times[0], positions[0], speed):
+        moved = bool(self._last[2])
+        motion = self._former if moved else self._moving
+        now = times[0], positions[0], speed
+        if not self.period and self.limits.goes_on(motion, now, noise, repeated=not moved):
             continuous = True
         elif continuous:
             seen = abs(speed - before) / max(elapsed + stale, 1e-9)
@@ -326,25 +335,6 @@ class Plausibility:
         if spans[-1]:
             self._last = position, stamp, steps[-1], times[-1] - times[-2]
         return Belief.BELIEVED if continuous else Belief.JUMP
-
-    def _goes_on(self, stamp: int, position: float, speed: float) -> bool:
-        """Whether a motion at this speed continues that before the last believed reading.
-
-        The last one then was wrong itself, or a driver repeated it while the rotor turned on.
-        """
-        moved = self._last[2]
-        before, since, step, span = self._former if moved else self._moving
-        time = (stamp - since) * 1e-9
-        if self.period or not (step and span) or (time > _LONGEST_REPEAT and not moved):
-            return False
-        former = step / (span * 1e-9)
-        change = _STEADY * abs(former) + (self.limits.acceleration * time if moved else 0.0)
-        way, stale = 0.5 * (former + speed) * time, min(STALEST, 1.25e-9 * span)
-        uncertain = self.noise + max(abs(former), abs(speed)) * stale
-        uncertain += _REPEATED * abs(way) + 0.25 * change * time
-        turned, most = position - before, self.limits.speed * (time + stale) + self.noise
-        within = abs(turned) <= most and abs(turned - way) <= uncertain
-        return within and abs(speed - former) <= change
 
     def _wrapped(self, step: float) -> float:
         return math.remainder(step, self.period) if self.period else step

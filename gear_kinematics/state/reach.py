@@ -16,6 +16,10 @@ HELD_UP_AT_FIRST = 50_000_000  # ns: a pause that there may have been before a f
 FLOOR = 0.05  # rad: noise of any encoder, and what two successive steps may always differ by
 REGULAR = 0.3  # share of the usual time by which one may vary; with a lost message it is 1/3
 _ROUNDING = 1e-6  # of a step of single precision, by a conversion of units in double precision
+_REPEATS = 3.5  # times as long as between two readings: for which a driver repeats one, at most
+_LONGEST_REPEAT = 1.0  # s, for which a driver repeats a reading while the rotor turns on
+_REPEATED = 0.05  # of the way meanwhile: what it may differ by from that at a steady speed
+_STEADY = 0.25  # of the speed: what it may change by meanwhile
 _UNEVEN = 0.25  # of a speed: what it may differ by, as readings are older than their stamps
 _FASTEST = 250_000  # ns between the readings of a driver; those of a burst can be closer
 _CLOSE = 750_000  # ns, below which readings can be those of a burst, rather than of a fast driver
@@ -50,7 +54,8 @@ class HeldUp(NamedTuple):
         _, end, _, length = last
         length = min(length, end - former[1])  # messages in between show that there was no pause
         since = end - self.end
-        if 7 * span >= 4 * length or length <= self.length - since:
+        # Times within `REGULAR` of the usual one differ by no more.
+        if 13 * span >= 7 * length or length <= self.length - since:
             return self
         if since - length < 2 * self.length:  # the stamps of the burst before tell no speed
             usual = max(former[3], self.usual)
@@ -104,6 +109,40 @@ class RotorLimits(NamedTuple):
             time = span * 1e-9 + stale
             speed = max(speed, (abs(way) - noise) / time - self.acceleration * time)
         return speed if speed * abs(speed) > 2.0 * self.acceleration * noise else 0.0
+
+    @staticmethod
+    def continues(moving: Reading, until: int, stamp: int, step: float, noise: float) -> bool:
+        """Whether a step, rad, continues a motion, by about its speed, that seemed to have ended.
+
+        Its last reading was repeated until a stamp, ns. A driver does so that publishes more often
+        than it reads. `noise` is that of a reading, rad.
+        """
+        _, since, former, span = moving
+        repeated = until - since <= _REPEATS * (stamp - until)
+        if not (span and repeated and min(abs(former), abs(step)) > noise):
+            return False
+        way = former / span * (stamp - since)
+        return abs(step - way) <= abs(way)
+
+    def goes_on(
+        self, motion: Reading, now: tuple[int, float, float], noise: float, *, repeated: bool
+    ) -> bool:
+        """Whether a motion can have gone on to what is known `now`: stamp, position and speed.
+
+        A driver repeated the last reading of the motion meanwhile, or else it sent a wrong one.
+        """
+        (before, since, step, span), (stamp, position, speed) = motion, now
+        time = (stamp - since) * 1e-9
+        if not (step and span) or (time > _LONGEST_REPEAT and repeated):
+            return False
+        former = step / (span * 1e-9)
+        change = _STEADY * abs(former) + (0.0 if repeated else self.acceleration * time)
+        way, stale = 0.5 * (former + speed) * time, min(STALEST, 1.25e-9 * span)
+        uncertain = noise + max(abs(former), abs(speed)) * stale
+        uncertain += _REPEATED * abs(way) + 0.25 * change * time
+        turned, most = position - before, self.speed * (time + stale) + noise
+        within = abs(turned) <= most and abs(turned - way) <= uncertain
+        return within and abs(speed - former) <= change
 
     def reach(
         self, stamp: int, until: int, last: Reading, former: Reading, noise: float, held_up: HeldUp

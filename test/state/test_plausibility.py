@@ -70,6 +70,8 @@ def disturbed(kind, times, angles, rate, generator) -> tuple[np.ndarray, np.ndar
         times = n // of * of / rate + generator.uniform(0.0, 1e-4) * (n % of)
     elif kind == 'held':
         angles = angles[np.arange(count) // max(1, rate // 100) * max(1, rate // 100)]
+    elif kind == 'repeated':
+        angles = angles[np.arange(count) // 2 * 2]
     elif kind == 'old':  # by up to an interval, with stamps on a grid
         older = generator.uniform(0.0, min(0.01, 1.0 / rate), count)
         angles = np.interp(times - older, times, angles)
@@ -610,6 +612,17 @@ def test_a_reading_that_a_driver_repeats_while_the_rotor_turns_on_is_no_jump(
     assert after == pytest.approx(angles[end + 3 :].tolist())
 
 
+@pytest.mark.parametrize(('rate', 'repeated'), [(20, 2), (50, 2), (50, 3), (100, 3), (200, 4)])
+def test_a_driver_that_publishes_more_often_than_it_reads_is_believed(rate, repeated):
+    times = np.arange(4 * rate) // repeated * repeated / rate
+    angles = 60.0 * np.cos(6.0 * np.maximum(0.0, times - 0.5))
+    data = messages(np.arange(4 * rate) / rate, angles)
+    rotor, _ = fed(MULTI, data)
+    assert complaints(rotor) == ({}, None, None)
+    fed_on = messages(4.0 + np.arange(4) / rate, [angles[-1] + 150.0] * 4)
+    assert fed(MULTI, data + fed_on)[0].plausibility.jumped
+
+
 @pytest.mark.parametrize('speed', [0.5, 60.0, 250.0])
 def test_a_corrupt_reading_of_any_size_is_no_jump(speed):
     times = np.arange(30) / 1000
@@ -680,7 +693,11 @@ def test_a_motor_that_exceeds_its_speed_little_by_little_is_named(at_once):
 
 
 @settings(max_examples=50)
-@given(st.integers(0, 2**32), st.lists(st.integers(1, 99), max_size=4), st.sampled_from(KINDS))
+@given(
+    st.integers(0, 2**32),
+    st.lists(st.integers(1, 99), max_size=4),
+    st.sampled_from([*KINDS, 'repeated']),
+)
 @example(109, [], 'gaps')  # intervals of exactly one and two periods
 def test_batches_are_judged_as_one_by_one(seed, bad, kind):
     generator = np.random.default_rng(seed)
