@@ -15,12 +15,16 @@ ALTERNATING = 3  # resets of the clock so close to each other: as many are no ch
 FASTEST = 100.0  # times the clock: faster than any playback
 _FEWEST, _LEAST = 10, 100_000_000  # stamps, and ns, that tell their pace; no burst takes as long
 
+_EVEN = 1.5  # times the usual one: time until a reading that directly follows
+
+Reading = tuple[int, float, float | None, float | None]  # ns, rad, rad/s, N·m or other units
+
 
 class Disorder:
-    """Collects the stamps, ns, that are older than that of the last sample."""
+    """Collects the readings that are older than the last sample."""
 
     def __init__(self) -> None:
-        self.stamps: list[int] = []
+        self.readings: list[Reading] = []
         self.close_resets = 0  # resets of the clock that directly follow another one
         self._reset = -_CLOSE  # number of the message of the last one
         self.step: Fact | None = None  # the clock's last step back
@@ -50,18 +54,22 @@ class Disorder:
         self._reset = number
         self._note_step(last, stamp)
 
-    def set_back(self, last: int, stamp: int) -> int:
-        """Return by how much the clock was set back between two samples, ns; forget the stamps.
+    def set_back(self, last: int, stamp: int) -> tuple[int, list[Reading]]:
+        """Return by how much the clock was set back between two samples, ns, and what came since.
 
         It was set back if several messages in a row, in order, were older than the last sample.
         The first of them is taken to be as long after that sample as the second after the first.
+        What came is left out if it can have been late, since some of it came before.
         """
-        stamps, self.stamps = self.stamps, []
-        if len(stamps) < 2 or any(a >= b for a, b in pairwise([*stamps, stamp])):  # noqa: PLR2004
-            return 0
+        readings, self.readings = self.readings, []
+        stamps = [*(earlier for earlier, *_ in readings), stamp]
+        *spans, latest = (b - a for a, b in pairwise(stamps))
+        if not spans or min(*spans, latest) <= 0:
+            return 0, []
         if last - stamps[0] > _CLOCK_STEP:
             self._note_step(last, stamps[0])
-        return last - stamps[0] + stamps[1] - stamps[0]
+        even = latest <= _EVEN * sorted(spans)[len(spans) // 2]
+        return last - stamps[0] + stamps[1] - stamps[0], readings if even else []
 
     def _note_step(self, last: int, stamp: int) -> None:
         size, at = (last - stamp) / SECOND, last / SECOND

@@ -4,6 +4,7 @@
 import math
 from collections import Counter
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import partial
 
 import numpy as np
@@ -12,7 +13,7 @@ from gear_kinematics.kinematics import RotorPosition, RotorSample, RotorTurns, s
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.parameters import PARAMETERS, NodeParameters
 from gear_kinematics.state.belief import BELIEVED, Belief
-from gear_kinematics.state.disorder import Disorder, order
+from gear_kinematics.state.disorder import Disorder, Reading, order
 from gear_kinematics.state.effort_field import EffortField
 from gear_kinematics.state.plausibility import Plausibility
 from gear_kinematics.state.rotor_samples import RotorSamples, Row
@@ -36,11 +37,6 @@ _ENCODERS -= {'rotor_effort_factor'}
 """Parameters on which the turns depend that an absolute encoder at the output has found."""
 
 
-def _limits(parameters: NodeParameters) -> tuple[float, float, float]:
-    """Greatest speed and acceleration of the rotor, and the period of its encoder."""
-    return *parameters.rotor_limits, parameters.rotor_period
-
-
 class RotorInput:
     """Processes rotor_state messages and counts what is wrong with them."""
 
@@ -57,15 +53,15 @@ class RotorInput:
         self._restarts = 0  # by homing, references and changed parameters of encoders
         self.rezeroed = 0  # number of these that gave the same motion another zero
         self.disorder = Disorder()
-        speed, acceleration, period = limits = _limits(parameters)
-        self.plausibility = Plausibility(*limits)
+        (speed, acceleration), period = parameters.rotor_limits, parameters.rotor_period
+        self.plausibility = Plausibility(speed, acceleration, period)
         self.turns = RotorTurns(period=period, max_speed=speed, max_acceleration=acceleration)
         self._configure(parameters)
         self._start()
 
     def _configure(self, parameters: NodeParameters) -> None:
         self._parameters = parameters
-        self.turns.max_speed, self.turns.max_acceleration, _ = _limits(parameters)
+        self.turns.max_speed, self.turns.max_acceleration = parameters.rotor_limits
         self.turns.longest_silence = parameters.longest_silence * SECOND
         self._torque_factor = parameters.rotor_direction * parameters.rotor_effort_factor
         """N·m of the rotor, in its direction, per unit of the effort in the messages."""
@@ -84,17 +80,17 @@ class RotorInput:
 
     @parameters.setter
     def parameters(self, parameters: NodeParameters) -> None:
-        before, limits = self._parameters, _limits(parameters)
+        before, joint = self._parameters, parameters.rotor_joint
         self._configure(parameters)
-        if limits != _limits(before):
-            self.plausibility.restrict(*limits)
+        limits, period = parameters.rotor_limits, parameters.rotor_period
+        if (limits, period) != (before.rotor_limits, before.rotor_period):
+            self.plausibility.restrict(*limits, period)
         if any(getattr(parameters, name) != getattr(before, name) for name in _ENCODERS):
             self.zero = split_turns(parameters.rotor_zero)
             self._restarts += 1
             self.rezeroed += parameters.only_zero_differs(before)
             if parameters.absolute or before.absolute:
                 self.turns.forget_turns()
-        joint, period = parameters.rotor_joint, parameters.rotor_period
         if (joint, period) != (before.rotor_joint, before.rotor_period):
             self.turns.period = period
             self.plausibility.reset()
@@ -274,8 +270,7 @@ class RotorInput:
     def _clock(self, now: Callable[[], int]) -> int:
         """Return the stamp for a message without one."""
         self.zero_stamps += 1
-        stamp = now()
-        if stamp > LATEST:
+        if (stamp := now()) > LATEST:
             raise RejectedInputError(Rejection.STAMP_OUT_OF_RANGE)
         return stamp
 
@@ -286,11 +281,15 @@ class RotorInput:
         if last is None:
             self._leave_others()
         elif stamp <= last[0]:  # its stamp, by the fastest way
-            self._check_order(stamp, last.stamp, position)
-        if self.disorder.stamps and last:
-            time = self.disorder.set_back(last.stamp, stamp)
+            self._check_order(last.stamp, (stamp, position, velocity, effort))
+        if self.disorder.readings and last:
+            time, readings = self.disorder.set_back(last.stamp, stamp)
             self.turns.set_back(time)
             self.plausibility.set_back(time)
+            for reading in readings:  # they have no outputs, but show turns and jumps
+                self.last = None
+                with suppress(RejectedInputError):
+                    self._take(*reading)
         if (verdict := self.plausibility.judge(position, stamp)) is not BELIEVED:
             if verdict is Belief.IMPLAUSIBLE:
                 raise RejectedInputError(Rejection.IMPLAUSIBLE)
@@ -333,11 +332,12 @@ class RotorInput:
             return TURN * unwrapped.turns + unwrapped.angle
         return position
 
-    def _check_order(self, stamp: int, last: int, position: float) -> None:
+    def _check_order(self, last: int, reading: Reading) -> None:
+        stamp, position, *_ = reading
         if stamp == last:
             self.duplicates += 1
         elif last - stamp <= CLOCK_RESET:
-            self.disorder.stamps.append(stamp)
+            self.disorder.readings.append(reading)
             raise RejectedInputError(Rejection.OUT_OF_ORDER)
         else:
             self.resets += 1

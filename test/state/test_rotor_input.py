@@ -132,12 +132,14 @@ def test_other_changes_keep_the_turns_and_hold_from_now_on():
 
 
 @pytest.mark.parametrize('settings', [SETTINGS, SINGLE_TURN], ids=['multi-turn', 'single-turn'])
-@pytest.mark.parametrize('back', [2, 12, 27, 400])
-def test_a_clock_that_is_set_back_is_no_jump_and_loses_no_turn_silently(settings, back):
+@pytest.mark.parametrize(('back', 'jump'), [
+    (2, 0.0), (12, 0.0), (27, 0.0), (400, 0.0), (27, 2.0), (400, -3.0),
+])  # fmt: skip
+def test_a_clock_that_is_set_back_hides_no_jump_and_loses_no_turn(settings, back, jump):
     rotor_input, end = RotorInput(settings), None
     for k in range(1000):
         ms = k if k < 500 else k - back
-        angle = 1.0 + 0.3 * k
+        angle = 1.0 + 0.3 * k + jump * (k >= 500)
         reading = angle % math.tau if settings.single_turn else angle
         with suppress(RejectedInputError):
             end = accept(rotor_input, START + ms * 1_000_000 + 1, reading)
@@ -145,10 +147,22 @@ def test_a_clock_that_is_set_back_is_no_jump_and_loses_no_turn_silently(settings
             rotor_input.home(1.0)
     assert set(rotor_input.rejected) == {'out of order'}
     assert bool(rotor_input.disorder.clock_fault) is (back > 20)
-    assert rotor_input.plausibility.jumped is rotor_input.plausibility.beyond_limits is None
-    if rotor_input.referenced:
+    assert rotor_input.plausibility.beyond_limits is None
+    assert bool(rotor_input.plausibility.jumped) == (not rotor_input.referenced) == bool(jump)
+    if not jump:
         assert math.tau * end.position.turns + end.position.angle == pytest.approx(angle)
-    assert rotor_input.referenced or (settings.single_turn and back > 2)
+
+
+@pytest.mark.parametrize('chunk', [(20, 1), (5, 20), (2, 2)])
+def test_messages_that_come_after_later_ones_are_no_jump(chunk):
+    late, later = chunk
+    order = [*range(100), *range(100 + late, 100 + late + later), *range(100, 100 + late)]
+    rotor_input = RotorInput(SETTINGS)
+    for k in [*order, *range(len(order), 200)]:
+        with suppress(RejectedInputError):
+            accept(rotor_input, START + k * 1_000_000, 0.3 * k)
+    assert rotor_input.rejected == {'out of order': late}
+    assert rotor_input.referenced
 
 
 @pytest.mark.parametrize('back', range(10, 240, 5))
