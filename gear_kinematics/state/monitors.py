@@ -20,8 +20,9 @@ from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import Rejection
 
 _BEYOND_ANY_GEAR = 0.1  # rad
-_MOST_REPEATED, _ALL_REPEATED = 0.5, 0.95
-"""Shares of repeated stamps that are a fault: where turns depend on stamps, and elsewhere."""
+_MOST_REPEATED, _ALL_REPEATED = 0.6, 0.95
+"""Shares of repeated stamps that are a fault: where turns depend on stamps, and elsewhere. Half of
+them repeat at 2 kHz if they are in ms, which hides no turn."""
 _SOON = 0.1  # time, s, after a report until which the next one repeats its rates and comparisons
 
 

@@ -187,3 +187,15 @@ def test_stamps_of_milliseconds_as_seconds_are_named_but_no_clock_that_is_set(
         bench.feed(START + k, *map(good, stamps))
         named = [Condition.STAMPS_TOO_FAST(factor=pytest.approx(pace))]
         assert bench.facts(START + k + 0.95) == (named if pace == 1000 and k > 1 else [])
+
+
+def test_stamps_in_ms_at_2_khz_are_no_repeated_stamps():
+    gear = GearState(replace(SETTINGS, rotor_encoder='single_turn'))
+    found = []
+    for first in (0, 1001):
+        for k in range(first, first + 1001):
+            gear.rotor(good(SECOND + k // 2 * 1_000_000), int)
+        found += gear.report(START + first, Connections(DriverFacts(since=START)))[
+            'rotor input'
+        ].facts
+    assert Condition.REPEATED_STAMPS not in {fact.condition for fact in found}
