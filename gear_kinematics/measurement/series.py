@@ -9,11 +9,20 @@ import numpy as np
 from gear_kinematics.measurement.cells import numbers
 from gear_kinematics.measurement.clocks import in_nanoseconds
 from gear_kinematics.measurement.columns import fraction_of, likeliest
+from gear_kinematics.measurement.encoder_step import find_step
 from gear_kinematics.measurement.names import meaning
 from gear_kinematics.measurement.recording import Array
+from gear_kinematics.measurement.sentences import Observation, Observed
 
 _BY_CHANCE = 0.01
 """Greatest share of the rows with a new value that have two, if gaps were filled."""
+_PAIRS = {'rotor': 'output', 'output': 'rotor', 'angle': 'torque', 'torque': 'angle'}
+_FEWEST, _STEPS = 20, 1.5
+"""Least number of readings that are held; most of them differ by more steps of the encoder. One
+that stays the same over rows, but is read anew in each, changes by one step."""
+_SAMPLE = 20_000  # readings that show the step
+_EVEN = 2.0  # 95 % of the readings are held for no more than this times the usual number of rows
+_LATE = 0.5  # share of the motion expected within a hold, below which the axis stands in it
 
 
 def series_of(
@@ -56,20 +65,61 @@ def series_of(
 
 
 def rows_of(
-    series: Mapping[str, Array], usable: Mapping[str, Array], *, timed: bool
+    series: Mapping[str, Array],
+    usable: Mapping[str, Array],
+    remarks: list[Observed],
+    *,
+    timed: bool,
 ) -> list[tuple[list[str], Array]]:
     """Find which series were sampled together, and in which of their `usable` rows, (n,).
 
-    If they are `timed`, and tables with other times were joined, each has rows of its own: few
+    If they are `timed`, each has rows of its own where tables with other times were joined: few
     rows have all, as gaps are empty, or none has two new values, as gaps repeat the last ones.
+    So it has where a logger held its readings over several rows.
     """
     together = np.all([*usable.values()], axis=0)
     own = _new(series)
     if 2 * np.count_nonzero(together) < max(map(np.count_nonzero, usable.values())):
         own = usable
+    elif timed and (held := _held({role: values[together] for role, values in series.items()})):
+        own = dict.fromkeys(series, together) | {role: together.copy() for role in held}
+        for role, (every, rows) in held.items():
+            own[role][together] = rows
+            remarks.append(Observation.READINGS_HELD(role=role, every=every))
     if own and timed:
         return [([role], usable[role] & rows) for role, rows in own.items()]
     return [([*usable], together)]
+
+
+def _held(series: Mapping[str, Array]) -> dict[str, tuple[int, Array]]:
+    """Find series whose readings are held over several rows, how many, and the rows to use.
+
+    The axis moves meanwhile, as the other series of its gear shows unless it is held as well;
+    otherwise one was moved in steps. At rest, readings are taken as often as in motion.
+    """
+    found = {}
+    for role in (one for one in series if _PAIRS.get(one) in series):
+        values = series[role]
+        moved = np.abs(np.diff(values, prepend=values[:1]))
+        at = np.flatnonzero(moved)
+        step = find_step(values[:: len(values) // _SAMPLE + 1]).size
+        gaps = np.diff(at, append=len(moved))[moved[at] > _STEPS * step]
+        if len(gaps) < max(_FEWEST, len(at) // 2) or np.quantile(gaps, 0.05) == 1.0:
+            continue
+        every, usual = int(np.quantile(gaps, 0.95)), np.median(gaps)
+        if every <= _EVEN * usual:
+            place = np.arange(len(moved))
+            since = place - np.maximum.accumulate(np.where(moved, place, 0))
+            found[role] = every, since % every == 0
+    for role, (_, rows) in [*found.items()]:
+        if (other := _PAIRS[role]) not in found:
+            at, values = np.flatnonzero(rows), series[other]
+            middle, last = (at[:-1] + at[1:]) // 2, at[1:] - 1
+            whole, late = np.diff(values[at]), values[last] - values[middle]
+            expected = np.mean((last - middle) / np.diff(at))
+            if late @ whole < _LATE * expected * (whole @ whole):
+                del found[role]
+    return found
 
 
 def _new(series: Mapping[str, Array]) -> Mapping[str, Array]:

@@ -163,7 +163,7 @@ class _Samples:
             del self.found['torque'], data['torque'], usable['torque']
         groups = [([role], rows) for role, rows in usable.items()]
         if len({*clocks.values()}) == 1:
-            groups = rows_of(data, usable, timed=clock is not None)
+            groups = rows_of(data, usable, self.remarks, timed=clock is not None)
         if not all(rows.any() for _, rows in groups):
             names = ', '.join(column.name for column in self.found.values())
             raise ValueError(f'no usable rows: none has numbers in all of {names}')

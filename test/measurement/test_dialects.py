@@ -169,6 +169,10 @@ ENCODERS = {
     'the newest row first': lambda t, r, o: written([t[::-1], r[::-1], o[::-1]], NAMES),
     'each row three times': lambda t, r, o: written(
         [np.repeat(one, 3) for one in (t, r, o)], NAMES),
+    'readings held over four rows': lambda t, r, o: written(
+        [0.01 * np.arange(4 * len(t)), np.repeat(r, 4), np.repeat(o, 4)], NAMES),
+    'the output held over four rows': lambda t, r, o: written(
+        [f := 0.01 * np.arange(4 * len(t)), np.interp(f, t, r), np.repeat(o, 4)], NAMES),
     'rows by the angle of the output': lambda t, r, o: written(
         [column[np.argsort(o)] for column in (t, r, o)], NAMES),
     'the newest date first': lambda t, r, o: written(
@@ -1396,6 +1400,26 @@ def test_rows_with_a_torque_of_their_own_are_no_filled_gaps(tmp_path, gear):
     path = saved(tmp_path, written(columns, 'time,rotor,output,torque', '{:.6f}'))
     given = replace(gear, gear_ratio='10')
     assert len(read(path, given).encoders.rotor.stamp) == len(time)
+
+
+@pytest.mark.parametrize('slow', [1, 2])
+def test_a_slow_sensor_of_torque_or_angle_adds_no_hysteresis(tmp_path, gear, reference, slow):
+    columns = [*reference('ramps')]
+    _, angle, torque = columns
+    columns[slow] = np.repeat(columns[slow][::4], 4)
+    path = saved(tmp_path, written(columns, 'time,angle,torque', 3 * ['{:.6f}']))
+    locked = read(path, gear).locked
+    # If each row had a reading, it would be 0.82 or 1.16 times as large.
+    area = np.trapezoid(locked.angle, locked.torque)
+    assert area == pytest.approx(np.trapezoid(angle, torque), rel=0.03)
+
+
+def test_an_axis_that_is_moved_in_steps_is_read_in_each_row(tmp_path, gear):
+    """Its encoder repeats each reading, and the other scatters around an angle that stands."""
+    time, rotor = 0.01 * np.arange(1000), 0.2 * np.repeat(np.arange(100), 10)
+    output = rotor / -30.0 + np.random.default_rng(1).normal(0.0, 2e-3, 1000)
+    path = saved(tmp_path, written([time, rotor, output], NAMES))
+    assert len(read(path, gear).encoders.rotor.stamp) == 1000
 
 
 def test_a_table_without_names_that_begins_with_whole_numbers_has_no_joints(
