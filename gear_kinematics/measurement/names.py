@@ -10,15 +10,15 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.encoder_step import UNITS
 
 _VOCABULARY = {
-    'rotor': 'rotor motor mot odrive antrieb moteur motore 电机 モータ モーター',
+    'rotor': 'rotor motor mot odrive antrieb moteur motore 电机 馬達 モータ モーター 모터',
     'output': 'output out load gearbox gear shaft link joint abtrieb ausgang sortie uscita salida '
-    '输出 输出轴 负载 负载端 关节 出力 出力軸 負荷 負荷側',
-    'input': 'input eingang entrée ingresso entrada 输入 输入轴 入力 入力軸',
+    '输出 输出轴 负载 负载端 关节 輸出 輸出軸 負載 出力 出力軸 負荷 負荷側 출력 출력축 부하',
+    'input': 'input eingang entrée ingresso entrada 输入 输入轴 輸入 輸入軸 入力 入力軸 입력',
     'angle': 'position positions pos angle ang encoder enc theta phi θ φ ϕ deflection twist '
     'rotation winkel drehwinkel verdrehwinkel angolo ángulo angulo posición posizione 位置 '
-    '角度 编码器',
+    '角度 编码器 編碼器 각도 위치 엔코더',
     'torque': 'torque torques effort efforts trq tq tau τ drehmoment moment couple coppia '
-    '扭矩 力矩 转矩 トルク',
+    '扭矩 力矩 转矩 轉矩 トルク 토크',
     'current': 'current',
     'time': 'time t stamp timestamp timestamps today datetime elapsed zeit uhrzeit messzeit '
     'prüfzeit temps tempo tiempo tout xtime ts zeitstempel horodatage heure hora ora czas tijd '

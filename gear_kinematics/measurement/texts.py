@@ -11,10 +11,13 @@ BLOCK = 2**17  # characters that are read at a time
 _BOMS = {b'\xef\xbb\xbf': 'utf-8-sig', b'\xff\xfe': 'utf-16', b'\xfe\xff': 'utf-16'}
 _OTHERS = {
     'cp932': re.compile(rb'(\x83[\x40-\x96]|\x81\x5b){2}'),
+    'cp949': re.compile('모터|출력|각도|위치|토크'.encode('cp949')),
+    'big5': re.compile('馬達|輸出|角度|位置|扭矩|轉矩'.encode('big5')),
     'cp1251': re.compile(rb'[\xe0-\xff]{4}'),
     'gb18030': re.compile(rb'([\xb0-\xf7][\xa1-\xfe]){2}'),
 }
-"""Two Katakana, four Cyrillic or two Chinese characters in succession, in encodings of Windows."""
+"""Encodings of Windows: Katakana, words in Korean or traditional Chinese, which may look like
+simplified Chinese, four letters in Cyrillic, or two Chinese characters."""
 
 
 class Rows(io.TextIOBase):

@@ -485,6 +485,8 @@ ENCODERS = {
     'Chinese': lambda t, r, o: written(
         [t, r * DEG, o * DEG], '时间\uff08s\uff09,电机角度\uff08°\uff09,输出角度\uff08°\uff09'),
     'Chinese of Windows': plain('时间戳,电机编码器(deg),输出轴角度(deg)', angle=DEG, code='gbk'),
+    'Korean of Windows': plain('시간(s),모터 각도(deg),출력축각도(deg)', angle=DEG, code='cp949'),
+    'traditional Chinese': plain('時間,馬達位置(deg),輸出軸角度(deg)', angle=DEG, code='big5'),
     'Japanese of Windows': plain('時間,モータ位置[deg],出力軸角度[deg]', angle=DEG, code='cp932'),
     'Spanish, with line breaks': plain(
         '"Banco ""A"""\nTiempo;"Posición\r\nmotor\n[deg]";Posición salida [°]', ';', angle=DEG),
