@@ -49,6 +49,7 @@ class TopicSummary(NamedTuple):
     longest_gap: float  # longest of these periods, s
     followed: str = ''  # joint of the rotor or, on another topic, the first of its joints
     of_others: int = 0  # messages without that joint, which rate and gaps leave out
+    malformed: int = 0  # messages that are no joint states, which rate and gaps leave out
 
 
 class Summary(NamedTuple):
@@ -77,7 +78,8 @@ def summarise(
         if rotor_topic:
             raise
         unclear = str(error).removeprefix(f'{bag.path}: ')
-    others, found = Counter[str](), defaultdict[str, dict[str, None]](dict)
+    others, malformed = Counter[str](), Counter[str]()
+    found = defaultdict[str, dict[str, None]](dict)
     followed = dict[str, str]()
     if rotor and joints and joints[0]:
         recorded = joints_on(bag, [rotor])[rotor]
@@ -95,14 +97,17 @@ def summarise(
                 own = np.ones(len(received), bool)
                 states = topic in stamped and bag.topics[topic] == JOINT_STATE
                 tables = JointStateBatch(messages.data).tables if states else []
+                good = np.full(len(received), not states)
                 for rows in sorted((rows for rows, *_ in tables), key=itemgetter(0)):
+                    good[rows] = True
                     names = joints_of(messages.data[rows[0]])
                     found[topic] |= dict.fromkeys(names)
                     if names:
                         followed.setdefault(topic, names[0])
                     own[rows] = followed.get(topic) in {None, *names}
                 others[topic] += int(np.count_nonzero(~own))
-                times[topic].append(np.stack([stamp, received])[:, own])
+                malformed[topic] += int(np.count_nonzero(~good))
+                times[topic].append(np.stack([stamp, received])[:, own & good])
             ends = [*ends[:1], batch[0][1], batch[-1][1]]
     except DamagedBagError as error:
         damage = str(error)
@@ -115,6 +120,7 @@ def summarise(
             np.hstack(times[name]),
             followed.get(name, ''),
             others[name],
+            malformed[name],
         )
         for name, kind in bag.topics.items()
     ]
@@ -125,7 +131,7 @@ def summarise(
 
 
 def _summary(
-    name: str, kind: str, part: str, joints: list[str], times: Array, followed: str, others: int
+    name: str, kind: str, part: str, joints: list[str], times: Array, followed: str, *others: int
 ) -> TopicSummary:
     stamped, received = np.diff(times)
     repeated = 2 * np.count_nonzero(stamped) < len(stamped)  # as without their nanoseconds
@@ -139,5 +145,5 @@ def _summary(
         long = periods[periods > _GAP * median]
         rate, gaps, longest = 1.0 / median, len(long), float(long.max(initial=0.0))
         mean = (count - 1) / float(periods.sum())
-    numbers = rate, mean, gaps, longest, followed, others
-    return TopicSummary(name, kind, part, count + others, tuple(joints), *numbers)
+    numbers = rate, mean, gaps, longest, followed
+    return TopicSummary(name, kind, part, count + sum(others), tuple(joints), *numbers, *others)

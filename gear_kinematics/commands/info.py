@@ -104,6 +104,10 @@ def _parts(summary: Summary, *, verbose: bool) -> Iterator[str]:
             verb = 'is' if topic.of_others == 1 else 'are'
             these = counted(topic.of_others, 'message')
             yield f'{these} on {topic.name} {verb} of other joints'
+        if topic.malformed:
+            of = f'{topic.malformed} of {counted(topic.messages, "message")} on {topic.name}'
+            way = 'rosbags-convert --dst-typestore ros2_jazzy converts bags of ROS 1'
+            yield f'{of} cannot be read as JointState of ROS 2; {way}'
     if summary.unclear:
         yield summary.unclear
     if others := len(summary.topics) - len(shown):
@@ -111,5 +115,5 @@ def _parts(summary: Summary, *, verbose: bool) -> Iterator[str]:
     gaps = [topic for topic in known if topic.gaps]
     for topic in gaps:
         yield f'{counted(topic.gaps, "gap")} on {topic.name}, up to {topic.longest_gap:.3g} s'
-    if known and not gaps:
+    if any(topic.messages > topic.malformed for topic in known) and not gaps:
         yield 'no gaps'

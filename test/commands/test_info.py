@@ -112,6 +112,19 @@ def test_topics_that_are_not_cdr_are_counted(shared_path, capsys):
     assert battery.startswith('  /battery ')
 
 
+def test_messages_with_a_header_of_ros_1_have_no_rate(tmp_path, capsys):
+    """Converters leave its `seq`, which then stands where the stamp of ROS 2 begins."""
+    times = range(10**18, 10**18 + 10**9, 10**7)
+    states = [(k, time, rotor_bytes(time)) for k, time in enumerate(times)]
+    messages = [('/motor', time, d[:4] + k.to_bytes(4, 'little') + d[4:]) for k, time, d in states]
+    path = write_bag(tmp_path / 'bag', messages, {'/motor': JOINT_STATE})
+    assert main(['info', str(path)]) == 0
+    said = capsys.readouterr().out
+    assert '; 100 of 100 messages on /motor cannot be read as JointState of ROS 2; ' in said
+    assert 'Hz' not in said
+    assert 'no gaps' not in said
+
+
 def test_messages_with_arrays_of_unequal_length_are_counted(shared_path, capsys):
     bag = str(shared_path('data/faults/four_names_three_positions.mcap'))
     assert main(['info', bag, '--joint', 'm1']) == 0
