@@ -70,9 +70,10 @@ def _reported(report: LostMotion, limits: Limits) -> tuple[doc.Section, Mapping[
     remarked = tuple(map(printable, notes))
     failed_first = sorted(checks, key=lambda check: check.holds)
     verdict = doc.Verdict.PASS if all(check.holds for check in checks) else doc.Verdict.FAIL
-    findings = [*(check.why.sentence for check in failed_first), said]
+    judged = [check.why.sentence for check in failed_first]
+    findings = [*judged, said]
     if report.wrong_ratio:  # by which all other figures are wrong
-        verdict, findings = doc.Verdict.UNUSABLE, findings[::-1]
+        verdict, findings = doc.Verdict.UNUSABLE, [said, *judged]
     faults = (() if check.holds else (str(check.why),) for check in checks)
     cases = (doc.Case(check.limit, own) for check, own in zip(checks, faults, strict=True))
     section = doc.Section(

@@ -357,6 +357,9 @@ def test_a_recording_of_another_ratio_is_unusable(tmp_path, capsys):
     cause = 'other.csv: The recording does not have the ratio -19: the recorded ratio is 19.33'
     assert f'gearkin: {cause}' in said.err.replace('-19.33', '19.33')
     assert 'failures="1"' in said.out
+    assert main([*words[:-2], '--max-backlash', '90', '-v']) == 2
+    found = re.findall(r'finding: The (\w+)', capsys.readouterr().out)
+    assert found == ['hysteresis', 'backlash']  # as without a wrong ratio
 
 
 def test_without_scipy_only_measurements_are_missing():
