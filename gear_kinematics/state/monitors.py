@@ -140,7 +140,9 @@ class InputMonitor(DriverMonitor):
         }
         grown = self._growth({**rotor_input.rejected, **counts})
         if age > rotor_input.parameters.input_timeout:
-            yield Condition.NO_INPUT(age=age)
+            joint, others = rotor_input.parameters.rotor_joint, grown['of others']
+            lacking = Condition.OTHERS_ALONE(age=age, count=others, joint=joint)
+            yield lacking if others else Condition.NO_INPUT(age=age)
         if not rotor_input.referenced:
             turns, reset = rotor_input.turns, rotor_input.disorder.step
             lost = rotor_input.why_lost if turns.lost else why_unknown(turns)

@@ -44,6 +44,11 @@ class Condition(Enum):
 
     # The rotor's driver
     NO_INPUT = ERROR, 'no input for {age:.1f} s', _DRIVER
+    OTHERS_ALONE = (
+        ERROR,
+        "no input for {age:.1f} s, but {count} messages without the joint '{joint}'",
+        'Check that the driver still reads that motor and names it as rotor_joint does.',
+    )
     JUMPED = (
         ERROR,
         "the rotor's encoder jumped by {angle:.4g} rad at {time:.3f} s",
@@ -130,7 +135,7 @@ class Condition(Enum):
         'the stamps run {factor:.0f} times as fast as the clock',
         'Let the driver stamp in s and ns: until then, speeds, gaps and jumps are misjudged.',
     )
-    SEVERAL_DRIVERS = WARN, '{count} drivers', 'Stop all drivers but one.'
+    SEVERAL_DRIVERS = WARN, '{count} drivers', 'Stop all but one. Killed ones count for 20 s.'
     # The rotor's turns, and the encoder at the output that can tell them
     NOT_REFERENCED = ERROR, 'not referenced', _HOME
     NOT_FOUND = ERROR, 'not referenced: {why}', '{why.advice} Or: ' + _HOME

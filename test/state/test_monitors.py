@@ -113,6 +113,9 @@ def test_drivers_of_other_joints_are_no_fault(bench):
     assert (report.facts, report.values['of others']) == ([], 2)
     bench.feed(START + 1.7, good(3))  # the others are silent, and one of them sends the joint
     assert bench.facts(START + 2.0) == [Condition.SEVERAL_DRIVERS(count=3)]
+    bench.feed(START + 1.7, NO_JOINT, NO_JOINT)  # as later ones, which are no input
+    [lacking] = bench.facts(START + 3.7)
+    assert lacking == Condition.OTHERS_ALONE(age=pytest.approx(2.0), count=2, joint='rotor')
 
 
 def test_silence_beyond_the_timeout_is_an_error(bench):
