@@ -16,6 +16,7 @@ from gear_kinematics.wire.nearest import among, listed
 from gear_kinematics.wire.topics import ROTOR_STATE
 
 _ELSEWHERE = 0.1  # rad, of a rotor that was turned by hand, or counted from another zero
+_CALM = 2  # updates without a change between drivers, after which a change is that of a restart
 _SEARCH = 3  # s, in which all publishers are found: they announce themselves as often
 _HOME = 'check whether the drive restarted; then home it (gearkin home or ~/home)'
 
@@ -38,8 +39,15 @@ class DriverLog:
         self._missing = 0  # updates since there was a publisher
         self._said = self._faults()
         self._silent = False  # whether it was logged that the driver is missing or silent
+        self._calm = _CALM  # updates since one driver followed another
         self._before: dict[str, RotorSample | None] = {}
         """The last samples, if any, of actuators whose silence was logged."""
+
+    def replaced(self) -> None:
+        """Compare the next position, of another driver, with the last; not if two take turns."""
+        if self._calm >= _CALM:
+            self._before |= {name: each.last for name, each in self._inputs.items() if each.last}
+        self._calm = 0
 
     @property
     def awaited(self) -> bool:
@@ -79,6 +87,7 @@ class DriverLog:
 
     def update(self, publishers: int, silence: float) -> None:
         """Take, once a second, the number of publishers and the time since the last message, s."""
+        self._calm += 1
         faults, said = self._faults(), self._said
         for key in faults.keys() - said.keys():
             self._log.warning(labelled(key[0], f'{faults[key]}. {faults[key].advice}'))

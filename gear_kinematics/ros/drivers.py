@@ -25,12 +25,20 @@ class DriverInput:
     """
 
     def __init__(
-        self, node: Node, topic: str, on_message: Callable[[bytes], None], facts: DriverFacts
+        self,
+        node: Node,
+        topic: str,
+        on_message: Callable[[bytes], None],
+        facts: DriverFacts,
+        on_replaced: Callable[[], None] = lambda: None,
     ) -> None:
-        """Subscribe; `on_message` gets the bytes of each message, and `facts` are kept."""
+        """Subscribe; `on_message` gets the bytes of each message, and `facts` are kept.
+
+        `on_replaced` is called before the first message of another publisher.
+        """
         self._node = node
         self._topic = topic
-        self._on_message = on_message
+        self._on_message, self._on_replaced = on_message, on_replaced
         self._facts = facts
         self._subscribe()
 
@@ -61,7 +69,8 @@ class DriverInput:
     def _take(self, message: Any, about: Any = None) -> None:
         """Take a message, with its number where the middleware and this rclpy count."""
         message, about = with_info(message, about)
-        self._losses.note(about and about['publication_sequence_number'])
+        if self._losses.note(about and about['publication_sequence_number']):
+            self._on_replaced()
         self._on_message(message)
 
     def count_losses(self) -> None:

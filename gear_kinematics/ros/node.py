@@ -99,16 +99,20 @@ class GearStatePublisher(PublishingNode):
 
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(0.5 * _REPORT_PERIOD, check, clock=steady)
+        inputs = {name: each.state.input for name, each in self._actuators.items()}
+        self._driver_log = DriverLog(self, inputs, lambda: self._arm.joints)
         self._rotor_driver = DriverInput(
-            self, topics.ROTOR_STATE, self._on_rotor_state, self._connections.rotor
+            self,
+            topics.ROTOR_STATE,
+            self._on_rotor_state,
+            self._connections.rotor,
+            self._driver_log.replaced,
         )
         encoder = self._connections.encoder
         self._drivers = (
             self._rotor_driver,
             DriverInput(self, topics.OUTPUT_ENCODER, self._on_output_encoder, encoder),
         )
-        inputs = {name: each.state.input for name, each in self._actuators.items()}
-        self._driver_log = DriverLog(self, inputs, lambda: self._arm.joints)
         self._other_gears = OtherGears(self, lambda: self._current().values())
         self._log_start()
 

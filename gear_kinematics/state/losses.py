@@ -9,12 +9,14 @@ class Losses:
         self.missing = 0
         self.numbered = True  # whether all messages had numbers, which not every middleware gives
         self.next: int | None = None  # number of the next message; None before the first
+        self._last = 0  # number of the last message, of whichever publisher
 
-    def note(self, number: int | None) -> None:
-        """Take the number of the next message."""
+    def note(self, number: int | None) -> bool:
+        """Take the number of the next message; return whether it is from a new publisher."""
         if number is None:
             self.numbered = False
-            return
+            return False
         if self.next is not None and number > self.next:
             self.missing += number - self.next
-        self.next = number + 1
+        last, self._last, self.next = self._last, number, number + 1
+        return number < last

@@ -97,6 +97,18 @@ def test_driver_that_stops_and_its_return_are_a_line_each(publishers, position, 
     assert graph.logged[1:] == [said]
 
 
+def test_a_new_driver_is_compared_with_the_last_unless_two_take_turns():
+    """It can replace the last within the timeout, where a gap explains where the rotor is."""
+    graph = Graph()
+    graph.hear(1.0, 5.0)
+    for second in (1, 2, 3):
+        graph.driver_log.update(2, 0.1)  # one of which was killed
+        for stamp, position in [(0.3, 0.0), (0.31, 5.0)]:
+            graph.driver_log.replaced()
+            graph.hear(second + stamp, position)
+    assert graph.logged == [('W', AWAY.format(-286))]
+
+
 def test_jump_of_the_encoder_is_one_warning():
     graph = Graph()
     for number in range(9):

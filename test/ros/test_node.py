@@ -350,7 +350,10 @@ def test_losses_are_counted_by_the_numbers_of_one_driver(make, monkeypatch):
         assert lost() == (4, True)
     drivers = 1
     assert lost(300, 301) == (4, False)  # of another driver
+    replaced = []
+    monkeypatch.setattr(node._rotor_driver, '_on_replaced', lambda: replaced.append(1))
     assert lost(1, 3) == (5, True)
+    assert replaced == [1]
     drivers = 2
     assert lost(302, 4, 303, 5) == (5, False)
     drivers = 1
