@@ -130,7 +130,7 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
         text = ','.join([*['time of the line'] * (logged is not str), *labels[0]]) + '\n' + text
     lines = [*io.StringIO(plain(text), newline=None)]
     if size > _HEAD and not (lines := lines[:-1]):
-        raise ValueError(f'the first row is longer than {_HEAD} characters')
+        raise ValueError(f'the first row is longer than {_HEAD} characters: write a row a moment')
     if lines and lines[0].startswith(_CODESYS):
         with decoded() as file:
             how: Any = {'sep': ';', 'names': ['key', 'time', 'value'], 'skipinitialspace': True}
