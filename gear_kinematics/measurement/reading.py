@@ -25,6 +25,7 @@ from gear_kinematics.measurement.recording import (
     match,
 )
 from gear_kinematics.measurement.sentences import Observation, Observed
+from gear_kinematics.measurement.series import held_readings
 from gear_kinematics.measurement.stamps import RestoredClock, in_order
 from gear_kinematics.measurement.tables import read_table
 from gear_kinematics.parameters import NodeParameters
@@ -166,7 +167,15 @@ class States:
                 if repeated > _MOST_REPEATED * len(times):
                     found = Observation.STAMPS_REPEAT(count=repeated, total=len(times))
                     raise RecordingError(f'{path}: {topic}: {found}: record their nanoseconds')
-            encoders = _compared(motion, stamps, angles, parameters, sources)
+            both = {'rotor': motion.turned, 'output': np.unwrap(angles)}
+            beside = {
+                'rotor': np.interp(stamp, stamps, both['output']),
+                'output': np.interp(stamps, stamp, both['rotor']),
+            }
+            held = held_readings(both, beside, remarks)
+            new, kept = (held.get(role, slice(None)) for role in both)
+            motion = RotorMotion(*(each[new] for each in motion))
+            encoders = _compared(motion, stamps[kept], angles[kept], parameters, sources)
             if not len(encoders.measured):
                 what = 'no output angle was measured between two rotor states'
                 raise RecordingError(f'{path}: {what}')

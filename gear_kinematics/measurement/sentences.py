@@ -89,7 +89,7 @@ class Observation(Enum):
     TIMES_OUT_OF_ORDER = _ROWS + 'the time in {column} is out of order'
     TIMES_GO_BACK = 'the time in {column} goes back after {rows} rows: the others are left out'
     SAME_TIMES = '{rows} rows have {times} times in {column}: rows of one time are spaced evenly'
-    READINGS_HELD = '{role}: readings are repeated over {every} rows; each is used once'
+    READINGS_HELD = '{role}: each reading comes {every} times, and is used once'
     NO_RAMPS = '{why}'
     # The ratio of both encoders
     NOT_THE_RATIO = 'The recording does not have the ratio {assumed}: {why}.'

@@ -22,6 +22,7 @@ _FEWEST, _STEPS = 20, 1.5
 that stays the same over rows, but is read anew in each, changes by one step."""
 _SAMPLE = 20_000  # readings that show the step
 _EVEN = 2.0  # 95 % of the readings are held for no more than this times the usual number of rows
+_TINY = 1e-30  # so that an axis at rest is nothing divided by something
 _LATE = 0.5  # share of the motion expected within a hold, below which the axis stands in it
 
 
@@ -81,45 +82,61 @@ def rows_of(
     own = _new(series)
     if 2 * np.count_nonzero(together) < max(map(np.count_nonzero, usable.values())):
         own = usable
-    elif timed and (held := _held({role: values[together] for role, values in series.items()})):
-        own = dict.fromkeys(series, together) | {role: together.copy() for role in held}
-        for role, (every, rows) in held.items():
-            own[role][together] = rows
-            remarks.append(Observation.READINGS_HELD(role=role, every=every))
+    elif timed:
+        both = {role: values[together] for role, values in series.items() if role in _PAIRS}
+        both = {role: values for role, values in both.items() if _PAIRS[role] in both}
+        beside = {_PAIRS[role]: values for role, values in both.items()}
+        if held := held_readings(both, beside, remarks):
+            own = dict.fromkeys(series, together) | {role: together.copy() for role in held}
+            for role, rows in held.items():
+                own[role][together] = rows
     if own and timed:
         return [([role], usable[role] & rows) for role, rows in own.items()]
     return [([*usable], together)]
 
 
-def _held(series: Mapping[str, Array]) -> dict[str, tuple[int, Array]]:
-    """Find series whose readings are held over several rows, how many, and the rows to use.
+def held_readings(
+    series: Mapping[str, Array], beside: Mapping[str, Array], remarks: list[Observed]
+) -> dict[str, Array]:
+    """Find series whose readings are held over several rows, and the rows to use, with a remark.
 
-    The axis moves meanwhile, as the other series of its gear shows unless it is held as well;
-    otherwise one was moved in steps. At rest, readings are taken as often as in motion.
+    Args:
+        series: angles or torques by role, (n,) each.
+        beside: the other one of the gear at the same times, by the role that it is beside. While
+            readings are held it moves, unless it is held as well; else one was moved in steps.
+        remarks: those on the series are added.
     """
-    found = {}
-    for role in (one for one in series if _PAIRS.get(one) in series):
-        values = series[role]
-        moved = np.abs(np.diff(values, prepend=values[:1]))
-        at = np.flatnonzero(moved)
-        step = find_step(values[:: len(values) // _SAMPLE + 1]).size
-        gaps = np.diff(at, append=len(moved))[moved[at] > _STEPS * step]
-        if len(gaps) < max(_FEWEST, len(at) // 2) or np.quantile(gaps, 0.05) == 1.0:
-            continue
-        every, usual = int(np.quantile(gaps, 0.95)), np.median(gaps)
-        if every <= _EVEN * usual:
-            place = np.arange(len(moved))
-            since = place - np.maximum.accumulate(np.where(moved, place, 0))
-            found[role] = every, since % every == 0
-    for role, (_, rows) in [*found.items()]:
-        if (other := _PAIRS[role]) not in found:
-            at, values = np.flatnonzero(rows), series[other]
-            middle, last = (at[:-1] + at[1:]) // 2, at[1:] - 1
-            whole, late = np.diff(values[at]), values[last] - values[middle]
-            expected = np.mean((last - middle) / np.diff(at))
-            if late @ whole < _LATE * expected * (whole @ whole):
-                del found[role]
-    return found
+    found = {role: held for role, values in series.items() if (held := _held(values))}
+    several = len(found) > 1
+    for role, (every, rows) in [*found.items()]:
+        at, values = np.flatnonzero(rows), beside[role]
+        middle, last = (at[:-1] + at[1:]) // 2, at[1:] - 1
+        whole, late = np.diff(values[at]), values[last] - values[middle]
+        usual = np.abs(whole) <= _EVEN * np.quantile(np.abs(whole), 0.9)  # no wraps
+        expected = np.mean((last - middle) / np.diff(at))
+        along = late[usual] @ whole[usual] / max(whole[usual] @ whole[usual], _TINY)
+        if several or along >= _LATE * expected:
+            remarks.append(Observation.READINGS_HELD(role=role, every=every))
+        else:
+            del found[role]
+    return {role: rows for role, (_, rows) in found.items()}
+
+
+def _held(values: Array) -> tuple[int, Array] | None:
+    """Return over how many rows readings are held, if they are, and the rows with new ones.
+
+    At rest, readings are taken as often as in motion.
+    """
+    moved = np.abs(np.diff(values, prepend=values[:1]))
+    at = np.flatnonzero(moved)
+    step = find_step(values[:: len(values) // _SAMPLE + 1]).size
+    gaps = np.diff(at, append=len(moved))[moved[at] > _STEPS * step]
+    if len(gaps) < max(_FEWEST, len(at) // 2) or np.quantile(gaps, 0.05) == 1.0:
+        return None
+    every, usual = int(np.quantile(gaps, 0.95)), np.median(gaps)
+    place = np.arange(len(moved))
+    since = place - np.maximum.accumulate(np.where(moved, place, 0))
+    return (every, since % every == 0) if every <= _EVEN * usual else None
 
 
 def _new(series: Mapping[str, Array]) -> Mapping[str, Array]:

@@ -330,6 +330,21 @@ def test_one_clock_of_two_that_is_set_back_is_restored(tmp_path, config):
     assert np.ptp(both.error(Fraction(-19))) < 1e-9
 
 
+@pytest.mark.parametrize('held', [(10, 1), (1, 10), (10, 10)])
+def test_readings_that_a_driver_repeats_are_used_once(tmp_path, config, held):
+    """Messages come ten times as often as an encoder is read; the gear has no error."""
+    angle, late = np.sin(np.arange(4000) / 640.0), 3  # samples of the other
+    rotor, output = (
+        factor * np.repeat(np.roll(angle, shift)[::each], each)[50:-50]
+        for factor, each, shift in zip((-19.0, 1.0), held, (0, -late), strict=True)
+    )
+    stamps = START + np.arange(len(rotor)) * MS
+    write_recording(tmp_path / 'held', Samples(stamps, rotor), Samples(stamps + late * MS, output))
+    both = read(tmp_path / 'held', config).both
+    # Used in each message, a held reading would be up to 10 ms late at 1.6 rad/s.
+    assert np.ptp(both.error(Fraction(-19))) < 1e-4
+
+
 def test_faults_of_a_clock_change_no_figure(shared_path, config):
     path = shared_path('data/faults/clock_set_back_by_0.3_s.mcap')
     measured = measure(read(path, config), config)
