@@ -3,6 +3,7 @@
 
 import argparse
 import math
+import re
 from collections.abc import Callable, Collection
 from dataclasses import replace
 from pathlib import Path
@@ -77,10 +78,16 @@ def add_mechanism(parser: argparse.ArgumentParser, *, sizes: bool = False) -> No
         gear.add_argument(f'--{name}', type=float, metavar='M', help=text)
 
 
+def _full_name(text: str) -> str:
+    if text and not re.fullmatch(r'(/?[A-Za-z_]\w*)(/[A-Za-z_]\w*)*', text, re.ASCII):
+        raise argparse.ArgumentTypeError(f'ROS has no nodes of the name {text!r}')
+    return text
+
+
 def add_running(parser: argparse.ArgumentParser, node: str, actuator: str) -> None:
     """Add the options for a running node and its actuator, with texts on their defaults."""
     text = f'the node, such as /left/{NODE} (default: {node})'
-    parser.add_argument('--node', default='', metavar='FULL_NAME', help=text)
+    parser.add_argument('--node', default='', type=_full_name, metavar='FULL_NAME', help=text)
     text = f'actuator of an arm (default: {actuator})'
     parser.add_argument('--actuator', default='', metavar='NAME', help=text)
 

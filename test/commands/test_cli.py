@@ -157,6 +157,7 @@ def test_file_for_two_nodes_is_refused_naming_them(two_nodes, tmp_path, monkeypa
     ('describe --config missing.yaml', 'missing.yaml: No such file or directory'),
     ('preload --setting 1 2', 'expected 3 arguments; see gearkin preload --help'),
     ('validate bag --junit', '--junit: expected one argument'),
+    ('watch --node /left/1', "--node: ROS has no nodes of the name '/left/1'; see gearkin watch"),
 ])  # fmt: skip
 def test_unusable_arguments_get_one_clear_line_and_code_2(arguments, cause):
     assert cause in refusal(*arguments.split())
