@@ -124,7 +124,8 @@ class DriverLog:
         if elsewhere:
             self._said |= self._faults()
             at = '; '.join(elsewhere)
-            self._log.warning(f'{self._topic} is heard again, but {at}: {_HOME}')
+            how = 'is heard again' if self._calm else 'comes from another driver'
+            self._log.warning(f'{self._topic} {how}, but {at}: {_HOME}')
         elif silent or returned:
             which = '' if silent else ', '.join(returned)
             self._log.info(labelled(which, f'{self._topic} is heard now'))
