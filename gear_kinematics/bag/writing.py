@@ -39,8 +39,7 @@ from gear_kinematics.bag.reading import Bag
 from gear_kinematics.bag.storage import Message, Published, Topic
 
 _MAX_ENTRIES = 4000  # topics and QoS in the metadata; rosbags takes 3 ms to write one
-_MESSAGE = struct.Struct('<BQHIQQ')  # head of the record of a message
-_CHUNK = 2**20  # bytes beyond which it is complete, as in rosbags
+_PUBLISH_TIME = 23  # its offset in the record of a message
 _FORMATS = {
     'ros2msg': MessageDefinitionFormat.MSG,
     'ros2idl': MessageDefinitionFormat.IDL,
@@ -50,6 +49,10 @@ _FORMATS = {
 
 class _McapFile(McapWriter):
     """An mcap file as rosbag2 writes it: with hashes of types and times of publication."""
+
+    def __init__(self, path: Path, compression: CompressionMode) -> None:
+        super().__init__(path, compression)
+        self._published: list[tuple[int, int]] = []  # positions in the chunk, and times, ns
 
     def add_connection(self, connection: Connection, offered_qos_profiles: str) -> None:
         start = self.chunk.bio.tell()
@@ -65,19 +68,16 @@ class _McapFile(McapWriter):
             write_channel(self.chunk.bio, whole, self.schemas)
 
     def write(self, connection: Connection, timestamp: int, data: bytes | memoryview) -> None:
-        """Write a record at once, which rosbags puts together from seven pieces."""
-        published = data.time if isinstance(data, Published) else timestamp
-        head = _MESSAGE.pack(5, 22 + len(data), connection.id, 0, timestamp, published)
-        self.channel_stats[connection.id] += 1
-        chunk = self.chunk
-        for times in (self, chunk):
-            times.message_start_time = min(timestamp, times.message_start_time)
-            times.message_end_time = max(timestamp, times.message_end_time)
-        chunk.msgs[connection.id].append((timestamp, chunk.bio.tell()))
-        chunk.bio.write(head)
-        chunk.bio.write(data)
-        if chunk.bio.tell() > _CHUNK:
-            self.close_chunk()
+        if isinstance(data, Published):
+            self._published.append((self.chunk.bio.tell() + _PUBLISH_TIME, data.time))
+        super().write(connection, timestamp, data)
+
+    def close_chunk(self) -> None:
+        with self.chunk.bio.getbuffer() as records:
+            for place, time in self._published:
+                struct.pack_into('<Q', records, place, time)
+        self._published.clear()
+        super().close_chunk()
 
 
 def _remove_if_empty(folder: Path) -> None:
