@@ -2,11 +2,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # rod 0.5.0: if one joint of an SDFormat file has a damping but no spring, the arm that is read has no joints at all.
 #
-# An arm has a shoulder with <dynamics><damping>0.1</damping></dynamics> and an elbow without. Expected: two joints, one
-# with a damping of 0.1 N·m·s/rad, which Drake reads from the same file. What happens: joints() is empty, without an
-# error or a warning, and what is saved has three links and no joint. SDFormat gives spring_reference and
-# spring_stiffness a default of 0; rod drops the list of joints if one of them is left out anywhere. rod is the reader
-# of jaxsim 0.9.0.
+# An arm has a shoulder with <dynamics><damping>0.1</damping></dynamics> and an elbow without. Expected: two joints, or
+# an error. What happens: joints() is empty, without an error or a warning, and what is saved has three links and no
+# joint. The specification of SDFormat 1.10 gives spring_reference and spring_stiffness, which it marks as required, a
+# default of 0, and many files have a damping alone; rod drops all joints if a single one lacks them.
 # For us: write spring_reference and spring_stiffness into each element dynamics, and count the joints that were read.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
