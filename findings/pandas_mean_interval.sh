@@ -1,13 +1,12 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# pandas 3.1.1, polars 2.1.0: a record of 10 240 Hz, by its mean interval, has 10 309 Hz, and a jitter of 0.
+# pandas 3.1.1, polars 2.1.0: a record of 10 240 Hz, by its mean interval, has 10 309 Hz, and by pandas no jitter.
 #
 # Ten seconds of stamps in µs, as a bench writes them. Expected of the mean of diff(): 97.66 µs. What happens: a mean, a
-# standard deviation and a quotient of durations are cut off to the unit of the stamps: 97 µs. Since pandas 3 this unit
-# is µs, also for stamps in ms or as text; it was ns in pandas 2, in which the same lines are right to 0.03 Hz. So a
-# gear mesh at 1000 Hz is put at 1007 Hz, a grid of times that is built from the first stamp and the mean interval ends
-# 67 ms too early, and the standard deviation of the intervals is 0 instead of 0.47 µs. polars and NumPy cut a mean off
-# too.
+# standard deviation and a quotient of durations are cut off to the unit of the stamps: 97 µs. This unit is µs in pandas
+# 3.1.1, also for stamps in ms or as text; with stamps in ns the same lines give 10 240.0 Hz. So a gear mesh at 1000 Hz
+# is put at 1007 Hz, a grid of times that is built from the first stamp and the mean interval ends 67 ms too early, and
+# the standard deviation of the intervals is 0 instead of 0.47 µs. polars and NumPy cut a mean off too.
 # For us: make numbers first: diff().dt.total_seconds().mean(), or divide the whole span in seconds by its intervals.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
