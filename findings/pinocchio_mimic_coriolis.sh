@@ -7,8 +7,8 @@
 # the model is read with mimic=True. At 1 rad/s of the shoulder and -1 rad/s of the elbow, expected of C(q, v) v: 1.97
 # and 2.93 N·m, as rnea() of the same model without acceleration gives, and as three free joints give that are coupled
 # by hand. What happens: 2.63 and 2.63 N·m. The derivative of the matrix of masses less 2 C is not skew-symmetric
-# either, on which controllers rely. Algorithms such as aba() and computeRNEADerivatives() refuse a model with a mimic by
-# an error; this one does not. rnea(), crba() and the Jacobian of the hand are right.
+# either, on which controllers rely. Algorithms such as aba() and computeRNEADerivatives() refuse a model with a mimic
+# by an error; this one does not. rnea(), crba() and the Jacobian of the hand are right.
 # For us: take rnea() without acceleration, less that without speed, or couple free joints by a matrix of the ratios.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.

@@ -8,8 +8,8 @@
 # happens: the request is repeated, as it is up to three times by default, the late answer is taken for the answer to
 # the repetition, and from then on each read has the answer to the request before it, without an error. On a serial
 # line, with and without asyncio, the reads are shifted as long as they follow one another, and right with pauses of
-# 0.6 s; RTU through a TCP gateway is shifted with these pauses too. With retries=0 one read is an error, and those after
-# it are shifted. Modbus TCP, which numbers its answers, is right.
+# 0.6 s; RTU through a TCP gateway is shifted with these pauses too. With retries=0 one read is an error, and those
+# after it are shifted. Modbus TCP, which numbers its answers, is right.
 # For us: read all that is needed of a drive in one request, give it a timeout that it never needs, set retries=0 and,
 # after an error, close the client and connect again once the late answer must have come.
 #
