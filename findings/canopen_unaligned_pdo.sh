@@ -6,8 +6,7 @@
 # position takes the bits 1 to 16. Expected: each position from -32768 to 32767. What happens: the position is taken
 # from the two bytes in which it begins, so that its last bit is lost, and the one before counts as its sign: half of
 # all positions, those from 16384 on and those below -16384, are wrong by 32768, without an error. A speed as an
-# UNSIGNED16 has only its lower 15 bits. To be sent, half of the positions are an error. With the position first and
-# the switch behind it all are right.
+# UNSIGNED16 has only its lower 15 bits. With the position first and the switch behind it all are right.
 # For us: map what fills whole bytes first, and single bits behind it.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
