@@ -6,8 +6,8 @@
 # robstride-dynamics 0.0.1, the angle of each model goes to ±12.57 rad, and the gains of an RS03, RS04 and RS06 go to
 # 5000 N·m/rad and 100 N·m·s/rad. What happens: the angle of an "O6" goes to 112.5 here, so that a goal of 57° is sent
 # as 6°; the gains of all models go to 500 and 5, so that a damping of 2 is sent to those three as 40; and the speed of
-# an "O2", "O3" and "O4" goes to 33 rad/s instead of 44, 20 and 15: 458°/s, which are 8 rad/s, are read as 344, 756 and
-# 1008°/s. Each read of a motor is the command that the package itself names CLEAR_FAULT.
+# an "O2", "O3" and "O4" goes to 33 rad/s instead of 44, 20 and 15 by epicallypowerful: 458°/s, which are 8 rad/s, are
+# read as 344, 756 and 1008°/s. Each read of a motor is the command that the package itself names CLEAR_FAULT.
 # For us: give a tenth of the stiffness and a twentieth of the damping to these three, and do not use an O6.
 #
 # Exit code 0: still so. Installs the packages into a temporary folder, without torch, which the motors do not use: the
