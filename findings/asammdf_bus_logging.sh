@@ -6,8 +6,8 @@
 # them, and the marks m0 and m3 of the signals only the first. Expected of the frames that an .mf4 has logged, as
 # cantools 45.1.0 decodes them: six positions and four torques in two rounds. What happens: extract_bus_logging() of
 # asammdf gives two positions and two torques, without a warning, so that a joint is sampled at a third of its rate.
-# can_decoder, for which canmatrix reads the .dbc too, does so as well. A position behind the end of a frame that is
-# shorter than its .dbc says is 0 rad by asammdf, an error by cantools.
+# can_decoder, for which canmatrix reads the .dbc too, does so as well. A frame of 8 bytes by the .dbc is logged with a
+# length of 4 and with zeros in the other bytes: an angle in these is 0 rad by asammdf, and an error by cantools.
 # For us: decode logged frames by cantools, or give each page a signal of its own in the .dbc.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
