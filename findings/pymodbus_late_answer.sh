@@ -4,12 +4,13 @@
 # error.
 #
 # A program reads in turn the position, 1000 counts, and the temperature, 25 °C, of a simulated drive that speaks Modbus
-# RTU, and that answers once after 1.5 s where the timeout is 1 s. Expected: the right values, or an error. What
-# happens: the request is repeated, as it is up to three times by default, the late answer is taken for the answer to
-# the repetition, and from then on each read has the answer to the request before it, without an error. On a serial
-# line, with and without asyncio, the reads are shifted as long as they follow one another, and right with pauses of
-# 0.6 s; RTU through a TCP gateway is shifted with these pauses too. With retries=0 one read is an error, and those
-# after it are shifted. Modbus TCP, which numbers its answers, is right.
+# RTU, and that answers once after 1.5 s where the timeout is 1 s. Expected: the right values, or an error. By the
+# maintainer (pull request 2636, 2025) the late answer is taken for that to the repetition of the request, of which
+# there are up to three by default, and the answer to the repetition is discarded. What happens: it is not, so that each
+# read has the answer to the request before it, without an error. On a serial line, with and without asyncio, the reads
+# are shifted as long as they follow one another, and right with pauses of 0.6 s; RTU through a TCP gateway is shifted
+# with these pauses too. With retries=0 one read is an error, and those after it are shifted. Modbus TCP, which numbers
+# its answers, is right.
 # For us: read all that is needed of a drive in one request, give it a timeout that it never needs, set retries=0 and,
 # after an error, close the client and connect again once the late answer must have come.
 #
