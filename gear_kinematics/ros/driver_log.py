@@ -42,12 +42,23 @@ class DriverLog:
         self._calm = _CALM  # updates since one driver followed another
         self._before: dict[str, RotorSample | None] = {}
         """The last samples, if any, of actuators whose silence was logged."""
+        self._others: dict[str, int] = {}
+        """Messages of others before another driver came, by the actuators that await it alone."""
 
     def replaced(self) -> None:
         """Compare the next position, of another driver, with the last; not if two take turns."""
         if self._calm >= _CALM:
-            self._before |= {name: each.last for name, each in self._inputs.items() if each.last}
+            last = {name: each for name, each in self._inputs.items() if each.last}
+            self._others = {n: e.of_others for n, e in last.items() if n not in self._before}
+            self._before |= {name: each.last for name, each in last.items()}
         self._calm = 0
+
+    def _forget_others(self) -> None:
+        """Compare no position of an actuator whose joint the other driver does not send."""
+        for name, others in self._others.items():
+            if self._inputs[name].of_others > others:
+                del self._before[name]
+        self._others = {}
 
     @property
     def awaited(self) -> bool:
@@ -88,6 +99,7 @@ class DriverLog:
     def update(self, publishers: int, silence: float) -> None:
         """Take, once a second, the number of publishers and the time since the last message, s."""
         self._calm += 1
+        self._forget_others()
         faults, said = self._faults(), self._said
         for key in faults.keys() - said.keys():
             self._log.warning(labelled(key[0], f'{faults[key]}. {faults[key].advice}'))
@@ -113,6 +125,7 @@ class DriverLog:
     def heard(self, samples: Mapping[str, RotorSample]) -> None:
         """Take samples by actuator while some are awaited; their first are compared."""
         silent, self._silent = self._silent, False
+        self._forget_others()
         returned = [name for name in samples if name in self._before]
         elsewhere = []
         for name, sample in samples.items():

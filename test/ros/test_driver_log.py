@@ -110,6 +110,18 @@ def test_a_new_driver_is_compared_with_the_last_unless_two_take_turns():
     assert graph.logged == [('W', said)]
 
 
+def test_a_new_driver_of_other_joints_says_nothing_of_the_rotor():
+    """The rotor turns on by 0.3 rad in each message of its own driver."""
+    graph = Graph()
+    for number in range(5):
+        if number == 3:
+            graph.driver_log.replaced()
+            with pytest.raises(RejectedInputError):
+                graph.hear(1.025, 5.0, names='wheel')
+        graph.hear(1.0 + 0.01 * number, 0.3 * number)
+    assert not graph.logged
+
+
 def test_jump_of_the_encoder_is_one_warning():
     graph = Graph()
     for number in range(9):
