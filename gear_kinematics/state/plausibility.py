@@ -40,6 +40,7 @@ _MARGIN = 1.5  # of raised limits above what was seen
 _MOST_BEYOND = 2.0  # times the limit: speeds at which a driver may repeat readings
 _FEW_STEPS = 3.0  # between readings: what a drive whose clock begins anew may turn meanwhile
 _LONGER = 1.5  # times what was seen: for which a driver repeats readings, as stamps are uneven
+_SHORTER = 4  # times than a repeated reading lasts: two intervals that end the repeats
 _UPTIME = 10**17  # ns, 3 years: stamps below are the time since a start, no date
 _LEAST_MOTION = 0.01  # rad between two readings of a rotor that moves
 _UNKNOWN = math.nan, 0, 0.0, 0
@@ -204,6 +205,8 @@ class Plausibility:
         span = stamp - changed
         if until > changed:  # it stood until then
             span = stamp - self._stamp or span
+        if last_span and _SHORTER * max(span, last_span) < self._repeats:
+            self._repeats = STALEST_NS  # the driver now reads more often
         if not span:
             self._last = position, changed, last_step + step, last_span
             self._repeated = stamp

@@ -623,6 +623,15 @@ def test_a_driver_that_publishes_more_often_than_it_reads_is_believed(rate, repe
     assert fed(MULTI, data + fed_on)[0].plausibility.jumped
 
 
+def test_jumps_after_a_rest_are_found_where_a_driver_had_a_lower_rate_before():
+    idle, often = np.arange(20.0), 20.0 + np.arange(150) / 100
+    turned = 5.0 * np.minimum(often - 20.0, 0.5)  # then it stands for a second
+    times = [*idle, *often, *21.5 + np.arange(4) / 100]
+    angles = [*2.51 * (idle // 2) + 0.01 * np.sin(idle // 2), *25.0 + turned, *[87.5] * 4]
+    rotor, _ = fed(MULTI, messages(np.array(times), np.array(angles)))
+    assert rotor.plausibility.jump == Condition.JUMPED(angle=pytest.approx(60.0), time=ANY)
+
+
 @pytest.mark.parametrize('speed', [0.5, 60.0, 250.0])
 def test_a_corrupt_reading_of_any_size_is_no_jump(speed):
     times = np.arange(30) / 1000
