@@ -14,14 +14,13 @@ _CLOSE = 25  # messages, in which a bag that is looped begins at most once
 ALTERNATING = 3  # resets of the clock so close to each other: as many are no chance
 FASTEST = 100.0  # times the clock: faster than any playback
 _FEWEST, _LEAST = 10, 100_000_000  # stamps, and ns, that tell their pace; no burst takes as long
-
 _EVEN = 1.5  # times the usual one: time until a reading that directly follows
 
 Reading = tuple[int, float, float | None, float | None]  # ns, rad, rad/s, N·m or other units
 
 
 class Disorder:
-    """Collects the readings that are older than the last sample."""
+    """Collects the readings that are older than the last sample, the first of each stamp."""
 
     def __init__(self) -> None:
         self.readings: list[Reading] = []

@@ -337,7 +337,9 @@ class RotorInput:
         if stamp == last:
             self.duplicates += 1
         elif last - stamp <= CLOCK_RESET:
-            self.disorder.readings.append(reading)
+            readings = self.disorder.readings
+            if not readings or stamp != readings[-1][0]:
+                readings.append(reading)
             raise RejectedInputError(Rejection.OUT_OF_ORDER)
         else:
             self.resets += 1
