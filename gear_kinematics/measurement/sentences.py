@@ -88,7 +88,10 @@ class Observation(Enum):
     NO_TIMES = _ROWS + 'no time in {column}'
     TIMES_OUT_OF_ORDER = _ROWS + 'the time in {column} is out of order'
     TIMES_GO_BACK = 'the time in {column} goes back after {rows} rows: the others are left out'
-    SAME_TIMES = '{rows} rows have {times} times in {column}: rows of one time are spaced evenly'
+    SAME_TIMES = (
+        '{rows} rows have {times} different times in {column}: rows with the same time are taken '
+        'to be evenly spaced'
+    )
     READINGS_HELD = '{role}: each reading comes {every} times, and is used once'
     NO_RAMPS = '{why}'
     # The ratio of both encoders
@@ -150,10 +153,8 @@ class Observation(Enum):
     HARDLY_MOVES = 'The output does not move far enough in one direction to show its errors.'
     DEVIATES = _DEVIATES + '.'
     LOSES = _DEVIATES + '; on reversals it loses {lost:arcmin}′.'
-    LAGS = (
-        _DEVIATES
-        + '; backward it lags by {lost:arcmin}′, by lost motion or by a delay between the '
-        'encoders.'
+    LAGS = _DEVIATES + (
+        '; backward it lags by {lost:arcmin}′, by lost motion or by a delay between the encoders.'
     )
     LOSS_NOT_TOLD = _DEVIATES + '; what it loses on reversals is unknown.'
     DELAY_TAKEN_OUT = (

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Tables with a row for each value: their series, also where the last of others are beside it."""
+"""Series with rows of their own: a row for each value, gaps that were filled, held readings."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -50,7 +50,8 @@ _SLOPE, _DIRECTION, _LATE = 0, 2, 3  # columns of the fit; 1 is the offset
 _LEAST_NOISE = 1e-7  # rad, the step of an encoder of 26 bits; below it, rounding falsifies ratios
 _LAGS, _GROWS = 16, 1.2
 """Lags in a recording, and growth of the squared change from one lag to two: it is 2 for a zero
-that walks at random, and about 1 for noise and for errors that repeat."""
+that walks at random, and about 1 for noise. Errors that are not fitted and repeat four times in
+the recording grow as a walk, and widen the ±."""
 _ROUNDS = 5  # estimates of the noise, each from the residuals before; after 3, ± is 50 % off
 
 

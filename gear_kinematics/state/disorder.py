@@ -58,7 +58,8 @@ class Disorder:
 
         It was set back if several messages in a row, in order, were older than the last sample.
         The first of them is taken to be as long after that sample as the second after the first.
-        What came is left out if it can have been late, since some of it came before.
+        No readings are returned if the new sample does not directly follow them: they can have
+        been late, and those between came before them.
         """
         readings, self.readings = self.readings, []
         stamps = [*(earlier for earlier, *_ in readings), stamp]
