@@ -162,6 +162,9 @@ class States:
             if self._lacking and not len(measured[0]):
                 raise BagError(f'{path}: {encoder}: {self._lacking}')
             stamps, angles = _in_order(measured, encoder, remarks)
+            none = f'{path}: no output angle was measured between two rotor states'
+            if not len(stamps):
+                raise RecordingError(none)
             for topic, times in ((rotor, stamp), (encoder, stamps)):
                 repeated = int(np.count_nonzero(np.diff(times) == 0))
                 if repeated > _MOST_REPEATED * len(times):
@@ -177,8 +180,7 @@ class States:
             motion = RotorMotion(*(each[new] for each in motion))
             encoders = _compared(motion, stamps[kept], angles[kept], parameters, sources)
             if not len(encoders.measured):
-                what = 'no output angle was measured between two rotor states'
-                raise RecordingError(f'{path}: {what}')
+                raise RecordingError(none)
             described.append(f'output {encoder}, rad')
         elif not has_effort:
             raise BagError(f'{path}: {rotor} has no effort, and no {OUTPUT_ENCODER} is there')

@@ -104,6 +104,13 @@ def test_recording_without_usable_stamps_is_refused(tmp_path, config, rotor, enc
         read(path, config)
 
 
+def test_recording_without_a_number_of_the_output_is_refused(tmp_path, config):
+    rotor, output = (Samples([START, START + MS], [k, k]) for k in (0.0, math.nan))
+    path = write_recording(tmp_path / 'nan', rotor, output)
+    with pytest.raises(RecordingError, match='no output angle was measured'):
+        read(path, config)
+
+
 @pytest.mark.slow
 def test_twist_is_measured_with_both_encoders(tmp_path, config):
     """The output turns under load; only the twist of the gear counts."""
