@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The log of the rotor's driver: that it is missing, has stopped, or has returned."""
+"""The log of the rotor's driver: that it is missing, has stopped, has returned, or is another."""
 
 import math
 from collections import Counter, defaultdict
@@ -41,9 +41,9 @@ class DriverLog:
         self._silent = False  # whether it was logged that the driver is missing or silent
         self._calm = _CALM  # updates since one driver followed another
         self._before: dict[str, RotorSample | None] = {}
-        """The last samples, if any, of actuators whose silence was logged."""
+        """The last samples, if any, of actuators that were silent or await another driver."""
         self._others: dict[str, int] = {}
-        """Messages of others before another driver came, by the actuators that await it alone."""
+        """Messages of others before another driver came, by the actuators that were not silent."""
 
     def replaced(self) -> None:
         """Compare the next position, of another driver, with the last; not if two take turns."""
@@ -62,7 +62,7 @@ class DriverLog:
 
     @property
     def awaited(self) -> bool:
-        """Whether it was logged that an actuator has no messages, so that `heard` is wanted."""
+        """Whether an actuator was silent or awaits another driver, so that `heard` is wanted."""
         return self._silent or bool(self._before)
 
     def _warn_of_missing(self) -> None:

@@ -112,10 +112,10 @@ class RotorLimits(NamedTuple):
 
     @staticmethod
     def continues(moving: Reading, until: int, stamp: int, step: float, noise: float) -> bool:
-        """Whether a step, rad, continues a motion, by about its speed, that seemed to have ended.
+        """Whether a step, rad, continues a motion that seemed to end, at most twice as fast.
 
-        Its last reading was repeated until a stamp, ns. A driver does so that publishes more often
-        than it reads. `noise` is that of a reading, rad.
+        The last reading of the motion was repeated until a stamp, ns, as by a driver that
+        publishes more often than it reads. `noise` is that of a reading, rad.
         """
         _, since, former, span = moving
         repeated = until - since <= _REPEATS * (stamp - until)
