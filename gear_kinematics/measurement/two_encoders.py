@@ -196,8 +196,12 @@ class EncoderFit:
 
         A step of the zero changes the coefficient by the sum of the weights of all later samples.
         """
-        whole = self._equations.solve(chosen, slice(1))[0]
-        walk = _walk(self._terms[-1] - whole @ self._terms[list(chosen)])
+        walks = []
+        for columns in (list(chosen), self._model):
+            whole = self._equations.solve(columns, slice(1))[0]
+            walks.append(_walk(self._terms[-1] - whole @ self._terms[columns]))
+        # Beside a walk, a drift that was clear is likely to be a part of it.
+        walk = max(walks) if walks[0] else 0.0
         # Terms that repeat with each run follow a share of the walk.
         walk *= self._runs / max(self._runs - 1, 1)
         weights = self._equations.weights(chosen, place) @ self._terms
