@@ -101,20 +101,19 @@ class EncoderFit:
         model = _terms(at, slope, signs[kept], speed)
         # The same holds for reading errors: the acceleration does not contain the reading itself.
         acceleration = slope * (first - early - after + last) / (3.0 * STEP**2)
-        left = rest = output[kept] - slope * at - np.mean(output[kept] - slope * at)
+        left = output[kept] - slope * at - np.mean(output[kept] - slope * at)
         course = (then[kept] - np.mean(then[kept])) / np.ptp(then[kept])
         drifts = _PLAY * course, _DELAY * course * speed
         waves = _PLAY * signs[kept, None] * _waves(slope * at)
         self._model = list(range(len(model)))
-        terms = np.stack([*model, _LAG * acceleration, *drifts, *waves.T, rest])
+        terms = np.stack([*model, _LAG * acceleration, *drifts, *waves.T, left])
         blocks = np.array_split(terms, _BLOCKS, axis=1)
         self._products = np.array([block @ block.T for block in blocks])
         self._equations = NormalEquations(self._products)
         for _ in range(_ROUNDS):
             self._equations.noise = max(_noise(left), _LEAST_NOISE**2)
-            whole = self._equations.solve(self._model, slice(1))[0]
-            left = rest - whole @ terms[: len(whole)]
-        self._terms, self._slope = terms, slope
+            left = self._equations.residual(self._model) @ terms
+        self._terms, self._left, self._slope = terms, left, slope
         self._runs = 1 + int(np.count_nonzero(np.diff(signs[kept])))
 
     @cached_property
@@ -196,12 +195,9 @@ class EncoderFit:
 
         A step of the zero changes the coefficient by the sum of the weights of all later samples.
         """
-        walks = []
-        for columns in (list(chosen), self._model):
-            whole = self._equations.solve(columns, slice(1))[0]
-            walks.append(_walk(self._terms[-1] - whole @ self._terms[columns]))
-        # Beside a walk, a drift that was clear is likely to be a part of it.
-        walk = max(walks) if walks[0] else 0.0
+        walk = _walk(self._equations.residual(chosen) @ self._terms)
+        if walk:  # a drift that was clear is likely to be a part of it
+            walk = max(walk, _walk(self._left))
         # Terms that repeat with each run follow a share of the walk.
         walk *= self._runs / max(self._runs - 1, 1)
         weights = self._equations.weights(chosen, place) @ self._terms

@@ -106,12 +106,16 @@ class NormalEquations:
         Folds are not heeded. Unlike that of exact fits, this scatter does not grow with the number
         of columns.
         """
-        places, whole = list(chosen), self.solve(chosen, _WHOLE)[0]
-        factors = np.zeros(len(self._scale))
-        factors[places], factors[-1] = -whole, 1.0
-        left = (self._blocks @ factors)[:, places]
+        places, factors = list(chosen), self.residual(chosen)
+        whole, left = -factors[places], (self._blocks @ factors)[:, places]
         changes = np.linalg.solve(self.regular(places, _WHOLE)[0], (left / self._scale[places]).T)
         return np.vstack([whole, whole - changes.T / self._scale[places]])
+
+    def residual(self, chosen: Sequence[int]) -> Array:
+        """Factors of the columns whose sum is the error less the fit to all blocks, (size,)."""
+        factors = np.zeros(len(self._scale))
+        factors[[*chosen]], factors[-1] = -self.solve(chosen, _WHOLE)[0], 1.0
+        return factors
 
     def weights(self, chosen: Sequence[int], place: int) -> Array:
         """Factors of the columns whose sum weighs the samples for one coefficient, (size,)."""
