@@ -119,8 +119,11 @@ def standard_error(
     for size in together:
         count = len(values) // size
         if count >= (_FEWEST if size > 1 else 2):
-            groups = np.array_split(values, count) if size > 1 else []
-            means = [float(group.sum()) / len(group) for group in groups] or values
+            means: Values = values
+            if size > 1:
+                means = [
+                    float(group.sum()) / len(group) for group in np.array_split(values, count)
+                ]
             errors.append((deviation(means) / math.sqrt(count), count - 1))
     return max(errors)
 
