@@ -3,7 +3,6 @@
 
 import argparse
 import math
-import re
 from collections.abc import Callable, Collection
 from dataclasses import replace
 from pathlib import Path
@@ -79,7 +78,8 @@ def add_mechanism(parser: argparse.ArgumentParser, *, sizes: bool = False) -> No
 
 
 def _full_name(text: str) -> str:
-    if text and not re.fullmatch(r'(/?[A-Za-z_]\w*)(/[A-Za-z_]\w*)*', text, re.ASCII):
+    parts = text.removeprefix('/').split('/')
+    if text and not all(part.isascii() and part.isidentifier() for part in parts):
         raise argparse.ArgumentTypeError(f'ROS has no nodes of the name {text!r}')
     return text
 
