@@ -271,7 +271,7 @@ def _layout(lines: Sequence[str]) -> _Layout:
 
 def _score(cells: Iterable[str], point: str) -> float:
     """Count the numbers in cells, less the other cells and what is in them."""
-    return sum(weight(k, point) or -1 - k.count(';') - k.count('\t') for k in cells if k)
+    return sum(weight(k, point) or -1 - k.count(';') - k.count('\t') for k in cells)
 
 
 def _names(
