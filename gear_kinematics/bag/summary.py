@@ -131,7 +131,7 @@ def summarise(
 
 
 def _summary(
-    name: str, kind: str, part: str, joints: list[str], times: Array, followed: str, *others: int
+    name: str, kind: str, part: str, joints: list[str], times: Array, followed: str, *left_out: int
 ) -> TopicSummary:
     stamped, received = np.diff(times)
     repeated = 2 * np.count_nonzero(stamped) < len(stamped)  # as without their nanoseconds
@@ -146,4 +146,6 @@ def _summary(
         rate, gaps, longest = 1.0 / median, len(long), float(long.max(initial=0.0))
         mean = (count - 1) / float(periods.sum())
     numbers = rate, mean, gaps, longest, followed
-    return TopicSummary(name, kind, part, count + sum(others), tuple(joints), *numbers, *others)
+    return TopicSummary(
+        name, kind, part, count + sum(left_out), tuple(joints), *numbers, *left_out
+    )
