@@ -16,14 +16,14 @@ FASTEST = 100.0  # times the clock: faster than any playback
 _FEWEST, _LEAST = 10, 100_000_000  # stamps, and ns, that tell their pace; no burst takes as long
 _EVEN = 1.5  # times the usual one: time until a reading that directly follows
 
-Reading = tuple[int, float, float | None, float | None]  # ns, rad, rad/s, N·m or other units
+Late = tuple[int, float, float | None, float | None]  # ns, rad, rad/s, N·m or other units
 
 
 class Disorder:
     """Collects the readings that are older than the last sample, the first of each stamp."""
 
     def __init__(self) -> None:
-        self.readings: list[Reading] = []
+        self.readings: list[Late] = []
         self.close_resets = 0  # resets of the clock that directly follow another one
         self._reset = -_CLOSE  # number of the message of the last one
         self.step: Fact | None = None  # the clock's last step back
@@ -53,7 +53,7 @@ class Disorder:
         self._reset = number
         self._note_step(last, stamp)
 
-    def set_back(self, last: int, stamp: int) -> tuple[int, list[Reading]]:
+    def set_back(self, last: int, stamp: int) -> tuple[int, list[Late]]:
         """Return by how much the clock was set back between two samples, ns, and what came since.
 
         It was set back if several messages in a row, in order, were older than the last sample.

@@ -175,13 +175,13 @@ class Plausibility:
             return self._hold(position, stamp)
         if self.period:
             step = last_step + math.remainder(step - last_step, self.period)
-        until = self._stamp
+        repeated = self._stamp
         if self._doubted and self._doubted[-1][1] == before:
-            until = self._doubted[-1][0]
+            repeated = self._doubted[-1][0]
         moving = last if last_step else self._moving
-        stood = until - changed > self._repeats and moving[1] == changed and not self.period
-        if stood and self.limits.continues(moving, until, stamp, step, self.noise):
-            self._repeats, last = _LONGER * (until - changed), moving
+        stood = repeated - changed > self._repeats and moving[1] == changed and not self.period
+        if stood and self.limits.continues(moving, repeated, stamp, step, self.noise):
+            self._repeats, last = _LONGER * (repeated - changed), moving
             last_step, last_span = last[2:]
         until = self._stamp if self._stamp - changed > self._repeats else changed
         held_up = self._held_up.before(stamp - changed, last, former)

@@ -13,7 +13,7 @@ from gear_kinematics.kinematics import RotorPosition, RotorSample, RotorTurns, s
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.parameters import PARAMETERS, NodeParameters
 from gear_kinematics.state.belief import BELIEVED, Belief
-from gear_kinematics.state.disorder import Disorder, Reading, order
+from gear_kinematics.state.disorder import Disorder, Late, order
 from gear_kinematics.state.effort_field import EffortField
 from gear_kinematics.state.plausibility import Plausibility
 from gear_kinematics.state.rotor_samples import RotorSamples, Row
@@ -332,7 +332,7 @@ class RotorInput:
             return TURN * unwrapped.turns + unwrapped.angle
         return position
 
-    def _check_order(self, last: int, reading: Reading) -> None:
+    def _check_order(self, last: int, reading: Late) -> None:
         stamp, position, *_ = reading
         if stamp == last:
             self.duplicates += 1
