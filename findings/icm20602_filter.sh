@@ -6,8 +6,8 @@
 # Expected of set_dlpf_bandwidth() after set_gyro_sensitivity(SENS_2000DPS): the bandwidth changes, the range stays.
 # What happens: the bandwidth is written to GYRO_CONFIG instead of CONFIG, so that the gyroscope has a range of ±250°/s
 # then, while the driver still takes its counts as those of ±2000°/s: 100°/s are read as 800°/s, and more than 250°/s
-# are cut off. The filter of the gyroscope is not set at all; BW_184HZ, BW_92HZ and BW_41HZ even bypass it, as their numbers are
-# the bits for this. In the other order the range is right, and the bandwidth is lost.
+# are cut off. The filter of the gyroscope is not set at all; BW_184HZ, BW_92HZ and BW_41HZ even bypass it, as their
+# numbers are the bits for this. In the other order the range is right, and the bandwidth is lost.
 # Expected of calibrate_sensor(), called again on a resting arm: the offset of 2°/s as before. What happens: it averages
 # readings that are corrected already, and the remainder of 0 replaces the offset, so that the arm turns at 2°/s again.
 # A simulated chip takes the place of the bus. No error, no warning.
