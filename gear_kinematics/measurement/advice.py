@@ -93,7 +93,7 @@ def rising(table: TableFile) -> dict[str, str]:
 def _rises(table: TableFile, name: str) -> bool:
     values = np.asarray(table.load([name])[0][name])
     several = values.dtype.kind in 'iufM' and len(values) > 1
-    return several and bool(np.all(values[1:] > values[:-1]))
+    return several and bool(np.all(values[1:] >= values[:-1]) and values[-1] > values[0])
 
 
 def _completed(

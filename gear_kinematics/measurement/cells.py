@@ -14,10 +14,13 @@ import numpy as np
 from gear_kinematics.measurement.names import known_units, meaning, usual_unit
 
 MOMENT = re.compile(
-    r'(\d+ days? |([a-z]{3} ){2} ?\d\d? |\d{1,4}[-./ ](\d\d?|[a-z]{3})[-./ ]\d{2,4}[T ] ?)?'
-    r'\d?\d:\d\d(:\d\d([.,:;]\d+)?|[.,]\d+)\s?'
+    r'(\d+ days? |([a-z]{3} ){2} ?\d\d? |\d{1,4}[-./ ](\d\d?|[a-z]{3})[-./ ]\d{2,4}[T _-] ?)?'
+    r'\d?\d:\d\d(:\d\d((::|[.,:;])\d+)?|[.,]\d+)\s?'
     r'(Z|UTC|[AP]M|[+-]\d\d:?\d\d|\d{4})?',
     re.ASCII | re.IGNORECASE,
+)
+_WITH_UNIT = re.compile(
+    r"[-+\u2212]?[\d.,' \u00a0\u202f\u2019]*\d[.,]?(?:[eE][-+]?\d+)? ?([^\s\d][^\d]*)"
 )
 _TUPLE = re.compile(r'\(.*,( .*)?\)')  # as Python writes them
 _NEGATIVE = re.compile(r'^\((\d[\d.,]*)\)$')
@@ -30,7 +33,9 @@ _RARE = (
 """What few columns contain, and how numbers are written without it."""
 _IDS = re.compile(r'((joint|motor|actuator|servo|axis|node|can|id|name|index) ?)+')
 """Names of the column of a table with a row for each joint."""
-_TOPICS = 'topic|message path|series|signal|channel|label|field|name|key|entry|variable|tag'
+_TOPICS = (
+    'topic|message path|series|signal|channel|label|field|name|key|entry|variable|tag|tagname'
+)
 """Names, the likeliest first, of the column of a table with a row for each value."""
 _NAMES = 100  # words in a column that are compared with names
 _OFTEN = 0.9  # share of the rows that are of another joint than the one before
@@ -45,6 +50,12 @@ def cells_of(line: str, separator: str) -> list[str]:
     return [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
 
 
+def unit_of(cell: str) -> str:
+    """Return the unit behind the number in a cell, as written; empty if there is none."""
+    found = _WITH_UNIT.fullmatch(cell)
+    return found[1] if found and known_units([found[1]], fewest=1) else ''
+
+
 def numbers(column: Any, point: str = '.') -> Any:
     """Convert a column of pandas to numbers or datetime64[ns]; NaN or NaT where it has none."""
     import pandas as pd  # noqa: PLC0415, of an extra
@@ -56,6 +67,10 @@ def numbers(column: Any, point: str = '.') -> Any:
     if column.dtype.kind in 'iufb':
         return column.to_numpy()
     text = column.astype(str).str.strip().str.replace('\u2212', '-')
+    filled = text[~text.str.lower().isin(MISSING)].dropna()
+    unit = unit_of(filled.iloc[0]) if len(filled) else ''
+    if unit and filled.map(unit_of).eq(unit).all():
+        text = text.str.removesuffix(unit).str.rstrip()
     for rare, pattern, plain in _RARE:
         if text.str.contains(rare).any():  # which takes a tenth of the time
             text = text.str.replace(pattern, plain, regex=True)
@@ -112,7 +127,8 @@ def _moments(text: Any) -> Any:
     import pandas as pd  # noqa: PLC0415, of an extra
 
     text = text.str.replace(r',(?! )', '.', regex=True)
-    text = text.str.replace(r'(?<=:\d\d)[:;](?=\d{3,}$)', '.', regex=True)  # 9:00:00:040
+    text = text.str.replace(r'(?<=:\d\d)(::|[:;])(?=\d{3,}\b)', '.', regex=True)  # 9:00:00:040
+    text = text.str.replace(r'^(\d{4}-\d\d-\d\d)[-_](?=\d\d:)', r'\1T', regex=True)  # of TwinCAT
     moments = pd.to_datetime(text, format='ISO8601', utc=True, errors='coerce')
     if not moments.notna().any():
         half = text.str.lower().str.extract(r'(?:^| )(\d+):.*([ap])m$')  # 12:00 AM is midnight
@@ -160,7 +176,7 @@ def weight(cell: str, point: str) -> float:
     if elements := _array(cell):
         return min(weight(one, '.') for one in elements)
     plain, grouped = _forms(point)
-    cell = _NEGATIVE.sub(r'-\1', cell)
+    cell = _NEGATIVE.sub(r'-\1', cell.removesuffix(unit_of(cell)).rstrip())
     if plain.fullmatch(cell):
         return 1.0 if ',' not in cell else 0.9
     return 0.5 if grouped.fullmatch(cell) or MOMENT.fullmatch(cell) else 0.0

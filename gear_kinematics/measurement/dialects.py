@@ -25,12 +25,13 @@ from gear_kinematics.measurement.cells import (
     key_of,
     may_be_divided,
     numbers,
+    unit_of,
     weight,
 )
 from gear_kinematics.measurement.channel_times import interval_of, named, with_times
 from gear_kinematics.measurement.names import FOREIGN, known_units, meaning
 from gear_kinematics.measurement.series import series_of
-from gear_kinematics.measurement.texts import BLOCK, Rows, encoding_of
+from gear_kinematics.measurement.texts import BLOCK, Rows, encoding_of, plainer
 
 _MOST_ROWS = 1_000_000  # 15 minutes at 1 kHz; a row takes up to 250 bytes besides those of pandas
 _HEAD = 2**16  # bytes that show the dialect
@@ -39,10 +40,6 @@ _SEPARATORS = ';', '\t', ',', '|', ' '
 _COMMENT = ('#', '//', '%', 'sep=', 'SEP=')
 _WRAPPED = re.compile(r'(?<![^,;\t\n])"[^"\n]*(\n[^"\n]*){1,3}"(?=[,;\t\n])')
 """Cells with line breaks, as of names in workbooks."""
-_LOGGED = re.compile(r'(?m)^(?:\[([^]\n]*\d:\d\d[^]\n]*)\]|(\d\d:\d\d:\d\d[.]\d+) -?>)[ \t]*')
-"""Stamps that terminals, such as the Arduino IDE and Tera Term, write before each line."""
-_LABEL = re.compile(r'(?m)(?:(?<=[\s,;])|^)([^\W\d]\w*) ?[:=] ?(?=[-+.\d])')
-"""Names before each number, as sketches print them for the plotter of the Arduino IDE."""
 _PADDED = re.compile(r'(?<=[,;|\t]) +(?=")')  # which would hide quotation marks
 _TYPES = re.compile(r'(?i)[iuf]\d+|(float|double|u?int)\d*|(type|interp|blockpath|portindex): *.+')
 """Cells of rows that give types, as INCA and Simulink write them."""
@@ -118,17 +115,9 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
     decoded = partial(opened, mode='r', compression='infer', encoding=encoding, errors='replace')
     text = codecs.getincrementaldecoder(encoding)('replace').decode(head)
     text = _WRAPPED.sub(lambda name: name[0].replace('\n', '\v'), text.replace('\r\n', '\n'))
-    plain: Callable[[str], str] = str
-    if 2 * len(_LOGGED.findall(text)) > text.count('\n'):
-        inner = _LOGGED.sub('', text)
-        mark = max(_SEPARATORS, key=inner.count)
-        joint = 'T' if mark == ' ' else ' '
-        plain = partial(_LOGGED.sub, lambda at: (at[1] or at[2]).replace(' ', joint) + mark)
-    logged, labels = plain, [*map(_LABEL.findall, text.split('\n')[1:_ROWS])]
-    if several := len(labels) > 1 and labels[0] == labels[-2] != labels[0][:1]:
-        plain = lambda text: _LABEL.sub('', logged(text))  # noqa: E731
-        text = ','.join([*['time of the line'] * (logged is not str), *labels[0]]) + '\n' + text
-    lines = [*io.StringIO(plain(text), newline=None)]
+    plain, labels = plainer(text, _SEPARATORS)
+    lines = [','.join(labels) + '\n'] * bool(labels)
+    lines += io.StringIO(plain(text), newline=None)
     if size > _HEAD and not (lines := lines[:-1]):
         raise ValueError(f'the first row is longer than {_HEAD} characters: write a row a moment')
     if lines and lines[0].startswith(_CODESYS):
@@ -140,7 +129,7 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
         rows = frame.assign(key=key)[frame['key'].isna()]
         return loaded(*series_of(rows, '.', 'key', 'value', {}))
     layout = _layout([_PADDED.sub('', line.replace('\v', ' ')) for line in lines])
-    start = layout.start - several + ''.join(lines[: layout.start]).count('\v')
+    start = layout.start - bool(labels) + ''.join(lines[: layout.start]).count('\v')
 
     def read(places: Sequence[int], every: int, kind: Any = None) -> Any:
         with decoded() as file:
@@ -250,6 +239,7 @@ def _layout(lines: Sequence[str]) -> _Layout:
     start = filled[first]
     above = [line for line in lines[:start] if not _NO_NAMES.fullmatch(line)]
     row, *_ = samples = [rows[place] for place in filled[first:]]
+    units = [unit_of(cell) for cell in row]
     # A line that is not divided, such as a title, has no names.
     if any(len(_cells_above(line, separator, len(row))) >= min(2, len(row)) for line in above):
         begin = [cells[0].strip('"') for cells in samples[:_BEGIN]]
@@ -262,6 +252,7 @@ def _layout(lines: Sequence[str]) -> _Layout:
         found[1].update({k: one for k, of, one in beside if re.fullmatch('(?i)units?', of)})
     else:
         found = _joint_state(row) or ([str(k + 1) for k in range(len(row))], {}, {})
+    found[1].update({name: unit for name, unit in zip(found[0], units, strict=False) if unit})
     titles = (line for line in above if len(cells_of(line.lstrip('#%/ '), separator)) < len(row))
     interval = 0.0 if row[0] else interval_of([cells_of(line, separator) for line in above])
     if interval:

@@ -109,6 +109,7 @@ _PLAINER: Mapping[str, Any] = {
     r'\\\w+:\d+$': '',  # device and raster, of INCA
     r'(?i)^(time|zeit) +\d+ - [^[]*': r'\1',  # of catman
     r'(?i)joint[ _]?(states?)': r'\1',  # in names of topics
+    r'(?i)[ _]?of[ _]?day(?![a-z])': '',  # which is no unit
     r'(?i)(?<![a-z])(time(?:stamp)?|zeit|elapsed|t)[ _,]+(min|h)$': r'\1 [\2]',
     r'((?i:moment|torque)) M(?![^\W_])': r'\1',  # the symbol, and no motor
     r'^M(?=[ _/\[(]*[mckµ]?N)': 'moment',

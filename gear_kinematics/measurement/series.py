@@ -76,9 +76,11 @@ def rows_of(
 
     If they are `timed`, each has rows of its own where tables with other times were joined: few
     rows have all, as gaps are empty, or none has two new values, as gaps repeat the last ones.
-    So it has where a logger held its readings over several rows.
+    So it has where a logger held its readings over several rows. A last row of sums is left out.
     """
     together = np.all([*usable.values()], axis=0)
+    if all(_ends_with_sum(values[together]) for values in series.values()):
+        together[np.flatnonzero(together)[-1]] = False
     own = _new(series)
     if 2 * np.count_nonzero(together) < max(map(np.count_nonzero, usable.values())):
         own = usable
@@ -93,6 +95,14 @@ def rows_of(
     if own and timed:
         return [([role], usable[role] & rows) for role, rows in own.items()]
     return [([*usable], together)]
+
+
+def _ends_with_sum(values: Array) -> bool:
+    """Return whether the last of many values is farther from the others than these are apart."""
+    if len(values) <= _FEWEST:
+        return False
+    low, high, last = values[:-1].min(), values[:-1].max(), values[-1]
+    return bool(max(low - last, last - high) > high - low > 0.0)
 
 
 def held_readings(

@@ -166,7 +166,7 @@ class _Samples:
             groups = rows_of(data, usable, self.remarks, timed=clock is not None)
         if not all(rows.any() for _, rows in groups):
             names = ', '.join(column.name for column in self.found.values())
-            raise ValueError(f'no usable rows: none has numbers in all of {names}')
+            raise ValueError(f'no usable rows: none has numbers such as -12.5 in all of {names}')
         if clock:
             role = 'rotor' if 'rotor' in self.found else 'angle'
             turned = data[role] * (self.found[role].unit != 'counts')  # whose speed is unknown

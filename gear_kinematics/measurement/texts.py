@@ -1,11 +1,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Texts of any size: their encoding, and one row in n."""
+"""Texts of any size: their encoding, one row in n, and what programs write around numbers."""
 
 import codecs
 import io
 import re
-from collections.abc import Callable
-from typing import IO
+from collections.abc import Callable, Sequence
+from typing import IO, Any
 
 BLOCK = 2**17  # characters that are read at a time
 _BOMS = {b'\xef\xbb\xbf': 'utf-8-sig', b'\xff\xfe': 'utf-16', b'\xfe\xff': 'utf-16'}
@@ -18,6 +18,17 @@ _OTHERS = {
 }
 """Encodings of Windows: Katakana, words in Korean or traditional Chinese, which may look like
 simplified Chinese, four letters in Cyrillic, or two Chinese characters."""
+
+_LOGGED = re.compile(
+    r'(?m)^(?:\[([^]\n]*\d:\d\d[^]\n]*)\][ \t]*|(\d\d:\d\d:\d\d[.:]\d+) -?>[ \t]*|'
+    r'(\d{4}-\d\d-\d\d \d\d:\d\d:\d\d[.,]\d+) +(?![AP]M)(?=[^ \n]*[,;\t]))'
+)
+"""Stamps that terminals, such as Tera Term and the Arduino IDE, write before each line."""
+_LABEL = re.compile(r'(?m)(?:(?<=[\s,;])|^)([^\W\d]\w*) ?[:=] ?(?=[-+.\d])')
+"""Names before each number, as sketches print them for the plotter of the Arduino IDE."""
+_PYTHON = re.compile(r"\b(?:np\.\w+|array|tensor)\((?:'\w', ?)?([^()]*?)(?:, \w+=[\w.']+)*\)")
+"""Numbers and arrays as Python shows them, such as np.float64(1.5)."""
+_LINES = 100  # lines whose labels are compared
 
 
 class Rows(io.TextIOBase):
@@ -53,3 +64,27 @@ def encoding_of(head: bytes) -> str:
     except UnicodeDecodeError:
         return next((code for code in _OTHERS if _OTHERS[code].search(head)), 'cp1252')
     return 'utf-8'
+
+
+def plainer(text: str, separators: Sequence[str]) -> tuple[Callable[[str], str], list[str]]:
+    """Find what programs write around numbers in the lines of a text.
+
+    Returns:
+        What leaves it out of lines, with stamps in a column of their own; the names of all columns
+        if a name is before each number, or else nothing.
+    """
+    rules: list[tuple[re.Pattern[str], Any]] = [(_PYTHON, r'\1')] * bool(_PYTHON.search(text))
+    if logged := 2 * len(_LOGGED.findall(text)) > text.count('\n'):
+        mark = max(separators, key=_LOGGED.sub('', text).count)
+        joint = 'T' if mark == ' ' else ' '
+        rules.append((_LOGGED, lambda at: at[at.lastindex].replace(' ', joint) + mark))
+    labels = [*map(_LABEL.findall, text.split('\n')[1:_LINES])]
+    several = len(labels) > 1 and labels[0] == labels[-2] != labels[0][:1]
+    rules += [(_LABEL, '')] * several
+
+    def plain(text: str) -> str:
+        for pattern, new in rules:
+            text = pattern.sub(new, text)
+        return text
+
+    return plain, [*['time of the line'] * logged, *labels[0]] if several else []

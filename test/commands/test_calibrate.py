@@ -151,7 +151,7 @@ def test_recordings_that_cannot_be_read_are_all_told_and_do_not_stop_the_check(
     for path in bad:
         path.write_text('rotor,output\n1,nan\n')
     words = ['calibrate', str(bad[0]), str(recording), str(bad[1])]
-    error = 'no usable rows: none has numbers in all of rotor, output'
+    error = 'no usable rows: none has numbers such as -12.5 in all of rotor, output'
     errors = ''.join(f'gearkin: {path}: {error}\n' for path in bad)
     assert main([*words, '-o', str(target)]) == 2
     assert capsys.readouterr() == ('', errors)

@@ -193,12 +193,23 @@ ENCODERS = {
     'thousands by space': lambda t, r, o: written(
         [t, r * DEG, o * DEG], WITH_DEG, 3 * [grouped('\u202f', ',')], ';'),
     'thousands as in Switzerland': lambda t, r, o: written(
-        [t, r * DEG, o * DEG], WITH_DEG, 3 * [grouped('\u2019')], ';'),
+        [t, r * DEG, o * DEG], WITH_DEG, ['{:.2f}', grouped('\u2019'), grouped("'")], ';'),
     'turns beside the angle within them': lambda t, r, o: written(
         [t, np.floor(r * REV), r * DEG % 360.0, o * DEG],
         'time,motor_turns,motor_angle_deg,output_deg', ('{:.2f}', '{:.0f}', '{:.5f}', '{:.5f}')),
-    'thousands by apostrophe': lambda t, r, o: written(
-        [t, r * DEG, o * DEG], WITH_DEG, 3 * [grouped("'")], ';'),
+    'units in cells': lambda t, r, o: written(
+        [t, r * DEG, o * DEG], NAMES, ('{:.2f} s', '{:.4f} °', '{:.4f}deg')),
+    'numbers and arrays of Python': lambda t, r, o: 'time,name,position\n' + ''.join(
+        f'np.float64({at:.2f}),"[\'m1\', \'out\']","array(\'d\', [{rotor:.5f}, {out:.5f}])"\n'
+        for at, rotor, out in zip(t, r, o, strict=True)),
+    'a row of sums': lambda t, r, o: written([t, r, o], NAMES) + f'{sum(t)},{sum(r)},{sum(o)}\n',
+    'seconds of the day': plain('time_of_day,rotor,output', time=lambda v: f'{v + 32400.0:.2f}'),
+    'Serial Studio': plain('RX Date/Time,rotor,output',
+        time=lambda v: moment(' ')(v)[:-3].replace('-', '/').replace('.', '::')),
+    'a log of TwinCAT': plain(time=moment('-')),
+    'CoolTerm': lambda t, r, o: '2026-11-26 08:59:59.960 rotor,output\n' + ''.join(
+        f'{moment(" ")(at)[:-3]} {rotor:.5f},{out:.5f}\n'
+        for at, rotor, out in zip(t, r, o, strict=True)),
     'sep=': plain('sep=;\ntime;rotor;output', ';', german=True),
     'meta lines': plain(f'Bench 3\nRate,100,Hz\n\ndevice,SN,fw\nA,17,2.1\n{NAMES}'),
     'stamps of Tera Term, and a footer': lambda t, r, o: (
@@ -550,7 +561,8 @@ READ_IN_TURN = {'never in one row', 'gaps filled with the values before'}
 RAMPS = {
     'a name that stays': lambda t, a, q: written(
         [t, t, a, q], 'time,name,angle,torque', ('{:.2f}', lambda _: 'Run A', '{:.6f}', '{:.6f}')),
-    'N·cm': lambda t, a, q: written([t, a * DEG, q * 100], 't,Angle [°],Torque [Ncm]'),
+    'N·cm': lambda t, a, q: written(
+        [t, a * DEG, q * 100], 't,Angle [°],Torque', ['{:.2f}', '{:.6f}', '{:.5f} N·cm']),
     'dN·m': lambda t, a, q: written([t, a * 1e3, q * 10], 't,angle_millirad,torque_dNm', '{:.6f}'),
     'gf·cm': lambda t, a, q: written(
         [t, a * 1e6, q / 9.80665e-5], 't,angle [microrad],torque [gf.cm]', '{:.6f}'),
@@ -746,7 +758,10 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         (lambda t, r, o: written(
             [t, r, o], NAMES,
             ('{:.2f}', lambda v: f'{v:.3f} or so' if abs(v) > 5 else '7', '{:.5f}')),
-         'no usable rows: none has numbers in all of rotor, output'),
+         'no usable rows: none has numbers such as -12.5 in all of rotor, output'),
+        (lambda t, r, o: written([t, r, o], NAMES, (
+            '{:.2f}', lambda v: f'{v:.3f} rad' if v < -5 else f'{v * 1e3:.0f} mrad', '{:.5f}')),
+         'no usable rows: none has numbers such as -12.5 in all of rotor, output'),
         (lambda t, r, o: written([t, r, o], NAMES, '26.11.2026 {:.0f}'),
          'the times in time: no numbers nor ISO 8601'),
         (lambda t, r, o: written([t, r, o], NAMES, '2026-13-26 09:{:05.2f}'),
