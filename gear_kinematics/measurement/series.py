@@ -23,6 +23,7 @@ that stays the same over rows, but is read anew in each, changes by one step."""
 _SAMPLE = 20_000  # readings that show the step
 _EVEN = 2.0  # 95 % of the readings are held for no more than this times the usual number of rows
 _TINY = 1e-30  # so that an axis at rest is nothing divided by something
+_ROUNDED = 0.01  # of a sum, which rows that were left out change, too
 _LATE = 0.5  # share of the motion expected within a hold, below which the axis stands in it
 
 
@@ -98,11 +99,9 @@ def rows_of(
 
 
 def _ends_with_sum(values: Array) -> bool:
-    """Return whether the last of many values is farther from the others than these are apart."""
-    if len(values) <= _FEWEST:
-        return False
-    low, high, last = values[:-1].min(), values[:-1].max(), values[-1]
-    return bool(max(low - last, last - high) > high - low > 0.0)
+    """Return whether the last of many values is the sum of the others, but for roundings."""
+    off = abs(values[-1] - values[:-1].sum()) if len(values) > _FEWEST else np.inf
+    return bool(off < _ROUNDED * abs(values[-1]))
 
 
 def held_readings(

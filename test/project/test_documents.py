@@ -104,7 +104,7 @@ def test_every_command_in_the_documentation_has_arguments_that_exist(page):
 @pytest.mark.slow
 def test_commands_of_the_readme_do_what_it_says(tmp_path, monkeypatch, capsys):
     shutil.copytree(ROOT / 'bags/servo_point_to_point', tmp_path / 'logs/monday')
-    shutil.copy(ROOT / 'docs/examples/ramps.csv', tmp_path)
+    shutil.copytree(ROOT / 'docs/examples', tmp_path / 'docs/examples')
     braced = '/**: {ros__parameters: {preload: 3.0, branch_stiffness: [3000.0]}}'
     (tmp_path / 'actuator.yaml').write_text(braced, 'utf-8')
     (tmp_path / 'encoder').mkdir()
