@@ -153,6 +153,13 @@ def _moments(text: Any) -> Any:
     return moments.dt.tz_localize(None)
 
 
+def are_words_below(column: Any, point: str) -> Any:
+    """Return which cells of a column of numbers are words, such as Min and Max in a footer."""
+    values = numbers(column, point)
+    known = values == values  # noqa: PLR0124, neither NaN nor NaT
+    return ~known & column.notna() & (np.count_nonzero(known) > 0.5 * len(column))
+
+
 def may_be_divided(column: Any) -> bool:
     """Return whether numbers may be whole ones with a mark between thousands: 1.024 for 1024."""
     if column.dtype.kind != 'f':

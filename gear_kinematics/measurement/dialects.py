@@ -19,6 +19,7 @@ from gear_kinematics.measurement.cells import (
     MOMENT,
     are_arrays,
     are_divided,
+    are_words_below,
     cells_of,
     checked,
     elements_of,
@@ -165,13 +166,15 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
     def load(wanted: Sequence[str]) -> tuple[dict[str, Any], int]:
         every = 2 ** max(0, math.ceil(math.log2(size / len(head) * len(lines) / _MOST_ROWS)))
         own = {name: layout.names.index(name) for name in wanted if name not in elements}
-        places = sorted({*own.values()} | (beside if len(own) < len(wanted) else set()))
+        places = sorted({0, *own.values()} | (beside if len(own) < len(wanted) else set()))
         filled = sample[places].fillna('') != ''
         usual = filled.any().tolist()
         # Of series that take turns, other steps leave out all but one.
         steps = range(every, 2 * every)
         every = next((n for n in steps if filled[::n].any().tolist() == usual), every)
         frame = read(places, every)
+        if 0 not in own.values() and (words := are_words_below(frame[0], layout.point)).any():
+            frame = frame.mask(words)
         for place in filter(lambda place: may_be_divided(frame[place]), places):
             if are_divided(read([place], every, str)[place], layout.point):
                 raise ValueError(
@@ -298,7 +301,7 @@ def _names(
         units = ['', *label][len(label) >= len(names) :]
     else:
         below = (known_units(row, fewest=1) for row in rows[at + 1 : at + 2])
-        units = next(filter(None, (*below, known_units(groups))), [])
+        units = next(filter(None, (*below, known_units(groups[1:] and groups))), [])
     filled = [*filter(None, names)]
     if len({*filled}) < len(filled) and len(groups) == len(names):  # such as Motor,,Load,
         for k in range(1, len(groups)):

@@ -21,8 +21,8 @@ _VOCABULARY = {
     '扭矩 力矩 转矩 轉矩 トルク 토크',
     'current': 'current',
     'time': 'time t stamp timestamp timestamps today datetime elapsed zeit uhrzeit messzeit '
-    'prüfzeit temps tempo tiempo tout xtime ts zeitstempel horodatage heure hora ora czas tijd '
-    'tid время 시간 时间 时间戳 時間 x',
+    'laufzeit prüfzeit temps tempo tiempo tout xtime ts zeitstempel horodatage heure hora ora '
+    'czas tijd tid время 시간 时间 时间戳 時間 x',
     'filling': 'header receive log dynamic measured meas actual act filtered raw field data value '
     'values feedback state states axis angular rotary present sensor abs side in ist host pi ros '
     'system unix epoch tv channel ch fb fbk ave estimate scalars signals date datum utc wall '
@@ -49,7 +49,7 @@ _SIZES: Mapping[str, Mapping[str, Any]] = {
     'angle': {
         'rad radian radians': 1.0,
         'mrad millirad milliradian milliradians': 1e-3,
-        'deg ° degree degrees grados gradi degrés': _DEG,
+        'deg ° º ˚ degs degree degrees grados gradi degrés': _DEG,
         'rev turn turns revs revolution revolutions rotations umdrehungen umdr': TURN,
         'mdeg millideg': 1e-3 * _DEG,
         'cdeg': 1e-2 * _DEG,
@@ -78,7 +78,7 @@ _SIZES: Mapping[str, Mapping[str, Any]] = {
     'time': {
         's sec secs second seconds': 1.0,
         'ms msec millis millitm millisecond milliseconds': 1e-3,
-        'us µs usec micros microseconds': 1e-6,
+        'us µs usec µsec micros microseconds': 1e-6,
         'ns nsec nsecs nanosec nanosecs nanoseconds': 1e-9,
         'minutes minute': 60.0,
         'hours hour': 3600.0,
@@ -112,7 +112,7 @@ _PLAINER: Mapping[str, Any] = {
     r'(?i)[ _]?of[ _]?day(?![a-z])': '',  # which is no unit
     r'(?i)(?<![a-z])(time(?:stamp)?|zeit|elapsed|t)[ _,]+(min|h)$': r'\1 [\2]',
     r'((?i:moment|torque)) M(?![^\W_])': r'\1',  # the symbol, and no motor
-    r'^M(?=[ _/\[(]*[mckµ]?N)': 'moment',
+    r'^M(?=[ _/\[(]*[mckµ]?N|_[xyz](?![^\W_]))': 'moment',
     r'(?i)[ _]?milli(?=(nm|rad|deg)(?![a-z]))': '_m',
     r'(?i)(winkel.*[^a-z])grad(?![a-z])': r'\1deg',  # gradians elsewhere
     r'(?i)[ _]?(deg|rad|rev)[ _]?x1(0{1,3})$': lambda u: f'_{"dcm"[len(u[2]) - 1]}{u[1]}',

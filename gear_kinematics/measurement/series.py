@@ -100,7 +100,9 @@ def rows_of(
 
 def _ends_with_sum(values: Array) -> bool:
     """Return whether the last of many values is the sum of the others, but for roundings."""
-    off = abs(values[-1] - values[:-1].sum()) if len(values) > _FEWEST else np.inf
+    if len(values) <= _FEWEST:
+        return False
+    off = abs(values[-1] - values[:-1].sum())
     return bool(off < _ROUNDED * abs(values[-1]))
 
 

@@ -561,6 +561,9 @@ READ_IN_TURN = {'never in one row', 'gaps filled with the values before'}
 RAMPS = {
     'a name that stays': lambda t, a, q: written(
         [t, t, a, q], 'time,name,angle,torque', ('{:.2f}', lambda _: 'Run A', '{:.6f}', '{:.6f}')),
+    'labels of a footer in a column that is not read': lambda t, a, q: written(
+        [range(len(t)), a, q], 'No.,angle [rad],torque [Nm]', ('{}', '{:.6f}', '{:.5f}'))
+        + f'MIN,{min(a)},{min(q)}\nMAX,{max(a)},{max(q)}\nAVG,{np.mean(a)},{np.mean(q)}\n',
     'N·cm': lambda t, a, q: written(
         [t, a * DEG, q * 100], 't,Angle [°],Torque', ['{:.2f}', '{:.6f}', '{:.5f} N·cm']),
     'dN·m': lambda t, a, q: written([t, a * 1e3, q * 10], 't,angle_millirad,torque_dNm', '{:.6f}'),
@@ -935,6 +938,10 @@ UNTOLD_RAMPS = {
     'units of rotation': lambda t, a, q: written(
         [t, a * DEG, q], '"Time","Rotation","Axial Torque"\n"(s)","(Degrees)","(N-m)"',
         3 * ['"{:.6f}"']),
+    'a unit in a line above names': lambda t, a, q: written([range(len(t)), t, q, a * DEG],
+        'Units: Nm\nSample Number,Time (s),Tracking Value (Nm),Angle [º]', 4 * ['{:.6f}']),
+    'moments of a hexapod': lambda t, a, q: written([t, 0 * q, q, a * DEG],
+        't,M_x [Nm],M_z [Nm],angle [deg]', 4 * ['{:.6f}']),
     'a torque by its unit alone': lambda t, a, q: written(
         [t, q / 0.00706155, a * DEG], 'Time (Sec),Tracking (in-oz),Angle (deg)', 3 * ['{:.6f}']),
     'a unit that is a word': lambda t, a, q: written(
@@ -968,7 +975,7 @@ def test_every_refusal_ends_with_a_command_line_that_works(tmp_path, gear, refer
             read(path, gear, given, both=as_recorded and not ramps)
         recording = read(path, gear, followed(told.value))
         assert (recording.locked is not None) == ramps
-    sure = {'both motors', 'two torques', 'a sensor of three axes'}
+    sure = {'both motors', 'two torques', 'a sensor of three axes', 'moments of a hexapod'}
     if 'counts' in untold or 'degrees' in untold or untold in sure:
         assert_measured(recording, gear)
 
