@@ -118,7 +118,7 @@ def _result(
     refused: Mapping[str, Observed],
 ) -> Fit:
     samples, values = model.samples, model.values()
-    deviation = values @ model.coefficients[0]
+    deviation = model.coefficients[0] @ values
     constant = -float(deviation.mean())
     before, after, width, coverage = model.checked(values)
     travels = [s.output[s.used] for s in samples]

@@ -43,7 +43,7 @@ class GearModel:
         own = range(common, common + 2 * len(samples))
         bounds = block_bounds([len(s.used) for s in samples])
         blocks = [(k, *ends) for k, edges in enumerate(bounds) for ends in pairwise(edges)]
-        products = np.array([c.T @ c for c in (self._columns(terms, *of) for of in blocks)])
+        products = np.array([r @ r.T for r in (self._rows(terms, *of) for of in blocks)])
         chosen = select(NormalEquations(products), terms, own)
         self.terms = [terms[k] for k in chosen]
         self.columns = columns_of(self.terms)
@@ -58,13 +58,13 @@ class GearModel:
         self._of = np.array([recording for recording, _, _ in blocks])
         self._counts = np.array([end - begin for _, begin, end in blocks])
 
-    def _columns(self, terms: Sequence[Term], recording: int, begin: int, end: int) -> Array:
-        """Columns of terms, of zero and delay of each recording, and the error."""
+    def _rows(self, terms: Sequence[Term], recording: int, begin: int, end: int) -> Array:
+        """Rows of terms, of zero and delay of each recording, and the error, at some samples."""
         s = self.samples[recording]
         at = s.used[begin:end]
-        own = np.zeros((len(at), 2 * len(self.samples)))
-        own[:, 2 * recording : 2 * recording + 2] = s.own_values(at)
-        return np.column_stack([*(term.values(s, at) for term in terms), own, s.error[at]])
+        own = np.zeros((2 * len(self.samples), len(at)))
+        own[2 * recording : 2 * recording + 2] = s.own_values(at)
+        return np.vstack([*(term.values(s, at) for term in terms), own, s.error[at]])
 
     @property
     def delays(self) -> list[Estimate | None]:
@@ -85,10 +85,10 @@ class GearModel:
         return bool(self.terms) and not is_as_good(without, best)
 
     def values(self) -> Array:
-        """Columns of the terms at the used samples of all recordings, (n, columns)."""
-        return np.concatenate(
+        """Values of the terms at the used samples of all recordings, (columns, n)."""
+        return np.hstack(
             [
-                np.hstack([np.zeros((len(s.used), 0)), *(t.values(s, s.used) for t in self.terms)])
+                np.vstack([np.zeros((0, len(s.used))), *(t.values(s, s.used) for t in self.terms)])
                 for s in self.samples
             ]
         )
@@ -96,7 +96,7 @@ class GearModel:
     def checked(self, values: Array) -> tuple[Array, Array, float, float]:
         """Predict parts of the samples as a check does, with a zero and a delay of their own.
 
-        `values` are the columns that `values()` returns, (n, columns).
+        `values` are those that `values()` returns, (columns, n).
 
         The parts are the recordings or, of a single one, alternate blocks, so that both cover the
         same angles: a trend is unknown at others.
@@ -108,9 +108,9 @@ class GearModel:
         parts = self._of if len(self.samples) > 1 else np.arange(len(self._of)) % 2
         equations, fold = NormalEquations(self._products, parts), np.repeat(parts, self._counts)
         fits = equations.solve(range(self._products.shape[-1] - 1))[1:, : self._common]
-        own = np.concatenate([s.own_values(s.used) for s in self.samples])
+        own = np.hstack([s.own_values(s.used) for s in self.samples]).T
         before = np.concatenate([s.error[s.used] for s in self.samples])
-        after = before - np.einsum('nc,nc->n', values, fits[fold])
+        after = before - np.einsum('cn,cn->n', values, fits.T[:, fold])
         for rows in (fold == part for part in set(parts)):
             for errors in (before, after):
                 errors[rows] -= own[rows] @ np.linalg.lstsq(own[rows], errors[rows], rcond=None)[0]

@@ -120,9 +120,9 @@ class Samples:
         return self._stops[radius]
 
     def own_values(self, at: Array) -> Array:
-        """Columns of the recording's own unknowns, zero and delay, at some samples."""
+        """Rows of the recording's own unknowns, zero and delay, at some samples, (2, at)."""
         speed = self.speed[at] if self.tells_delay else np.zeros(len(at))
-        return np.column_stack([np.ones(len(at)), -speed])
+        return np.stack([np.ones(len(at)), -speed])
 
 
 class Term(NamedTuple):
@@ -145,17 +145,17 @@ class Term(NamedTuple):
         return ('cos', 'sin') if isinstance(self.entry, Order) else ('coefficient',)
 
     def values(self, samples: Samples, at: Array) -> Array:
-        """Its columns at some samples, (at, columns); exact for orders even after many turns."""
+        """Its columns at some samples, (columns, at); exact for orders even after many turns."""
         match self.entry:
             case Order(cycles=cycles):
                 p, q = cycles.as_integer_ratio()
                 turns = np.fmod(p % q * np.fmod(samples.turns[at], q), q) / q
                 phase = TURN * turns + float(cycles) * samples.angle[at]
-                return np.stack([np.cos(phase), np.sin(phase)], axis=1)
+                return np.stack([np.cos(phase), np.sin(phase)])
             case Stop(radius=radius):
-                return samples.stop_states(radius)[0][at, None]
+                return samples.stop_states(radius)[0][None, at]
             case Compliance(torque=mean):
-                return np.asarray(samples.torque)[at, None] - mean
+                return np.asarray(samples.torque)[None, at] - mean
 
 
 def columns_of(terms: Sequence[Term]) -> list[list[int]]:
