@@ -21,6 +21,9 @@ _FEWEST, _STEPS = 20, 1.5
 """Least number of readings that are held; most of them differ by more steps of the encoder. One
 that stays the same over rows, but is read anew in each, changes by one step."""
 _SAMPLE = 20_000  # readings that show the step
+_ANEW = 0.6
+"""Share of the readings that are followed by another in the next row, from which on 5 % of any
+half of them are: none are held."""
 _EVEN = 2.0  # 95 % of the readings are held for no more than this times the usual number of rows
 _TINY = 1e-30  # so that an axis at rest is nothing divided by something
 _ROUNDED = 0.01  # of a sum, which rows that were left out change, too
@@ -140,8 +143,11 @@ def _held(values: Array) -> tuple[int, Array] | None:
     """
     moved = np.abs(np.diff(values, prepend=values[:1]))
     at = np.flatnonzero(moved)
+    gaps = np.diff(at, append=len(moved))
+    if len(at) < _FEWEST or np.quantile(gaps, _ANEW) == 1.0:  # as usual; the step takes time
+        return None
     step = find_step(values[:: len(values) // _SAMPLE + 1]).size
-    gaps = np.diff(at, append=len(moved))[moved[at] > _STEPS * step]
+    gaps = gaps[moved[at] > _STEPS * step]
     if len(gaps) < max(_FEWEST, len(at) // 2) or np.quantile(gaps, 0.05) == 1.0:
         return None
     every, usual = int(np.quantile(gaps, 0.95)), np.median(gaps)
