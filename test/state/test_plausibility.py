@@ -3,7 +3,9 @@
 
 import math
 from contextlib import suppress
+from copy import deepcopy
 from dataclasses import replace
+from functools import cache
 from unittest.mock import ANY
 
 import numpy as np
@@ -46,6 +48,13 @@ def motion(rate: int, count: int, generator) -> tuple[np.ndarray, np.ndarray]:
         if n % inner == 0:
             angles.append(angle)
     return np.arange(count) / rate, np.array(angles)
+
+
+@cache
+def drive(rate: int, seed: int) -> tuple[np.ndarray, np.ndarray, np.random.Generator]:
+    """300 readings of a motion, and the generator that goes on from there."""
+    generator = np.random.default_rng([seed, rate])
+    return *motion(rate, 300, generator), generator
 
 
 def disturbed(kind, times, angles, rate, generator) -> tuple[np.ndarray, np.ndarray]:
@@ -135,8 +144,8 @@ def test_positions_of_single_precision_are_named_where_they_are_coarse(start, un
 @pytest.mark.parametrize('rate', RATES)
 def test_no_motion_within_the_limits_is_doubted(kind, rate):
     for seed in range(3):
-        generator = np.random.default_rng([seed, rate])
-        times, angles = disturbed(kind, *motion(rate, 300, generator), rate, generator)
+        *moved, generator = drive(rate, seed)
+        times, angles = disturbed(kind, *moved, rate, deepcopy(generator))
         rotor, _ = fed(MULTI, messages(times, angles))
         assert complaints(rotor) == ({}, None, None)
         rotor, _ = fed(SINGLE, messages(times, np.mod(angles, TURN)))
@@ -431,7 +440,7 @@ def test_positions_that_wrap_are_named_where_the_rotor_turns_far_between_reading
 @pytest.mark.parametrize('rate', [10, 50])
 @pytest.mark.parametrize('share', [0.2855, 2 / 7, 0.3, 0.305, 1 / 3, 0.334, 0.4, 0.4999, 0.5])
 def test_a_vibration_does_not_wrap_though_its_steps_back_are_those_of_wraps(rate, share):
-    angles = TURN * share * np.arange(20.0 * rate)
+    angles = TURN * share * np.arange(300)
     for size in np.linspace(0.9, 1.3, 9) * 0.5 * TURN / (1.0 - math.cos(TURN * share)):
         for phase in np.linspace(0.0, TURN, 5):
             judge = Plausibility(*LIMITS)

@@ -307,7 +307,7 @@ def test_a_real_gear_has_the_same_angle_from_wherever_it_is_started(
         tuple(rotor_bytes(stamp, position=[angle % math.tau]) for angle in both)
         for stamp, *both in zip(stamps, rotor, measured, strict=True)
     ]
-    for start in range(0, len(stamps) - 3 * SAMPLES, 7):
+    for start in range(0, len(stamps) - 3 * SAMPLES, 13):
         bench, k = Bench(settings), start
         while not bench.rotor.referenced:
             assert k < start + 3 * SAMPLES
