@@ -2,6 +2,7 @@
 """The shipped bags and their parameters; bags as rosbags reads and the project writes them."""
 
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 
 from rosbags.rosbag2 import Reader
@@ -29,8 +30,14 @@ def config_of(bag: str) -> NodeParameters:
 
 def read_bag(path: Path) -> list[Message]:
     """Read a bag by rosbags alone."""
+    return [*_messages(path)]
+
+
+@lru_cache(8)  # more than there are shipped bags
+def _messages(path: Path) -> tuple[Message, ...]:
     with Reader(path) as reader:
-        return [(c.topic, received, bytes(data)) for c, received, data in reader.messages()]
+        messages = reader.messages()
+        return tuple((c.topic, received, bytes(data)) for c, received, data in messages)
 
 
 def write_bag(path: Path, messages, types=TYPES, **form) -> Path:

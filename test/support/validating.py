@@ -4,7 +4,7 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from gear_kinematics.bag import Message, MessagesByTopic, in_batches
+from gear_kinematics.bag import Message, MessagesByTopic
 from gear_kinematics.validation.arm import ArmValidator
 from gear_kinematics.validation.findings import sentence
 from gear_kinematics.validation.report import BagReport, FieldReport, TopicReport
@@ -30,7 +30,8 @@ def validate(
 
 def feed(validator: Validator | ArmValidator, messages: Iterable[Message], size: int) -> None:
     """Feed messages to a validator in batches of a size."""
-    batches = in_batches(messages, size)
+    every = [*messages]
+    batches = (every[begin : begin + size] for begin in range(0, len(every), size))
     validator.feed(MessagesByTopic(validator.topics, batch) for batch in batches)
 
 

@@ -69,8 +69,8 @@ EACH = pytest.mark.parametrize('kind', KINDS.values(), ids=KINDS)
 
 
 @cache
-def servo(kind: Kind) -> list[Message]:
-    return kind.recorded(read_bag(BAGS / 'servo_point_to_point'))
+def published(kind: Kind, name: str = 'servo_point_to_point') -> list[Message]:
+    return kind.recorded(read_bag(BAGS / name))
 
 
 def rows(messages, topic: str) -> list[int]:
@@ -83,7 +83,7 @@ def rows(messages, topic: str) -> list[int]:
     [('servo_point_to_point', 3000), ('constant_speed_3000rpm', 3000), ('driver_faults', 1265)],
 )
 def test_what_the_node_publishes_passes(kind, name, samples):
-    report = kind.validate(kind.recorded(read_bag(BAGS / name)))
+    report = kind.validate(published(kind, name))
     assert report.verdict == Verdict.PASS, report.findings
     for found in (topic_of(report, topic) for topic in kind.topics):
         # Without an effort, nothing is known of the loads.
@@ -131,7 +131,7 @@ DIFFERING = [
 
 @pytest.mark.parametrize(('kind', 'topic', 'place', 'change', 'name'), DIFFERING)
 def test_a_number_that_differs_is_found_and_located(kind, topic, place, change, name):
-    messages = servo(kind)
+    messages = published(kind)
     report = kind.validate(changed(messages, topic, place, change))
     [(where, field)] = [(t.topic, f) for t in report.topics for f in t.fields if not f.passed]
     assert (report.verdict, where, field.name) == (Verdict.FAIL, topic, name)
@@ -143,7 +143,7 @@ def test_a_number_that_differs_is_found_and_located(kind, topic, place, change, 
 
 
 def test_wrench_out_of_the_plane_is_no_message_of_the_topic():
-    report = LOADS.validate(changed(servo(LOADS), WRENCHES, -32, flipped))  # the force along z
+    report = LOADS.validate(changed(published(LOADS), WRENCHES, -32, flipped))  # the force along z
     assert report.verdict == Verdict.FAIL
     (fault,) = topic_of(report, WRENCHES).faults
     assert (fault.cause, fault.count) == (FindingCause.MALFORMED, 1)
@@ -151,25 +151,25 @@ def test_wrench_out_of_the_plane_is_no_message_of_the_topic():
 
 @EACH
 def test_missing_messages_are_found(kind):
-    dropped = rows(servo(kind), kind.topics[-1])[1500:1503]
-    report = kind.validate([m for k, m in enumerate(servo(kind)) if k not in dropped])
+    dropped = rows(published(kind), kind.topics[-1])[1500:1503]
+    report = kind.validate([m for k, m in enumerate(published(kind)) if k not in dropped])
     assert [topic.missing for topic in report.topics] == [0] * (1 + len(kind.topics)) + [3]
 
 
 @EACH
 def test_recording_that_lacks_inputs_passes(kind):
     """The node has seen the messages that a recorder loses, and its acceleration rests on them."""
-    inputs = rows(servo(kind), ROTOR)
+    inputs = rows(published(kind), ROTOR)
     lost = {*inputs[1000:1010], inputs[2000]}
-    report = kind.validate([m for k, m in enumerate(servo(kind)) if k not in lost])
+    report = kind.validate([m for k, m in enumerate(published(kind)) if k not in lost])
     assert report.verdict == Verdict.PASS, report.findings
 
 
 @EACH
 @pytest.mark.parametrize('share', [0.2, 0.65])
 def test_recording_may_begin_at_any_time(kind, share):
-    begin = rows(servo(kind), ROTOR)[round(share * 3000)]
-    report = kind.validate(servo(kind)[begin:])
+    begin = rows(published(kind), ROTOR)[round(share * 3000)]
+    report = kind.validate(published(kind)[begin:])
     assert report.verdict == Verdict.PASS, report.findings
     assert topic_of(report, kind.topics[0]).compared >= (1.0 - share) * 3000 - 1
 
@@ -180,7 +180,7 @@ def test_homing_interrupts_no_loads(number):
 
     The rotor stands at its zero when the message of the first number comes.
     """
-    inputs = [m for m in servo(HEAVY) if m[0] == ROTOR]
+    inputs = [m for m in published(HEAVY) if m[0] == ROTOR]
     both = OUTPUT, '/body_poses'
     report = HEAVY.validate(HEAVY.recorded(inputs, besides=both, home_after=number))
     assert report.verdict == Verdict.PASS, report.findings
@@ -188,17 +188,17 @@ def test_homing_interrupts_no_loads(number):
 
 def test_loads_of_another_preload_fail():
     other = LOADS._replace(config=replace(BRACED, preload=1.6))
-    report = other.validate(servo(LOADS))
+    report = other.validate(published(LOADS))
     assert report.verdict == Verdict.FAIL
     assert not topic_of(report, BRANCHES).passed
 
 
 def test_another_calibration_is_found_and_none_is_named():
-    report = CORRECTED._replace(made=replace(MADE, constant=2e-5)).validate(servo(CORRECTED))
+    report = CORRECTED._replace(made=replace(MADE, constant=2e-5)).validate(published(CORRECTED))
     assert report.verdict == Verdict.FAIL
     assert topic_of(report, STATE).fields[0].max_error == pytest.approx(1e-5)
     assert topic_of(report, INTERVAL).passed
-    report = CORRECTED._replace(made=None).validate(servo(CORRECTED))
+    report = CORRECTED._replace(made=None).validate(published(CORRECTED))
     assert (report.verdict, len(report.topics)) == (Verdict.PASS, 2)
     assert texts(report) == ['the corrected output is not judged: no calibration is given']
 
@@ -206,13 +206,13 @@ def test_another_calibration_is_found_and_none_is_named():
 @pytest.mark.parametrize('recorded', [[], [STATE]])
 def test_only_the_topics_that_were_recorded_are_judged(recorded):
     lacking = {STATE, INTERVAL}.difference(recorded)
-    report = CORRECTED.validate([m for m in servo(CORRECTED) if m[0] not in lacking])
+    report = CORRECTED.validate([m for m in published(CORRECTED) if m[0] not in lacking])
     assert report.verdict == Verdict.PASS
     assert [topic.topic for topic in report.topics] == [OUTPUT, '/body_poses', *recorded]
 
 
 def test_calibration_that_was_set_later_leaves_the_rest_judged():
-    recorded = servo(CORRECTED)
+    recorded = published(CORRECTED)
     set_at = recorded[len(recorded) // 2][1]
     messages = [m for m in recorded if m[0] not in CORRECTED.topics or m[1] > set_at]
     report = CORRECTED.validate(messages)
