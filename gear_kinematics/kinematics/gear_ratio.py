@@ -10,7 +10,7 @@ from types import ModuleType
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from gear_kinematics.kinematics.rotor_turns import (
     BELOW_HALF,
@@ -21,8 +21,25 @@ from gear_kinematics.kinematics.rotor_turns import (
 )
 
 _TEXT = re.compile(r'[-+]?\d{1,16}(/\d{1,16}|\.\d{1,16})?', re.ASCII)
+MOST_TURNS = 2**52
+"""Added to the turns of an angle up to `LARGEST_ANGLE`, these stay below 2^53, up to which a
+float64 holds every integer exactly."""
 _LARGEST_PRODUCT = 2**53
 """Greatest numerator × denominator for which the turns computed below are exact in float64."""
+
+
+def whole_turns(turns: ArrayLike) -> NDArray[np.float64]:
+    """Convert numbers of turns to float64.
+
+    Raises:
+        ValueError: if one is not an integer up to ±`MOST_TURNS`.
+    """
+    array = np.asarray(turns, np.float64)
+    # Values that are not finite give NaN, which is true.
+    if np.fmod(array, 1.0).any() or largest(array) > MOST_TURNS:
+        given = np.array2string(array, threshold=4)
+        raise ValueError(f'rotor_turns must be integers up to ±2^52, not {given}')
+    return array
 
 
 class GearRatio(Fraction):

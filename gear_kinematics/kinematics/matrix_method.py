@@ -12,9 +12,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gear_kinematics.kinematics.gear_ratio import whole_turns
 from gear_kinematics.kinematics.mechanism import Mechanism
 from gear_kinematics.kinematics.motion import MotionState
-from gear_kinematics.kinematics.rotor_turns import TURN, whole_turns
+from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.kinematics.transforms import (
     cam_translation,
     output_turn,

@@ -17,8 +17,9 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gear_kinematics.kinematics.gear_ratio import whole_turns
 from gear_kinematics.kinematics.mechanism import Mechanism
-from gear_kinematics.kinematics.rotor_turns import TURN, split_turns, whole_turns
+from gear_kinematics.kinematics.rotor_turns import TURN, split_turns
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from types import ModuleType
 from typing import Any, NamedTuple, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 TURN = 2.0 * math.pi
 TURN_TAIL = 2.4492935982947064e-16  #: 2π - TURN: the rounding error of TURN
@@ -22,9 +22,6 @@ LARGEST_ANGLE = 2**51 * TURN
 quotient add up to at most 3/8 of a turn, less than the half that rounding to the nearest allows.
 The spacing of float64 is at most 2 rad here; from 2^54 rad = 1.8e16 rad on it is 4 rad, more than
 half a turn, so that an angle within the turn has no meaning."""
-MOST_TURNS = 2**52
-"""Added to the turns of an angle up to `LARGEST_ANGLE`, these stay below 2^53, up to which a
-float64 holds every integer exactly."""
 _MANY_TURNS = 2**25 * TURN  # rad; fewer turns times _TURN_HIGH or _TURN_LOW fit into 53 bits
 _TURN_HIGH = math.floor(TURN * 2.0**24) / 2.0**24
 _TURN_LOW = TURN - _TURN_HIGH
@@ -134,20 +131,6 @@ def largest(values: NDArray[np.float64]) -> np.float64:
     return magnitude
 
 
-def whole_turns(turns: 'ArrayLike') -> NDArray[np.float64]:
-    """Convert numbers of turns to float64.
-
-    Raises:
-        ValueError: if one is not an integer up to ±`MOST_TURNS`.
-    """
-    array = np.asarray(turns, np.float64)
-    # Values that are not finite give NaN, which is true.
-    if np.fmod(array, 1.0).any() or largest(array) > MOST_TURNS:
-        given = np.array2string(array, threshold=4)
-        raise ValueError(f'rotor_turns must be integers up to ±2^52, not {given}')
-    return array
-
-
 def repeated(count: int, period: float) -> RotorPosition:
     """Multiply a period, rad, by a count, exactly except for one rounding of the angle.
 
@@ -210,7 +193,7 @@ class RotorTurns:
         """By how many the gaps too long for the speed outnumber the others; their mean, s."""
         self.periods = 0  #: number of periods that are added to the readings
         self._offset = 0, 0, 0.0  # periods, and their sum as turns and angle, rad
-        self._reading, self._stamp = 0.0, 0
+        self._reading, self._stamp, self._changed = math.nan, 0, 0
         self.narrowed = 0  # ns, the stamp after the last gap whose turn depends on velocities
         self._velocity: float | None = None
         self._since_gap: tuple[_Speed, float, float, float] | None = None
@@ -235,21 +218,28 @@ class RotorTurns:
 
     def set_back(self, time: int) -> None:
         """Note that the clock of the stamps was set back by a time, ns, since the last sample."""
-        self._stamp -= time
+        self._stamp, self._changed = self._stamp - time, self._changed - time
 
-    def update(self, position: float, stamp: int, velocity: float | None = None) -> None:
+    def update(
+        self, position: float, stamp: int, velocity: float | None = None, lasts: float = 0.0
+    ) -> None:
         """Process the encoder's next sample.
 
         Args:
             position: rad, up to ±`LARGEST_ANGLE`; if it repeats, in any range.
             stamp: ns, not earlier than the last.
             velocity: rad/s, or None if unknown.
+            lasts: ns, for which the driver repeats each reading; 0: it does not.
         """
+        if position == self._reading and stamp < self._stamp + lasts:
+            return
         period = self.period
         few = -_MANY_TURNS < position < _MANY_TURNS
         split: tuple[int, float] = _split_few(position) if few else split_turns(position)
         if period and self._position is not None:
-            elapsed = (stamp - self._stamp) * 1e-9
+            elapsed, longer = (stamp - self._stamp) * 1e-9, (stamp - self._changed) * 1e-9
+            if 2.0 * self.max_speed * longer < period:  # no turn hides behind a repeated reading
+                elapsed = longer
             expected, width = self._possible_turn(elapsed, self._velocity, velocity)
             apparent, since = position - self._reading, self._since_gap
             more = round((expected - apparent) / period)
@@ -285,6 +275,7 @@ class RotorTurns:
             self.referenced = False
             self.unknown_gaps += 1
         self._position = split
+        self._changed = self._changed if position == self._reading else stamp
         self._reading, self._stamp, self._velocity = position, stamp, velocity
 
     def _possible_turn(self, elapsed: float, before: _Speed, after: _Speed) -> tuple[float, float]:

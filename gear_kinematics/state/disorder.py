@@ -39,6 +39,11 @@ class Disorder:
             return self._too_fast or self.step
         return Condition.CLOCKS_ALTERNATE(count=self.close_resets)
 
+    def add(self, reading: Late) -> None:
+        """Note a reading that is older than the last sample."""
+        if not self.readings or reading[0] != self.readings[-1][0]:
+            self.readings.append(reading)
+
     def compare(self, stamps: Array, received: Array) -> None:
         """See whether stamps rise faster than times of reception, (n,), ns, bursts apart."""
         time = np.ptp(received) if len(received) >= _FEWEST else 0

@@ -28,6 +28,7 @@ from gear_kinematics.state.reach import (
     STALEST,
     HeldUp,
     Reading,
+    Repeats,
     RotorLimits,
     single_precision_step,
 )
@@ -76,6 +77,7 @@ class Plausibility:
         self._moving: Reading = _UNKNOWN  # the last one before a standstill
         self._stamp = 0  # ns, of the last believed reading with the last position
         self._repeated = 0  # ns, the last stamp of several readings
+        self.repeats = Repeats()
         self._held_up = HeldUp()
         self.noise = 2.0 * COARSEST
         """rad, of a reading: twice the resolution of the encoder, which is the smallest step of
@@ -179,7 +181,8 @@ class Plausibility:
         if self._doubted and self._doubted[-1][1] == before:
             repeated = self._doubted[-1][0]
         moving = last if last_step else self._moving
-        stood = repeated - changed > self._repeats and moving[1] == changed and not self.period
+        stood = repeated - changed > self._repeats and moving[1] == changed
+        stood &= 2e-9 * self.limits.speed * (stamp - changed) < self.limits.period
         if stood and self.limits.continues(moving, repeated, stamp, step, self.noise):
             self._repeats, last = _LONGER * (repeated - changed), moving
             last_step, last_span = last[2:]
@@ -199,7 +202,10 @@ class Plausibility:
         clear = 2.0 * (high - low) < self.period
         self.wraps.counted = round((position - before - step) / self.period) if clear else 0
         self.wraps.earlier = former[2:] if self.wraps.counted else (0.0, 0)
-        for size in (abs(step), abs(step - last_step)):
+        if self.period and abs(step) > self.noise:
+            self.repeats.note(stamp - changed, repeated - changed, self.limits)
+        former_step = moving[2] if self.period else last_step
+        for size in (abs(step), abs(step - former_step)):
             if EQUAL < size < 0.5 * self.noise:
                 self.noise = max(2.0 * size, FLOOR)
         span = stamp - changed
@@ -216,7 +222,7 @@ class Plausibility:
         self._stamp = stamp
         self._look_always()
         usual = (span + last_span) // 2
-        if usual <= LONGEST_NS and not self.wraps.counted:
+        if usual <= LONGEST_NS and not (self.wraps.counted or self.repeats.lasted):
             shortest, longest = (1.0 - REGULAR) * usual, (1.0 + REGULAR) * usual
             if shortest <= span <= longest:
                 # A step that differs tells of the resolution, as long as that is coarse.

@@ -21,6 +21,7 @@ _LONGEST_REPEAT = 1.0  # s, for which a driver repeats a reading while the rotor
 _REPEATED = 0.05  # of the way meanwhile: what it may differ by from that at a steady speed
 _STEADY = 0.25  # of the speed: what it may change by meanwhile
 _UNEVEN = 0.25  # of a speed: what it may differ by, as readings are older than their stamps
+_OFTEN = 5  # repeated readings in a row before a step: they are those of the driver
 _FASTEST = 250_000  # ns between the readings of a driver; those of a burst can be closer
 _CLOSE = 750_000  # ns, below which readings can be those of a burst, rather than of a fast driver
 
@@ -190,6 +191,26 @@ class RotorLimits(NamedTuple):
         high = min(way, max(0.0, min(self.speed, fast) * time + gained))
         low = max(-way, min(0.0, max(-self.speed, slow) * time - gained))
         return low - noise, high + noise
+
+
+class Repeats:
+    """Finds for how long a driver repeats each reading, where that can hide a turn."""
+
+    def __init__(self) -> None:
+        self.lasts = 0.0  # ns; 0 if no turn can be hidden, or readings are not repeated
+        self.lasted: list[float] = []  # ns, for which the latest ones were valid
+
+    def note(self, span: int, repeated: int, limits: RotorLimits) -> None:
+        """Take a step that is greater than the noise, from a reading that a driver may repeat.
+
+        That reading came `span` before the step, and was repeated for a time, both in ns.
+        """
+        if span < self.lasts or not repeated:
+            self.lasted, self.lasts = [], self.lasts if span >= self.lasts else 0.0
+        elif 2e-9 * limits.speed * span >= limits.period:
+            self.lasted = [*self.lasted[1 - _OFTEN :], 0.5 * (span + repeated)]
+            if len(self.lasted) == _OFTEN:
+                self.lasts = min(self.lasted)
 
 
 def single_precision_step(*positions: float) -> float:

@@ -297,7 +297,7 @@ class RotorInput:
             if self.plausibility.wraps.period:  # then no slope of the positions was a speed
                 self.velocity_field = VelocityField(float(1 / self._parameters.gear.gear_ratio))
         if stamp < (field := self.velocity_field).quiet_until:
-            self.turns.update(position, stamp, velocity)
+            self.turns.update(position, stamp, velocity, self.plausibility.repeats.lasts)
             field.add(velocity)
         else:
             velocity = self._compare(stamp, position, velocity)
@@ -315,7 +315,8 @@ class RotorInput:
     def _compare(self, stamp: int, position: float, velocity: float | None) -> float | None:
         """Update the turns; returns the velocity, unless the positions contradict it."""
         field = self.velocity_field
-        self.turns.update(position, stamp, None if field.contradicts else velocity)
+        given = None if field.contradicts else velocity
+        self.turns.update(position, stamp, given, self.plausibility.repeats.lasts)
         if stamp < field.due:
             field.add(velocity)
             return None
@@ -337,9 +338,7 @@ class RotorInput:
         if stamp == last:
             self.duplicates += 1
         elif last - stamp <= CLOCK_RESET:
-            readings = self.disorder.readings
-            if not readings or stamp != readings[-1][0]:
-                readings.append(reading)
+            self.disorder.add(reading)
             raise RejectedInputError(Rejection.OUT_OF_ORDER)
         else:
             self.resets += 1

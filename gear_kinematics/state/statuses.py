@@ -34,7 +34,8 @@ _EFFORT = (
 )
 _TOO_SELDOM = (
     '{rate:g} Hz is too slow to count turns at a max_rotor_speed of {limit:.4g} rad/s: lower it '
-    'to {speed:.3g} rad/s or less, or let the driver send at {least:.0f} Hz or more{other}'
+    'to {speed:.3g} rad/s or less, or let the driver read and send at {least:.0f} Hz or '
+    'more{other}'
 )
 _PEAK_TO_PEAK = 'peak to peak {angle:.3g} rad'
 

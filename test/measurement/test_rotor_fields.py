@@ -204,7 +204,7 @@ def test_other_joints_of_the_same_time_repeat_no_stamp():
 @pytest.mark.parametrize(
     ('rate', 'velocity', 'asked'),
     [
-        (50, [], ['.*, or let the driver send at 259 Hz or more, or send velocities']),
+        (50, [], ['.*, or let the driver read and send at 259 Hz or more, or send velocities']),
         (50, [15.0], []),
         (
             50,
@@ -214,7 +214,7 @@ def test_other_joints_of_the_same_time_repeat_no_stamp():
                 '50 Hz is too slow .* to 126 rad/s or less, .*, or send velocities',
             ],
         ),
-        (20, [15.0], ['20 Hz is too slow .* or let the driver send at 259 Hz or more']),
+        (20, [15.0], ['20 Hz is too slow .* or let the driver read and send at 259 Hz or more']),
         (500, [], []),
     ],
 )

@@ -621,15 +621,40 @@ def test_a_reading_that_a_driver_repeats_while_the_rotor_turns_on_is_no_jump(
     assert after == pytest.approx(angles[end + 3 :].tolist())
 
 
+@pytest.mark.parametrize('period', [0.0, 500.0])
 @pytest.mark.parametrize(('rate', 'repeated'), [(20, 2), (50, 2), (50, 3), (100, 3), (200, 4)])
-def test_a_driver_that_publishes_more_often_than_it_reads_is_believed(rate, repeated):
+def test_a_driver_that_publishes_more_often_than_it_reads_is_believed(rate, repeated, period):
+    parameters = replace(MULTI, rotor_encoder_range=period)
     times = np.arange(4 * rate) // repeated * repeated / rate
     angles = 60.0 * np.cos(6.0 * np.maximum(0.0, times - 0.5))
-    data = messages(np.arange(4 * rate) / rate, angles)
-    rotor, _ = fed(MULTI, data)
+    readings = angles % period if period else angles
+    data = messages(np.arange(4 * rate) / rate, readings)
+    rotor, samples = fed(parameters, data)
     assert complaints(rotor) == ({}, None, None)
-    fed_on = messages(4.0 + np.arange(4) / rate, [angles[-1] + 150.0] * 4)
-    assert fed(MULTI, data + fed_on)[0].plausibility.jumped
+    assert rotor.turns.unknown_gaps == 0
+    turned = [TURN * s.position.turns + s.position.angle for s in samples]
+    assert np.diff(turned) == pytest.approx(np.diff(angles))
+    fed_on = messages(4.0 + np.arange(4) / rate, [readings[-1] + 150.0] * 4)
+    assert fed(parameters, data + fed_on)[0].plausibility.jumped
+
+
+@pytest.mark.parametrize(('limit', 'repeated', 'hides'), [
+    (140.0, 1, False), (140.0, 4, True), (35.0, 4, False), (140.0, 2, True),
+])  # fmt: skip
+def test_turns_are_unknown_that_hide_behind_readings_which_a_driver_repeats(
+    limit, repeated, hides
+):
+    times = np.arange(200) // repeated * repeated / 50
+    angles = 0.9 * min(limit, math.pi * 50) * times + 0.01 * np.sin(5.0 * times)
+    rotor = RotorInput(replace(SINGLE, max_rotor_speed=limit))
+    data = messages(np.arange(200) / 50, angles % TURN)
+    rotor.accept(data[0], int)
+    rotor.home(0.0)
+    for each in data[1:]:
+        rotor.accept(each, int)
+    seldom = Condition.TOO_SELDOM(rate=50 / repeated, limit=limit, speed=ANY, least=ANY, other=ANY)
+    assert rotor.referenced is not hides
+    assert rotor.why_lost == (seldom if hides else None)
 
 
 def test_jumps_after_a_rest_are_found_where_a_driver_had_a_lower_rate_before():
