@@ -15,11 +15,12 @@ from gear_kinematics.measurement.recording import MOST_MESSAGES
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import counted
+from gear_kinematics.state.belief import VelocityMeaning
 from gear_kinematics.state.effort_field import EffortField
 from gear_kinematics.state.reach import FLOOR
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition, Fact
-from gear_kinematics.state.velocity_field import VelocityField, VelocityMeaning
+from gear_kinematics.state.velocity_field import VelocityField
 from gear_kinematics.state.wraps import too_seldom
 from gear_kinematics.wire.batches import Array, JointStateBatch, JointStates, decode_joint_states
 from gear_kinematics.wire.cdr import SECOND

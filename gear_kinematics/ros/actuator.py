@@ -8,9 +8,9 @@ from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.belief import VelocityMeaning
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.loads import PreloadMonitor
-from gear_kinematics.state.velocity_field import VelocityMeaning
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.cdr import SECOND
 

@@ -6,12 +6,12 @@ may be that of a step of a coarse encoder, or of a vibration.
 """
 
 import math
-from enum import StrEnum
 from itertools import accumulate, pairwise
 from operator import mul
 
 import numpy as np
 
+from gear_kinematics.state.belief import VelocityMeaning
 from gear_kinematics.state.disorder import spaced
 from gear_kinematics.state.reach import FLOOR
 from gear_kinematics.state.statuses import Condition, Fact
@@ -36,29 +36,13 @@ _FEW = 4  # velocities between readings, of which the mean is that of an oscilla
 _RELATED = 0.5  # the correlation that a motion has with its velocities, at least
 _IMPOSSIBLE = 30.0  # times the travel: any more between two readings is no velocity
 _LONGEST = 10  # readings in which velocities that go on show a position that is stuck
+_STUCK = 1.5  # times a velocity that does not change: more than its rounding and a held-up driver
+_ROUNDING = 1e-9  # of a velocity: by which a mean of equal ones may differ
 _FILTERED = 0.5  # share by which what a filter leaves of a motion may differ from a projection
 _LATE, _EXPLAINED = 0.03, 0.9  # s, square of a correlation, from which a delay is reported
 _CHANGES = 4.0
 """Noises of a reading: least change of the travels that shows a delay. At a steady speed,
 an error of the positions, such as one of each turn, looks like a delay of half of `SPAN`."""
-
-
-class VelocityMeaning(StrEnum):
-    """The content of a field with velocities."""
-
-    UNDECIDED = ''
-    RIGHT = 'rad/s'
-    ZERO = '0'
-    RPM = 'rpm'
-    TURNS = 'turns/s'
-    DEGREES = 'deg/s'
-    OUTPUT = 'the velocity of the output'
-    OPPOSITE = 'the velocity with the opposite sign'
-    OF_TURNS = 'rad/s, and the positions turns'
-    OF_DEGREES = 'rad/s, and the positions degrees'
-    OF_OUTPUT = 'those of the rotor, and the positions those of the output'
-    UNKNOWN = 'an unknown quantity'
-
 
 _POSITIONS = {VelocityMeaning.OF_TURNS, VelocityMeaning.OF_DEGREES, VelocityMeaning.OF_OUTPUT}
 
@@ -197,6 +181,8 @@ class VelocityField:
             if len(readings) > 1:
                 self._follow(travel, noise)
         del readings[:-_MOST]
+        if not self.contradicts and self._stuck(travel):
+            self._decide(math.nan, VelocityMeaning.STUCK)
         for stride in _STRIDES:
             if self._compare(travel, stride):
                 break
@@ -215,7 +201,8 @@ class VelocityField:
         stuck = goes_on and abs(places[-1]) >= _TRAVEL and self.finding is VelocityMeaning.RIGHT
         stuck |= max(places) - min(places) - abs(places[-1]) >= _TRAVEL and not self.contradicts
         if stuck or abs(expected) > _IMPOSSIBLE * (abs(turn) + _TRAVEL):
-            self._decide(expected / turn if turn else math.inf, certain=True)
+            factor = expected / turn if turn else math.inf
+            self._decide(factor, self._meaning_of(factor))
 
     def _follow(self, travel: float, noise: float) -> None:
         """Decide on a motion of more than `travel`, rad, however unsteady, of the latest readings.
@@ -251,6 +238,17 @@ class VelocityField:
             self._begin_block()
         elif self._turns > _READINGS * _STRIDES[-1]:
             self._begin_block()
+
+    def _stuck(self, travel: float) -> bool:
+        """Return whether the velocities keep a value far from the speed, which changes."""
+        value, off = self._last or 0.0, list[float]()
+        for (since, start, _), (stamp, end, velocity) in pairwise(self._readings):
+            off.append((end - start) / (stamp - since) * SECOND - value)
+            if abs(velocity - value) > _ROUNDING * abs(value):
+                off.clear()
+        least = max(_STUCK * abs(value), travel * SECOND / (_READINGS * SPAN))
+        change = max(off) - min(off) if value and len(off) >= _READINGS else 0.0
+        return change >= least <= max(map(abs, off))
 
     def _unrelated(self) -> bool:
         """Return whether the velocities of all readings, nearly 5 s, are those of no such motion.
@@ -329,9 +327,9 @@ class VelocityField:
             self._decide(factor)
         return True
 
-    def _decide(self, factor: float, *, certain: bool = False) -> None:
+    def _decide(self, factor: float, certain: VelocityMeaning | None = None) -> None:
         """Change the finding if it is certain, or two comparisons in a row find the same."""
-        found, stamp = self._meaning_of(factor), self._readings[-1][0]
+        found, stamp = certain or self._meaning_of(factor), self._readings[-1][0]
         if certain or found is self._candidate:
             self.decided = stamp if self.decided is None else self.decided
             if self.contradicts and found is VelocityMeaning.RIGHT:

@@ -15,10 +15,10 @@ from validating import validate
 from gear_kinematics.bag import Message
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
+from gear_kinematics.state.belief import VelocityMeaning
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.monitors import Connections
 from gear_kinematics.state.statuses import Condition, Fact
-from gear_kinematics.state.velocity_field import VelocityMeaning
 from gear_kinematics.validation.causes import FindingCause
 
 MULTI = NodeParameters.load()

@@ -72,6 +72,20 @@ def test_velocities_that_become_wrong_are_found_after_a_pause_of_a_second(right)
     assert rotor.velocity_field.contradicts
 
 
+@pytest.mark.parametrize(('period', 'step', 'named'), [
+    (0.5, 0.0, 'stuck at one value'), (0.9, 0.0, 'stuck at one value'),
+    (5.0, 25.0, None),  # its steps last for up to 0.9 s
+])  # fmt: skip
+def test_velocities_that_freeze_while_the_speed_changes_are_named(period, step, named):
+    def motion(time):
+        speed, frozen = (60.0 * math.cos(TURN / period * t) for t in (time, min(time, 1.3)))
+        position = 60.0 * period / TURN * math.sin(TURN / period * time)
+        return position, math.trunc(speed / step) * step if step else frozen
+
+    meaning = heard(motion, 200, 3.5)[0].velocity_field.meaning
+    assert (meaning and meaning.values['meaning']) == named
+
+
 @pytest.mark.parametrize('bits', [16, 32])
 def test_negative_velocities_that_are_sent_as_unsigned_are_found_at_once(bits):
     """As from the register of a servo, in steps of 0.229 rpm."""
