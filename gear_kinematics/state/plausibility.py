@@ -56,8 +56,7 @@ class Plausibility:
         The limits are in rad/s and rad/s².
         """
         self.jumps = 0
-        self.jump: Fact | None = None
-        """The latest, as far as it was not expected; of an encoder that repeats, in its range."""
+        self.jump: Fact | None = None  # the latest; of an encoder that repeats, in its range
         self.restrict(max_speed, max_acceleration, period)
         self.reset()
 
@@ -262,7 +261,9 @@ class Plausibility:
             if speed := self.limits.least_speed(*known):
                 way = speed * time - 0.5 * self.limits.acceleration * time * time
                 if way > self.noise:
-                    return self._doubt(position, stamp)
+                    times = self._stamp, stamp, self._last[3]
+                    sent_before = not self._doubted and self.repeats.in_burst(*times)
+                    return BELIEVED if sent_before else self._doubt(position, stamp)
             if self._last[2] and time > 2.0 * speed / self.limits.acceleration:
                 self._moving = self._last
                 self._last = *self._last[:2], 0.0, 0

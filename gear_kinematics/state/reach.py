@@ -7,6 +7,7 @@ and are as old as the interval before it.
 """
 
 import math
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from gear_kinematics.kinematics.rotor_turns import TURN
@@ -171,6 +172,8 @@ class RotorLimits(NamedTuple):
             late = held_up.late(changed, stamp)
             stale = _stale(last, former, late)
             before = held_up.late(changed - span, changed)
+            if before >= span:  # spans within a burst do not show how old its last reading was
+                stale = max(stale, min(STALEST, 1.25e-9 * held_up.usual or STALEST))
             # Stamps of a burst tell no speed, those before it do.
             if late >= stamp - changed or before >= span:
                 since = (stamp - held_up.end + held_up.length) * 1e-9
@@ -193,12 +196,13 @@ class RotorLimits(NamedTuple):
         return low - noise, high + noise
 
 
+@dataclass
 class Repeats:
-    """Finds for how long a driver repeats each reading, where that can hide a turn."""
+    """Finds for how long a driver repeats each reading, where that can hide a turn or a pause."""
 
-    def __init__(self) -> None:
-        self.lasts = 0.0  # ns; 0 if no turn can be hidden, or readings are not repeated
-        self.lasted: list[float] = []  # ns, for which the latest ones were valid
+    lasts: float = 0.0  # ns; 0 if no turn can be hidden, or readings are not repeated
+    lasted: list[float] = field(default_factory=list)  # ns, for which the latest ones were valid
+    _burst: int = 0  # ns: until when messages can be those of a burst that began with a repeat
 
     def note(self, span: int, repeated: int, limits: RotorLimits) -> None:
         """Take a step that is greater than the noise, from a reading that a driver may repeat.
@@ -211,6 +215,16 @@ class Repeats:
             self.lasted = [*self.lasted[1 - _OFTEN :], 0.5 * (span + repeated)]
             if len(self.lasted) == _OFTEN:
                 self.lasts = min(self.lasted)
+
+    def in_burst(self, last: int, stamp: int, usual: int) -> bool:
+        """Return whether a message that repeats a reading can be one of a burst after a pause.
+
+        It was sent before the pause, then, and does not show that the rotor stands. The last
+        message before, this one, and the usual time between different readings are in ns.
+        """
+        if self._burst < last and stamp - last > (1.0 + REGULAR) * usual:
+            self._burst = 2 * stamp - last
+        return stamp < self._burst
 
 
 def single_precision_step(*positions: float) -> float:

@@ -300,6 +300,20 @@ def test_readings_that_were_held_up_are_believed_at_each_phase_of_a_motion(first
         assert judge.judge(float(angle), START + int(stamp)) is BELIEVED
 
 
+@pytest.mark.parametrize('first', range(100, 106))
+@pytest.mark.parametrize(('rate', 'repeated', 'held'), [(500, 2, 7), (200, 3, 4), (200, 2, 12)])
+def test_readings_that_a_driver_repeats_are_believed_in_a_burst(rate, repeated, held, first):
+    times = np.arange(2 * rate) / rate
+    arrivals = times.copy()
+    arrivals[first : first + held] = times[first + held] - 5e-5 * np.arange(held, 0, -1)
+    read = times[np.arange(2 * rate) // repeated * repeated]
+    angles = 300.0 * read + 5.0 * np.sin(20.0 * read)
+    rotor, _ = fed(MULTI, messages(arrivals, angles))
+    assert complaints(rotor) == ({}, None, None)
+    wrong = np.where(np.arange(2 * rate) >= first + held // 2, angles + 60.0, angles)
+    assert fed(MULTI, messages(arrivals, wrong))[0].plausibility.jumped
+
+
 @pytest.mark.parametrize('period', [2_000_000, 500_000])
 def test_a_wrong_reading_in_a_second_burst_is_out_of_reach(period):
     """The driver is held up twice, for 11 ms; the rotor can turn 2.9 rad within 4.5 ms."""
