@@ -975,9 +975,10 @@ def test_every_refusal_ends_with_a_command_line_that_works(tmp_path, gear, refer
             read(path, gear, given, both=as_recorded and not ramps)
         recording = read(path, gear, followed(told.value))
         assert (recording.locked is not None) == ramps
-    sure = {'both motors', 'two torques', 'a sensor of three axes', 'moments of a hexapod'}
-    if 'counts' in untold or 'degrees' in untold or untold in sure:
+    if untold in {'two torques', 'a sensor of three axes', 'moments of a hexapod'}:
         assert_measured(recording, gear)
+    elif 'counts' in untold or 'degrees' in untold or untold == 'both motors':
+        assert_followed(recording.both)
 
 
 def test_advice_repeats_the_options_that_were_given(tmp_path, gear, reference):
