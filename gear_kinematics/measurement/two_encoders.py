@@ -48,10 +48,13 @@ _LAG = 6e-5
 1/ω² of an output that oscillates at 20 Hz on the springs of its gear, as robot arms do."""
 _SLOPE, _DIRECTION, _LATE = 0, 2, 3  # columns of the fit; 1 is the offset
 _LEAST_NOISE = 1e-7  # rad, the step of an encoder of 26 bits; below it, rounding falsifies ratios
-_LAGS, _GROWS = 16, 1.2
-"""Lags in a recording, and growth of the squared change from one lag to two: it is 2 for a zero
-that walks at random, and about 1 for noise. Errors that are not fitted and repeat four times in
-the recording grow as a walk, and widen the ±."""
+_PARTS, _LAGS, _EVIDENT = 256, (16, 32, 64, 128, 256), 64
+"""Parts of a recording between which its zero may step; lags in a recording; number up to which
+lags are tried for the one at which the zero walks most, since each shows a walk by chance only."""
+_GROWS, _WALKS = 1.2, 1.6
+"""Growth of the squared change from one lag to two: it is 2 for a zero that walks at random, at
+least 1.6 for one that the fit does not follow, and about 1 for noise. Errors that are not fitted
+and repeat up to sixteen times in the recording grow as a walk, and widen the ±."""
 _ROUNDS = 5  # estimates of the noise, each from the residuals before; after 3, ± is 50 % off
 
 
@@ -113,8 +116,7 @@ class EncoderFit:
         for _ in range(_ROUNDS):
             self._equations.noise = max(_noise(left), _LEAST_NOISE**2)
             left = self._equations.residual(self._model) @ terms
-        self._terms, self._left, self._slope = terms, left, slope
-        self._runs = 1 + int(np.count_nonzero(np.diff(signs[kept])))
+        self._terms, self._slope = terms, slope
 
     @cached_property
     def _found(self) -> Array:
@@ -190,18 +192,26 @@ class EncoderFit:
             if abs(estimate.value) >= times * estimate.expanded
         ]
 
+    @cached_property
+    def _parts(self) -> tuple[Array, Array]:
+        """Sums of the terms over successive parts, (terms, parts), and samples in each."""
+        count = self._terms.shape[1]
+        bounds = np.linspace(0, count, min(_PARTS, count) + 1).astype(int)
+        return np.add.reduceat(self._terms, bounds[:-1], axis=1), np.diff(bounds)
+
     def _wander(self, chosen: Sequence[int], place: int, unit: float) -> Component:
         """Uncertainty of a coefficient, times a unit, if the zero walks at random as residuals do.
 
-        A step of the zero changes the coefficient by the sum of the weights of all later samples.
+        The walk is a sum of independent steps, one before each part. All are fitted, too, for the
+        fit follows a share of them, so that its residual shows only the rest.
         """
-        walk = _walk(self._equations.residual(chosen) @ self._terms)
-        if walk:  # a drift that was clear is likely to be a part of it
-            walk = max(walk, _walk(self._left))
-        # Terms that repeat with each run follow a share of the walk.
-        walk *= self._runs / max(self._runs - 1, 1)
-        weights = self._equations.weights(chosen, place) @ self._terms
-        return Component(unit * math.sqrt(walk * np.sum(np.cumsum(weights) ** 2)), _LAGS)
+        sums, counts = self._parts
+        steps = np.tri(len(counts)).T / math.sqrt(len(counts))
+        found = self._equations.solve_for(chosen, sums[[*chosen]] @ steps.T)
+        left = steps - found.T @ (sums[[*chosen]] / counts)
+        walk = _walk(self._equations.residual(chosen) @ sums / counts, left)
+        changes = found[[*chosen].index(place)]
+        return Component(unit * math.sqrt(walk * np.sum(changes**2)), _LAGS[0])
 
     def lost_motion(self, *others: Component, delay: bool, even: bool = False) -> Estimate:
         """Estimate the angle lost on a reversal, rad, separate from a delay or including it.
@@ -298,8 +308,27 @@ def _noise(residual: Array) -> float:
     return most
 
 
-def _walk(residual: Array) -> float:
-    """Variance of the steps, from one sample to the next, of a zero that walks at random, rad²."""
-    lag = len(residual) // _LAGS
-    near, far = (float(np.mean((residual[k:] - residual[:-k]) ** 2)) for k in (lag, 2 * lag))
-    return max(far - _GROWS * near, 0.0) / ((2.0 - _GROWS) * lag)
+def _walk(residual: Array, left: Array) -> float:
+    """Variance of a random walk of the zero over a recording, rad².
+
+    The residual is (parts,), rad; `left`, (steps, parts), is what the fit leaves of the steps of a
+    walk of variance 1. Both are compared at lags up to which that still grows as a walk.
+    """
+    changes = [_squared_changes(residual, len(residual) // lags) for lags in _LAGS]
+    walks = list[float]()
+    for place, lags in enumerate(_LAGS):
+        near, far = _squared_changes(left, len(residual) // lags)
+        if far >= _WALKS * near and not (walks and lags > _EVIDENT):
+            # What is as large at a shorter lag is noise, or an error that repeats.
+            noise = max(change for change, _ in changes[place:])
+            walks.append((changes[place][1] - _GROWS * noise) / (far - _GROWS * near))
+    if not walks:  # the fit follows all of a walk, and leaves nothing to compare with
+        near, far = changes[0]
+        walks.append(_LAGS[0] * (far - _GROWS * near) / (2.0 - _GROWS))
+    return max(0.0, *walks)
+
+
+def _squared_changes(values: Array, lag: int) -> list[float]:
+    """Mean squares of the changes of the last axis at a lag and at twice the lag, rows added."""
+    changes = (values[..., k * lag :] - values[..., : -k * lag] for k in (1, 2))
+    return [float(np.sum(np.mean(change**2, axis=-1))) for change in changes]

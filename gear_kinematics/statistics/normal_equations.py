@@ -117,12 +117,14 @@ class NormalEquations:
         factors[[*chosen]], factors[-1] = -self.solve(chosen, _WHOLE)[0], 1.0
         return factors
 
-    def weights(self, chosen: Sequence[int], place: int) -> Array:
-        """Factors of the columns whose sum weighs the samples for one coefficient, (size,)."""
-        places, weights = list(chosen), np.zeros(len(self._scale))
-        one = (np.array(places) == place) / self._scale[place]
-        weights[places] = np.linalg.solve(self.regular(places, _WHOLE)[0], one)
-        return weights / self._scale
+    def solve_for(self, chosen: Sequence[int], products: Array) -> Array:
+        """Coefficients of the fit of other errors to all blocks, (chosen, errors).
+
+        `products` are those of the chosen columns with these errors, (chosen, errors).
+        """
+        scale = self._scale[[*chosen], None]
+        solution = np.linalg.solve(self.regular(chosen, _WHOLE)[0], products / scale)
+        return np.asarray(solution / scale)
 
     def spreads(self, chosen: Sequence[int]) -> Array:
         """Standard uncertainties of the chosen coefficients by noise that is white, (chosen,)."""

@@ -160,6 +160,22 @@ def test_interval_contains_the_ratio_and_none_is_taken_wrongly(error):
     assert sum(inside) >= 17
 
 
+@pytest.mark.slow
+def test_a_zero_that_walks_at_random_is_in_the_interval():
+    """The fit follows most of a walk in three turns, and so shows little of it."""
+    inside, share = [], np.linspace(0.0, 1.0, 2000)
+    for seed in range(20):
+        random = np.random.default_rng(seed)
+        ideal = 20.0 * share + 1.5 * np.sin(3.0 * TURN * share)
+        walk = np.cumsum(random.normal(size=2000)) / math.sqrt(2000.0)
+        noise = 0.2 * random.normal(size=2000)
+        error = np.radians((3.0 * np.cos(ideal) + walk + noise) / 60.0)
+        found = estimate_ratio(-19.0 * ideal, ideal + error, 20.0 * share).measured
+        inside.append(abs(found.value + 19.0) <= found.expanded)
+    # With a walk as large as the residual shows, 6 of 20 are.
+    assert sum(inside) >= 17
+
+
 @pytest.mark.parametrize(('turns', 'most'), [(1.25, 2e-3), (5.0, 4e-4)])
 def test_over_more_than_a_turn_errors_of_a_degree_repeat(turns, most):
     random = np.random.default_rng(1)
