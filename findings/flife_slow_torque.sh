@@ -4,9 +4,9 @@
 #
 # Expected of SpectralData({'time_history': torque, 'dt': 1 / 2000}) of 600 s of a torque of 100 N·m RMS at 0.4 to 0.6
 # Hz: a spectrum with these 100 N·m, and by Narrowband, Dirlik or TovoBenasciutti about the life that Rainflow counts in
-# the same record, as for one of 100 Hz, where they are within 30 % of it. What happens: the spectrum is that of segments
-# of 1280 samples, here of 0.64 s, the mean of each of which is taken away. It has 30 N·m, and the shaft is given more
-# than 100 times its life; at 1 kHz about seven times. No warning.
+# the same record, as for one of 100 Hz, where they are within 30 % of it. What happens: the spectrum is that of
+# segments of 1280 samples, here of 0.64 s, the mean of each of which is taken away. It has 30 N·m, and the shaft is
+# given more than 100 times its life; at 1 kHz about seven times. No warning.
 # A sine of an amplitude of 100 N·m that is given as 'amplitude_spectrum' has an RMS of 100 N·m instead of 71. For a
 # torque that swings at 200 Hz and a little at 20 Hz, of which Rainflow counts 26 s, Low's method gives -21 s.
 # For us: let a segment, nperseg, last for ten swings, and compare the root of moments[0] with the RMS of the record.
