@@ -80,15 +80,16 @@ def rows_of(
 
     If they are `timed`, each has rows of its own where tables with other times were joined: few
     rows have all, as gaps are empty, or none has two new values, as gaps repeat the last ones.
-    So it has where a logger held its readings over several rows. A last row of sums is left out.
+    So it has where a logger held its readings over several rows: the first of them is used. A last
+    row of sums is left out.
     """
     together = np.all([*usable.values()], axis=0)
     if all(_ends_with_sum(values[together]) for values in series.values()):
         together[np.flatnonzero(together)[-1]] = False
-    own = _new(series)
-    if 2 * np.count_nonzero(together) < max(map(np.count_nonzero, usable.values())):
+    own = _new(series) if timed else {}
+    if timed and 2 * np.count_nonzero(together) < max(map(np.count_nonzero, usable.values())):
         own = usable
-    elif timed:
+    else:
         both = {role: values[together] for role, values in series.items() if role in _PAIRS}
         both = {role: values for role, values in both.items() if _PAIRS[role] in both}
         beside = {_PAIRS[role]: values for role, values in both.items()}
@@ -96,7 +97,7 @@ def rows_of(
             own = dict.fromkeys(series, together) | {role: together.copy() for role in held}
             for role, rows in held.items():
                 own[role][together] = rows
-    if own and timed:
+    if own:
         return [([role], usable[role] & rows) for role, rows in own.items()]
     return [([*usable], together)]
 
@@ -124,7 +125,7 @@ def held_readings(
     several = len(found) > 1
     for role, (every, rows) in [*found.items()]:
         at, values = np.flatnonzero(rows), beside[role]
-        middle, last = (at[:-1] + at[1:]) // 2, at[1:] - 1
+        middle, last = np.minimum((at[:-1] + at[1:]) // 2, at[1:] - 2), at[1:] - 1
         whole, late = np.diff(values[at]), values[last] - values[middle]
         usual = np.abs(whole) <= _EVEN * np.quantile(np.abs(whole), 0.9)  # no wraps
         expected = np.mean((last - middle) / np.diff(at))

@@ -174,6 +174,8 @@ ENCODERS = {
         [0.01 * np.arange(4 * len(t)), np.repeat(r, 4), np.repeat(o, 4)], NAMES),
     'the output held over four rows': lambda t, r, o: written(
         [f := 0.01 * np.arange(4 * len(t)), np.interp(f, t, r), np.repeat(o, 4)], NAMES),
+    'the output held over four rows, without times': lambda t, r, o: written(
+        [np.interp(0.01 * np.arange(4 * len(t)), t, r), np.repeat(o, 4)], 'rotor,output'),
     'rows by the angle of the output': lambda t, r, o: written(
         [column[np.argsort(o)] for column in (t, r, o)], NAMES),
     'the newest date first': lambda t, r, o: written(
@@ -1033,6 +1035,18 @@ def test_an_angle_that_is_given_as_one_of_a_side_is_that_of_this_side(tmp_path, 
         recording = read(path, gear, given)
         assert_measured(recording, gear)
         assert measure(recording, gear).measured == (given.output is not None)
+
+
+@pytest.mark.parametrize('timed', [False, True])
+def test_weights_under_which_an_angle_is_read_twice_are_not_held(tmp_path, gear, timed):
+    torque = np.repeat(np.round(8.0 * np.sin(np.linspace(0.0, 9.0, 60)), 3), 2)
+    angle = torque / 3790.0 + 1e-5 * (np.arange(len(torque)) % 2)
+    columns, names = [angle, torque], 'angle,torque'
+    if timed:
+        columns, names = [np.arange(len(torque)), *columns], f'time_s,{names}'
+    recording = read(saved(tmp_path, written(columns, names, '{:.6f}')), gear)
+    assert recording.remarks == ()
+    np.testing.assert_allclose(recording.locked.torque, torque)
 
 
 def test_loads_take_columns_that_say_no_side_for_those_of_the_rotor(tmp_path, gear, reference):
