@@ -36,16 +36,13 @@ def there_and_back(turns: float, times: int) -> np.ndarray:
     return even_strokes(turns * TURN, seconds)(time)
 
 
-def output_of(ideal: np.ndarray) -> np.ndarray:
-    return Drive(PLAY, AMPLITUDES).output(ideal)
-
-
 def bag_of(path, ideal, *, rotor_counts=2**16, output_counts=2**20, efforts=None, offset=1.0):
     """Record the rotor at 1 kHz, and a single-turn output encoder a third of a sample later."""
     stamps = START + np.arange(len(ideal)) * MS
     rotor = Samples(stamps, stepped(-19.0 * ideal, TURN / rotor_counts), efforts)
     later = ideal[:-1] + np.diff(ideal) / 3.0
-    measured = stepped((output_of(later) + offset) % TURN, TURN / output_counts)
+    output = Drive(PLAY, AMPLITUDES).output(later) + offset
+    measured = stepped(output % TURN, TURN / output_counts)
     return write_recording(path, rotor, Samples(stamps[:-1] + MS // 3, measured))
 
 
