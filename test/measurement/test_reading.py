@@ -20,6 +20,7 @@ from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import RecordingError
 from gear_kinematics.measurement.sentences import Observation
+from gear_kinematics.measurement.series import held_readings
 from gear_kinematics.measurement.stamps import RestoredClock
 
 TURN = 2.0 * math.pi
@@ -353,3 +354,14 @@ def test_faults_of_a_clock_change_no_figure(shared_path, config):
     # As the file says: 6.9 arcmin.
     assert abs(lost.value - math.radians(6.9 / 60.0)) < math.radians(0.035 / 60.0)
     assert lost.uncertainty < math.radians(0.302 / 60.0)
+
+
+def test_readings_that_flicker_by_a_step_are_held_nevertheless():
+    """Each third one does in the fifth of its eight rows, which is no new reading."""
+    remarks, swung = [], 3.0 * np.sin(np.arange(800) / 160.0)
+    rotor = np.repeat(np.round(swung[::8], 2), 8)
+    rotor[4::24] += 0.01
+    held = held_readings({'rotor': rotor}, {'rotor': swung}, remarks)
+    assert remarks == [Observation.READINGS_HELD(role='rotor', every=8)]
+    assert held['rotor'][::8].all()
+    assert np.count_nonzero(held['rotor']) == 168  # with two changes of each flicker
