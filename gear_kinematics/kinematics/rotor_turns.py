@@ -231,15 +231,17 @@ class RotorTurns:
             velocity: rad/s, or None if unknown.
             lasts: ns, for which the driver repeats each reading; 0: it does not.
         """
-        if position == self._reading and stamp < self._stamp + lasts:
+        if lasts and position == self._reading and stamp < self._stamp + lasts:
             return
         period = self.period
         few = -_MANY_TURNS < position < _MANY_TURNS
         split: tuple[int, float] = _split_few(position) if few else split_turns(position)
         if period and self._position is not None:
-            elapsed, longer = (stamp - self._stamp) * 1e-9, (stamp - self._changed) * 1e-9
-            if 2.0 * self.max_speed * longer < period:  # no turn hides behind a repeated reading
-                elapsed = longer
+            elapsed = (stamp - self._stamp) * 1e-9
+            if self._changed < self._stamp:
+                longer = (stamp - self._changed) * 1e-9
+                if 2.0 * self.max_speed * longer < period:  # the repeated reading hides no turn
+                    elapsed = longer
             expected, width = self._possible_turn(elapsed, self._velocity, velocity)
             apparent, since = position - self._reading, self._since_gap
             more = round((expected - apparent) / period)
@@ -275,7 +277,8 @@ class RotorTurns:
             self.referenced = False
             self.unknown_gaps += 1
         self._position = split
-        self._changed = self._changed if position == self._reading else stamp
+        if position != self._reading:
+            self._changed = stamp
         self._reading, self._stamp, self._velocity = position, stamp, velocity
 
     def _possible_turn(self, elapsed: float, before: _Speed, after: _Speed) -> tuple[float, float]:
