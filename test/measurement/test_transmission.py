@@ -26,7 +26,7 @@ from gear_kinematics.measurement.two_encoders import directions
 PLAY = 3e-3
 AMPLITUDES = {19: 1.0e-3, 20: 4e-4, 2: 5e-4, 1520: 2e-4}  # by order
 RATE = 1000.0
-SPEED = 1.5  # rad/s of the output
+SPEED = 1.0  # rad/s of the output
 
 
 def there_and_back(turns: float, times: int) -> np.ndarray:

@@ -39,19 +39,15 @@ ABSOLUTE = {
     'transmission_error_max_gap': 0.02,
 }
 AHEAD = 20  # periods by which the clock of the output's encoder is
-OTHER = {
-    'branches': tuple(Branch(name, 2.1 * k, 0.01 * k) for k, name in enumerate('abc')),
-    'output_joint': 'wrist',
-    'rotor_joint': '',
-    'rotor_encoder_range': 25.0,
-    'rotor_effort_factor': 0.5,
-}
+BRANCHES = tuple(Branch(name, 2.1 * k, 0.01 * k) for k, name in enumerate('abc'))
 KINDS = {
+    'multi-turn': MULTI,
     'with loads': replace(MULTI, **BRACED),
+    'range and torque': replace(MULTI, rotor_encoder_range=25.0, rotor_effort_factor=0.5),
     'single-turn': replace(MULTI, rotor_encoder='single_turn', rotor_direction=-1, rotor_zero=0.3),
     'referenced turns': replace(MULTI, rotor_encoder='single_turn', **ABSOLUTE),
     'referenced zero': replace(MULTI, **ABSOLUTE),
-    'another mechanism and range': replace(MULTI, **OTHER),
+    'another mechanism': replace(MULTI, branches=BRANCHES, output_joint='wrist', rotor_joint=''),
 }
 ODD = rotor_bytes(START, position=[0.3])
 CHANGES = {
