@@ -235,9 +235,9 @@ class Observation(Enum):
         'in both directions.'
     )
     MOVED = (
-        '{recording}: {at} {moment:si.6}{unit} the output shifts against the rotor, and stays '
-        'there: {angle:arcmin} arcmin, most of the error that a correction leaves. Nothing is '
-        'written; check the couplings and the encoders, and record again.'
+        '{recording}: {at} {moment:si.6}{unit} the output shifts against the rotor, at once or '
+        'slowly: {angle:arcmin} arcmin, most of the error that a correction leaves. Nothing is '
+        'written; let the gear warm up, check its couplings and encoders, and record again.'
     )
     NO_CORRECTION = (
         'No correction helps: with the best one the error is {after:arcmin} arcmin rms instead of '

@@ -45,7 +45,7 @@ _FEWEST = 100  # samples of a recording
 _LEAST_COVERAGE = 0.9  # share of left-out samples within the 95 % interval
 _WORTH = 0.5  # share of the original error: if less remains, few errors are beyond the interval
 _MOST = 0.75  # share of the variance from which on a step explains the remaining error
-_MATTERS = 0.25  # share of the original error from which on a step is no drift
+_MATTERS = 0.25  # share of the original error from which on a step matters
 _MARGIN = 0.1  # share by which the calibrated spans of speed and torque exceed the recorded ones
 
 
@@ -66,7 +66,7 @@ class Fit:
 
     calibration: Calibration  #: with a mean deviation of zero, and the errors of left-out samples
     helps: bool  #: whether the error falls by more than a standard error, and the interval holds
-    moved: Observed | None  #: how the output moved against the rotor for good, if it did
+    moved: Observed | None  #: how the output slipped or drifted against the rotor, if it did
     terms: tuple[FittedTerm, ...]
     recordings: Sequence[Recording]
     delays: Sequence[Estimate | None]  #: of the output's angles, s; None if not separable
