@@ -664,6 +664,8 @@ def main() -> None:
     parser.add_argument('--json', action='store_true')
     parser.add_argument('--wrong', action='store_true', help='list what is called fine')
     options = parser.parse_args()
+    if not (options.shared / 'recorded').is_dir():
+        parser.error(f'--shared {options.shared}: it has no folder recorded, of recordings')
     known = recordings(options.shared)
     alarms = {each.name: said for each in known if (said := false_alarms(each))}
     tasks = [(options.shared, n) for n in range(options.first, options.first + options.faults)]
