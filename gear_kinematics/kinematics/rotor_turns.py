@@ -237,12 +237,10 @@ class RotorTurns:
         few = -_MANY_TURNS < position < _MANY_TURNS
         split: tuple[int, float] = _split_few(position) if few else split_turns(position)
         if period and self._position is not None:
-            elapsed = (stamp - self._stamp) * 1e-9
-            if self._changed < self._stamp:
-                longer = (stamp - self._changed) * 1e-9
-                if 2.0 * self.max_speed * longer < period:  # the repeated reading hides no turn
-                    elapsed = longer
-            expected, width = self._possible_turn(elapsed, self._velocity, velocity)
+            elapsed, longer = (stamp - self._stamp) * 1e-9, (stamp - self._changed) * 1e-9
+            hides = 2.0 * self.max_speed * longer >= period  # whether the repeated reading does
+            within = elapsed if hides else longer
+            expected, width = self._possible_turn(within, self._velocity, velocity)
             apparent, since = position - self._reading, self._since_gap
             more = round((expected - apparent) / period)
             # Stamps that are early or late put the turn outside of what is possible: it is the
