@@ -247,8 +247,9 @@ class VelocityField:
             if abs(velocity - value) > _ROUNDING * abs(value):
                 off.clear()
         least = max(_STUCK * abs(value), travel * SECOND / (_READINGS * SPAN))
-        change = max(off) - min(off) if value and len(off) >= _READINGS else 0.0
-        return change >= least <= max(map(abs, off))
+        if not value or sum(abs(each) >= least for each in off) < _READINGS:
+            return False  # late velocities, and those that are held, differ for less time
+        return max(off) - min(off) >= least
 
     def _unrelated(self) -> bool:
         """Return whether the velocities of all readings, nearly 5 s, are those of no such motion.

@@ -86,6 +86,17 @@ def test_velocities_that_freeze_while_the_speed_changes_are_named(period, step, 
     assert (meaning and meaning.values['meaning']) == named
 
 
+@pytest.mark.parametrize('seen', [lambda t: t - 0.2, lambda t: t // 0.25 * 0.25])
+@pytest.mark.parametrize('change', [1.0, 1.8])
+def test_velocities_that_are_late_or_held_are_not_stuck(seen, change):
+    def motion(time):
+        ramp = min(max(0.0, time - change), 0.1)
+        position = 5.0 * time + 275.0 * ramp**2 + 55.0 * max(0.0, time - change - 0.1)
+        return position, 5.0 + 550.0 * min(max(0.0, seen(time) - change), 0.1)
+
+    assert all(sample.velocity is not None for sample in heard(motion, 50, change + 1.0)[1])
+
+
 @pytest.mark.parametrize('bits', [16, 32])
 def test_negative_velocities_that_are_sent_as_unsigned_are_found_at_once(bits):
     """As from the register of a servo, in steps of 0.229 rpm."""
