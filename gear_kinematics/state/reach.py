@@ -202,7 +202,8 @@ class Repeats:
 
     lasts: float = 0.0  # ns; 0 if no turn can be hidden, or readings are not repeated
     lasted: list[float] = field(default_factory=list)  # ns, for which the latest ones were valid
-    _burst: int = 0  # ns: until when messages can be those of a burst that began with a repeat
+    _burst: tuple[int, int] = 0, 0
+    """Last message before a pause, and until when those after it can be of a burst, ns."""
 
     def note(self, span: int, repeated: int, limits: RotorLimits) -> None:
         """Take a step that is greater than the noise, from a reading that a driver may repeat.
@@ -222,9 +223,9 @@ class Repeats:
         It was sent before the pause, then, and does not show that the rotor stands. The last
         message before, this one, and the usual time between different readings are in ns.
         """
-        if self._burst < last and stamp - last > (1.0 + REGULAR) * usual:
-            self._burst = 2 * stamp - last
-        return stamp < self._burst
+        if self._burst[0] != last and stamp - last > (1.0 + REGULAR) * usual:
+            self._burst = last, 2 * stamp - last
+        return last == self._burst[0] and stamp < self._burst[1]
 
 
 def single_precision_step(*positions: float) -> float:

@@ -314,6 +314,22 @@ def test_readings_that_a_driver_repeats_are_believed_in_a_burst(rate, repeated, 
     assert fed(MULTI, messages(arrivals, wrong))[0].plausibility.jumped
 
 
+def test_an_encoder_that_is_stuck_is_named_after_a_burst_and_a_clock_that_was_set_back():
+    times = np.arange(350) / 500
+    arrivals = times.copy()
+    arrivals[99:111] = times[111] - 5e-5 * np.arange(12, 0, -1)  # each reading comes twice
+    arrivals[120:] -= 0.5
+    read = times[np.minimum(np.arange(350) // 2 * 2, 300)]
+    angles = 400.0 * read + 5.0 * np.sin(20.0 * read)
+    judge = Plausibility(*LIMITS)
+    for n, (angle, stamp) in enumerate(zip(angles.tolist(), arrivals.tolist(), strict=True)):
+        if n == 120:
+            judge.set_back(SECOND // 2)
+        verdict = judge.judge(angle, START + round(stamp * SECOND))
+        assert n > 300 or verdict is BELIEVED
+    assert judge.beyond_limits
+
+
 @pytest.mark.parametrize('period', [2_000_000, 500_000])
 def test_a_wrong_reading_in_a_second_burst_is_out_of_reach(period):
     """The driver is held up twice, for 11 ms; the rotor can turn 2.9 rad within 4.5 ms."""
