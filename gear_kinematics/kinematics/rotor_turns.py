@@ -194,6 +194,7 @@ class RotorTurns:
         self.periods = 0  #: number of periods that are added to the readings
         self._offset = 0, 0, 0.0  # periods, and their sum as turns and angle, rad
         self._reading, self._stamp, self._changed = math.nan, 0, 0
+        self._latest = 0  # ns, the last stamp of all, also of readings that are repeated
         self.narrowed = 0  # ns, the stamp after the last gap whose turn depends on velocities
         self._velocity: float | None = None
         self._since_gap: tuple[_Speed, float, float, float] | None = None
@@ -219,6 +220,7 @@ class RotorTurns:
     def set_back(self, time: int) -> None:
         """Note that the clock of the stamps was set back by a time, ns, since the last sample."""
         self._stamp, self._changed = self._stamp - time, self._changed - time
+        self._latest -= time
 
     def update(
         self, position: float, stamp: int, velocity: float | None = None, lasts: float = 0.0
@@ -231,6 +233,7 @@ class RotorTurns:
             velocity: rad/s, or None if unknown.
             lasts: ns, for which the driver repeats each reading; 0: it does not.
         """
+        self._latest = stamp
         if lasts and position == self._reading and stamp < self._stamp + lasts:
             return
         period = self.period
@@ -325,7 +328,7 @@ class RotorTurns:
     def refer(self) -> None:
         """Treat the counted turns as known from now on."""
         self.referenced, self.unseen_travel, self.lost = True, 0.0, False
-        self.longest_gap, self.narrowed = None, 0
+        self.longest_gap, self.narrowed, self._stamp = None, 0, self._latest
 
     def zero_for(self, rotor_angle: float, direction: int) -> float:
         """Return the zero that `home` would give, and change nothing.

@@ -150,6 +150,7 @@ class RotorInput:
         """
         zero = self.turns.home(rotor_angle, self._parameters.rotor_direction)
         self.zero, self.origin = split_turns(zero), Condition.HOMED()
+        self.plausibility.repeats.lasts = 0.0  # until the next step shows it, of a mended driver
         self._restarts += 1
         self.rezeroed += 1
         return zero

@@ -685,6 +685,10 @@ def test_turns_are_unknown_that_hide_behind_readings_which_a_driver_repeats(
     seldom = Condition.TOO_SELDOM(rate=50 / repeated, limit=limit, speed=ANY, least=ANY, other=ANY)
     assert rotor.referenced is not hides
     assert rotor.why_lost == (seldom if hides else None)
+    rotor.home(0.0)
+    for each in messages(4.0 + np.arange(10) / 50, [angles[-1] % TURN] * 10):
+        rotor.accept(each, int)
+    assert rotor.referenced
 
 
 def test_jumps_after_a_rest_are_found_where_a_driver_had_a_lower_rate_before():
