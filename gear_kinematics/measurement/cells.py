@@ -153,11 +153,13 @@ def _moments(text: Any) -> Any:
     return moments.dt.tz_localize(None)
 
 
-def are_words_below(column: Any, point: str) -> Any:
-    """Return which cells of a column of numbers are words, such as Min and Max in a footer."""
-    values = numbers(column, point)
-    known = values == values  # noqa: PLR0124, neither NaN nor NaT
-    return ~known & column.notna() & (np.count_nonzero(known) > 0.5 * len(column))
+def are_words_below(column: Any) -> Any:
+    """Return which cells below a column of numbers are words, such as Min and Max in a footer."""
+    filled = column.notna()
+    words = column.astype(str).str.match(r'\s*[^\W\d]{2}') & filled
+    last = np.flatnonzero(filled & ~words)
+    below = np.arange(len(column)) > (last[-1] if len(last) > 0.5 * len(column) else len(column))
+    return words & below
 
 
 def may_be_divided(column: Any) -> bool:

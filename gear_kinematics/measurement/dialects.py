@@ -30,7 +30,7 @@ from gear_kinematics.measurement.cells import (
     weight,
 )
 from gear_kinematics.measurement.channel_times import interval_of, named, with_times
-from gear_kinematics.measurement.names import FOREIGN, known_units, meaning
+from gear_kinematics.measurement.names import FOREIGN, known_units, meaning, usual_unit
 from gear_kinematics.measurement.series import series_of
 from gear_kinematics.measurement.texts import BLOCK, Rows, encoding_of, plainer
 
@@ -173,7 +173,7 @@ def open_text(path: Path, content: bytes | None = None) -> TableFile:
         steps = range(every, 2 * every)
         every = next((n for n in steps if filled[::n].any().tolist() == usual), every)
         frame = read(places, every)
-        if 0 not in own.values() and (words := are_words_below(frame[0], layout.point)).any():
+        if 0 not in own.values() and (words := are_words_below(frame[0])).any():
             frame = frame.mask(words)
         for place in filter(lambda place: may_be_divided(frame[place]), places):
             if are_divided(read([place], every, str)[place], layout.point):
@@ -255,7 +255,11 @@ def _layout(lines: Sequence[str]) -> _Layout:
         found[1].update({k: one for k, of, one in beside if re.fullmatch('(?i)units?', of)})
     else:
         found = _joint_state(row) or ([str(k + 1) for k in range(len(row))], {}, {})
-    found[1].update({name: unit for name, unit in zip(found[0], units, strict=False) if unit})
+    for name, unit in zip(found[0], units, strict=False):
+        said = found[1].get(name) or meaning(name).unit
+        if unit and said and usual_unit(said) != usual_unit(unit):
+            raise ValueError(f'{name} is in {said} by its name, and in {unit} by its cells')
+        found[1].update({name: unit} if unit else {})
     titles = (line for line in above if len(cells_of(line.lstrip('#%/ '), separator)) < len(row))
     interval = 0.0 if row[0] else interval_of([cells_of(line, separator) for line in above])
     if interval:

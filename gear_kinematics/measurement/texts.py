@@ -20,13 +20,14 @@ _OTHERS = {
 simplified Chinese, four letters in Cyrillic, or two Chinese characters."""
 
 _LOGGED = re.compile(
-    r'(?m)^(?:\[([^]\n]*\d:\d\d[^]\n]*)\][ \t]*|(\d\d:\d\d:\d\d[.:]\d+) -?>[ \t]*|'
-    r'(\d{4}-\d\d-\d\d \d\d:\d\d:\d\d[.,]\d+) +(?![AP]M)(?=[^ \n]*[,;\t]))'
+    r'(?m)^(?:\[(?=[^]\n]*\d:\d\d)([^]\n]*)\][ \t]*|(\d\d:\d\d:\d\d[.:]\d+) -?>[ \t]*|'
+    r'(\d{4}-\d\d-\d\d \d\d:\d\d:\d\d[.,]\d+) +(?![AP]M|UTC|Z|[-+](\d\d:|0\d{3})|\+1\d{3})'
+    r'(?=[^ ,;\t\n]+[,;\t]))'
 )
 """Stamps that terminals, such as Tera Term and the Arduino IDE, write before each line."""
 _LABEL = re.compile(r'(?m)(?:(?<=[\s,;])|^)([^\W\d]\w*) ?[:=] ?(?=[-+.\d])')
 """Names before each number, as sketches print them for the plotter of the Arduino IDE."""
-_PYTHON = re.compile(r"\b(?:np\.\w+|array|tensor)\((?:'\w', ?)?([^()]*?)(?:, \w+=[\w.']+)*\)")
+_PYTHON = re.compile(r"\b(?:np\.\w+|array|tensor)\((?:'\w', ?)?([^()=]*?)(?:, \w+=[\w.':]+)*\)")
 """Numbers and arrays as Python shows them, such as np.float64(1.5)."""
 _LINES = 100  # lines whose labels are compared
 

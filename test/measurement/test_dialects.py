@@ -9,6 +9,7 @@ import shlex
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from functools import cache
+from time import process_time
 
 import numpy as np
 import pytest
@@ -23,6 +24,7 @@ from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import RecordingError
 from gear_kinematics.measurement.sentences import Observation
 from gear_kinematics.measurement.tables import read_rotor, read_table
+from gear_kinematics.measurement.texts import plainer
 
 ARCMIN = math.radians(1.0 / 60.0)
 
@@ -210,6 +212,7 @@ ENCODERS = {
     'Serial Studio': plain('RX Date/Time,rotor,output',
         time=lambda v: moment(' ')(v)[:-3].replace('-', '/').replace('.', '::')),
     'a log of TwinCAT': plain(time=moment('-')),
+    'a zone behind a space': plain(time=moment(' ', ' +0100')),
     'CoolTerm': lambda t, r, o: '2026-11-26 08:59:59.960 rotor,output\n' + ''.join(
         f'{moment(" ")(at)[:-3]} {rotor:.5f},{out:.5f}\n'
         for at, rotor, out in zip(t, r, o, strict=True)),
@@ -565,7 +568,8 @@ RAMPS = {
     'a name that stays': lambda t, a, q: written(
         [t, t, a, q], 'time,name,angle,torque', ('{:.2f}', lambda _: 'Run A', '{:.6f}', '{:.6f}')),
     'labels of a footer in a column that is not read': lambda t, a, q: written(
-        [range(len(t)), a, q], 'No.,angle [rad],torque [Nm]', ('{}', '{:.6f}', '{:.5f}'))
+        [range(len(t)), a, q], 'No.,angle [rad],torque [Nm]',
+        (lambda k: f'"1,{k:03}"' if k % 3 else 'FF', '{:.6f}', '{:.5f}'))
         + f'MIN,{min(a)},{min(q)}\nMAX,{max(a)},{max(q)}\nAVG,{np.mean(a)},{np.mean(q)}\n',
     'N·cm': lambda t, a, q: written(
         [t, a * DEG, q * 100], 't,Angle [°],Torque', ['{:.2f}', '{:.6f}', '{:.5f} N·cm']),
@@ -767,6 +771,9 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
         (lambda t, r, o: written([t, r, o], NAMES, (
             '{:.2f}', lambda v: f'{v:.3f} rad' if v < -5 else f'{v * 1e3:.0f} mrad', '{:.5f}')),
          'no usable rows: none has numbers such as -12.5 in all of rotor, output'),
+        (lambda t, r, o: written(
+            [t, r, o], 'time,rotor_rad,output', ('{:.2f}', '{:.4f} deg', '{:.5f}')),
+         'rotor_rad is in rad by its name, and in deg by its cells'),
         (lambda t, r, o: written([t, r, o], NAMES, '26.11.2026 {:.0f}'),
          'the times in time: no numbers nor ISO 8601'),
         (lambda t, r, o: written([t, r, o], NAMES, '2026-13-26 09:{:05.2f}'),
@@ -1035,6 +1042,14 @@ def test_an_angle_that_is_given_as_one_of_a_side_is_that_of_this_side(tmp_path, 
         recording = read(path, gear, given)
         assert_measured(recording, gear)
         assert measure(recording, gear).measured == (given.output is not None)
+
+
+@pytest.mark.parametrize('line', ['np.array(1.5' + 4000 * ", a='f'", '[' + 4000 * '1:11'])
+def test_what_is_around_numbers_is_found_in_long_lines_at_once(line):
+    """Patterns that begin anew at each comma take 100 times as long."""
+    text, began = 10 * f'{line}\n', process_time()
+    assert plainer(text, ',')[0](text) == text
+    assert process_time() - began < 1.0
 
 
 @pytest.mark.parametrize('timed', [False, True])
