@@ -4,7 +4,7 @@
 #
 # Expected of read_float_gyro_z() after begin(), which resets the chip: 100°/s. What happens: the reset leaves the chip
 # in its range of ±250°/s, at 8.75 mdps a count, while the driver takes a count as 4.375 mdps, that of ±125°/s. Each
-# rate is halved until set_gyro_range() is called, even with the range of ±250°/s that get_gyro_range_dps() gave before.
+# rate is halved until set_gyro_range() is called, although get_gyro_range_dps() rightly gives 250°/s from the start.
 # The accelerations are right.
 # Expected of read_temp_c(), where a kelvin is 256 counts and 25 °C are 0 counts: 20 °C. What happens: a count below 0
 # is taken as one without a sign, so that each temperature below 25 °C is 256 K too high. No error, no warning.
