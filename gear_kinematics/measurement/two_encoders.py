@@ -314,10 +314,11 @@ def _walk(residual: Array, left: Array) -> float:
     The residual is (parts,), rad; `left`, (steps, parts), is what the fit leaves of the steps of a
     walk of variance 1. Both are compared at lags up to which that still grows as a walk.
     """
-    changes = [_squared_changes(residual, len(residual) // lags) for lags in _LAGS]
+    sizes = [max(len(residual) // lags, 1) for lags in _LAGS]
+    changes = [_squared_changes(residual, size) for size in sizes]
     walks = list[float]()
     for place, lags in enumerate(_LAGS):
-        near, far = _squared_changes(left, len(residual) // lags)
+        near, far = _squared_changes(left, sizes[place])
         if far >= _WALKS * near and not (walks and lags > _EVIDENT):
             # What is as large at a shorter lag is noise, or an error that repeats.
             noise = max(change for change, _ in changes[place:])

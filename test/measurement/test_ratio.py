@@ -160,6 +160,13 @@ def test_interval_contains_the_ratio_and_none_is_taken_wrongly(error):
     assert sum(inside) >= 17
 
 
+def test_a_ratio_is_found_from_few_samples():
+    time = np.linspace(0.0, 4.0, 240)
+    ideal = 2.0 * TURN * time / 4.0 + np.sin(3.0 * time)
+    found = estimate_ratio(-19.0 * ideal, ideal + 1e-4 * np.cos(ideal), time).measured
+    assert abs(found.value + 19.0) <= found.expanded < 0.01
+
+
 @pytest.mark.slow
 def test_a_zero_that_walks_at_random_is_in_the_interval():
     """The fit follows most of a walk in three turns, and so shows little of it."""
