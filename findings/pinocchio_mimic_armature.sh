@@ -4,11 +4,11 @@
 # friction and its stops, so that a mechanism of 0.61 kg·m² has 0.21 kg·m².
 #
 # An output turns by 0.5 of an input, and both have a link of 0.168 kg·m², an armature of 1.6 and 0 kg·m², a damping of
-# 0.4 and 0 N·m·s/rad, and stops at ±0.3 and ±2 rad. Expected of the input, once the output is its mimic, by
-# transformJointIntoMimic() or by the URDF: its own values and 0.5² of the inertia and the damping of the output, so
-# 0.61 kg·m² and 0.1 N·m·s/rad, and stops at ±0.6 rad. What happens: 0.21 kg·m², which has the links but no armature, no
-# damping, no friction, and stops at ±2 rad, at which the output is at ±1 rad, beyond its stops. In the model without
-# the mimic all of them are there.
+# 0.4 and 0 N·m·s/rad, and stops at ±0.3 and ±2 rad. Expected of the input, once transformJointIntoMimic() has made the
+# output its mimic: its own values and 0.5² of the inertia and the damping of the output, so 0.61 kg·m² and 0.1
+# N·m·s/rad, and stops at ±0.6 rad. What happens: 0.21 kg·m², which has the links but no armature, no damping, no
+# friction, and stops at ±2 rad, at which the output is at ±1 rad, beyond its stops. In the model without the mimic all
+# of them are there. A mimic of a URDF, which cannot have an armature, loses its damping, friction and stops as well.
 # For us: add multiplier² times the armature and the damping of each mimic to the joint that it follows.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
