@@ -1,15 +1,15 @@
 #!/bin/sh
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# genesis-world 1.4.5: behind a gear of 20, an MJCF's servo that is to turn its joint to 1 rad turns it to 20 rad, and a
-# motor with a limit of 1 N·m gives the joint 1 N·m instead of 20 N·m.
+# genesis-world 1.4.5: behind a gear of 20, an MJCF's servo has a twentieth of its stiffness and damping at the joint,
+# and a motor with a limit of 1 N·m gives the joint 1 N·m instead of 20 N·m.
 #
 # A gear of MuJoCo acts twice on a servo: the motor's angle is 20 times that of the joint, and the joint's torque 20
 # times that of the motor. Expected of a position actuator with kp="1" and kv="0.1": a stiffness of 400 N·m/rad and a
 # damping of 40 N·m·s/rad at the joint, which MuJoCo 4.0.0 has. What happens: Genesis, which reads the model by MuJoCo,
-# multiplies the gain, the stiffness and the damping by 20 once. So the goal of 20 rad for the motor, at which the joint
-# rests at 1 rad, gives 380 N·m there, and the joint goes to 20 rad; its damping is 2 N·m·s/rad. Of the limits of a
-# motor, ctrlrange is rightly multiplied by the gear, but forcerange, also a limit of the motor, is not. No warning says
-# so. With a gear of 1 all of this is right.
+# multiplies the gain, the stiffness and the damping by 20 once: the joint has 20 N·m/rad and 2 N·m·s/rad. A goal is
+# one of the joint, so that the goal of 20 rad, which brings the joint to 1 rad in MuJoCo, brings it to 20 rad. Of the
+# limits of a motor, ctrlrange is rightly multiplied by the gear, but forcerange, also a limit of the motor, is not.
+# There is no warning. With a gear of 1 all of this is right.
 # For us: give Genesis a gear of 1, kp and kv times the square of the gear, and limits and goals of the joint.
 #
 # Exit code 0: still so. Installs the packages into a temporary folder, without torch, which the reader of MJCF does not
@@ -19,10 +19,10 @@ set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 python3 -m venv "$folder/venv"
-"$folder/venv/bin/pip" install --quiet --disable-pip-version-check mujoco==4.0.0 numpy==2.4.6 scipy==1.17.1 \
-  numba==0.68.1 pydantic==2.14.4 trimesh==5.2.0 lxml==6.1.3 networkx==3.6.1 pillow==11.3.0 psutil==7.2.2 \
+"$folder/venv/bin/pip" install --quiet --no-compile --disable-pip-version-check mujoco==4.0.0 numpy==2.4.6 \
+  scipy==1.17.1 numba==0.68.1 pydantic==2.14.4 trimesh==5.2.0 lxml==6.1.3 networkx==3.6.1 pillow==11.3.0 psutil==7.2.2 \
   frozendict==2.5.1
-"$folder/venv/bin/pip" install --quiet --disable-pip-version-check --no-deps genesis-world==1.4.5
+"$folder/venv/bin/pip" install --quiet --no-compile --disable-pip-version-check --no-deps genesis-world==1.4.5
 cat > "$folder/gear.py" <<'PYTHON'
 import importlib.machinery
 import sys
