@@ -203,14 +203,19 @@ class EncoderFit:
         """Uncertainty of a coefficient, times a unit, if the zero walks at random as residuals do.
 
         The walk is a sum of independent steps, one before each part. All are fitted, too, for the
-        fit follows a share of them, so that its residual shows only the rest.
+        fit follows a share of them, so that its residual shows only the rest. The delay is fitted
+        in any case, as the residual would show it as well.
         """
         sums, counts = self._parts
         steps = np.tri(len(counts)).T / math.sqrt(len(counts))
-        found = self._equations.solve_for(chosen, sums[[*chosen]] @ steps.T)
-        left = steps - found.T @ (sums[[*chosen]] / counts)
-        walk = _walk(self._equations.residual(chosen) @ sums / counts, left)
-        changes = found[[*chosen].index(place)]
+
+        def followed(columns: Sequence[int]) -> Array:
+            return self._equations.solve_for(columns, sums[[*columns]] @ steps.T)
+
+        late = sorted({*chosen, _LATE})
+        left = steps - followed(late).T @ (sums[late] / counts)
+        walk = _walk(self._equations.residual(late) @ sums / counts, left)
+        changes = followed(chosen)[[*chosen].index(place)]
         return Component(unit * math.sqrt(walk * np.sum(changes**2)), _LAGS[0])
 
     def lost_motion(self, *others: Component, delay: bool, even: bool = False) -> Estimate:
