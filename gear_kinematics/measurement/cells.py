@@ -67,9 +67,9 @@ def numbers(column: Any, point: str = '.') -> Any:
     if column.dtype.kind in 'iufb':
         return column.to_numpy()
     text = column.astype(str).str.strip().str.replace('\u2212', '-')
-    filled = text[~text.str.lower().isin(MISSING)].dropna()
-    unit = unit_of(filled.iloc[0]) if len(filled) else ''
-    if unit and filled.map(unit_of).eq(unit).all():
+    filled = (cell for cell in text.dropna() if cell.lower() not in MISSING)
+    unit = unit_of(next(filled, ''))
+    if unit and all(unit_of(cell) == unit for cell in filled):
         text = text.str.removesuffix(unit).str.rstrip()
     for rare, pattern, plain in _RARE:
         if text.str.contains(rare).any():  # which takes a tenth of the time
@@ -155,6 +155,8 @@ def _moments(text: Any) -> Any:
 
 def are_words_below(column: Any) -> Any:
     """Return which cells below a column of numbers are words, such as Min and Max in a footer."""
+    if column.dtype.kind in 'iufb':
+        return np.zeros(len(column), bool)
     filled = column.notna()
     words = column.astype(str).str.match(r'\s*[^\W\d]{2}') & filled
     last = np.flatnonzero(filled & ~words)
