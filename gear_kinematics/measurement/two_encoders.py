@@ -213,9 +213,10 @@ class EncoderFit:
             return self._equations.solve_for(columns, sums[[*columns]] @ steps.T)
 
         late = sorted({*chosen, _LATE})
-        left = steps - followed(late).T @ (sums[late] / counts)
+        found = followed(late)
+        left = steps - found.T @ (sums[late] / counts)
         walk = _walk(self._equations.residual(late) @ sums / counts, left)
-        changes = followed(chosen)[[*chosen].index(place)]
+        changes = (found if late == [*chosen] else followed(chosen))[[*chosen].index(place)]
         return Component(unit * math.sqrt(walk * np.sum(changes**2)), _LAGS[0])
 
     def lost_motion(self, *others: Component, delay: bool, even: bool = False) -> Estimate:
