@@ -242,7 +242,6 @@ def _layout(lines: Sequence[str]) -> _Layout:
     start = filled[first]
     above = [line for line in lines[:start] if not _NO_NAMES.fullmatch(line)]
     row, *_ = samples = [rows[place] for place in filled[first:]]
-    units = [unit_of(cell) for cell in row]
     # A line that is not divided, such as a title, has no names.
     if any(len(_cells_above(line, separator, len(row))) >= min(2, len(row)) for line in above):
         begin = [cells[0].strip('"') for cells in samples[:_BEGIN]]
@@ -255,11 +254,12 @@ def _layout(lines: Sequence[str]) -> _Layout:
         found[1].update({k: one for k, of, one in beside if re.fullmatch('(?i)units?', of)})
     else:
         found = _joint_state(row) or ([str(k + 1) for k in range(len(row))], {}, {})
-    for name, unit in zip(found[0], units, strict=False):
-        said = found[1].get(name) or meaning(name).unit
-        if unit and said and usual_unit(said) != usual_unit(unit):
-            raise ValueError(f'{name} is in {said} by its name, and in {unit} by its cells')
-        found[1].update({name: unit} if unit else {})
+    for name, unit in zip(found[0], map(unit_of, row), strict=False):
+        if unit:
+            said = found[1].get(name) or meaning(name).unit
+            if said and usual_unit(said) != usual_unit(unit):
+                raise ValueError(f'{name} is in {said} by its name, and in {unit} by its cells')
+            found[1][name] = unit
     titles = (line for line in above if len(cells_of(line.lstrip('#%/ '), separator)) < len(row))
     interval = 0.0 if row[0] else interval_of([cells_of(line, separator) for line in above])
     if interval:
