@@ -181,7 +181,7 @@ class Plausibility:
             repeated = self._doubted[-1][0]
         moving = last if last_step else self._moving
         stood = repeated - changed > self._repeats and moving[1] == changed
-        stood &= 2e-9 * self.limits.speed * (stamp - changed) < self.limits.period
+        stood = stood and not self.limits.hides_turn(stamp - changed)
         if stood and self.limits.continues(moving, repeated, stamp, step, self.noise):
             self._repeats, last = _LONGER * (repeated - changed), moving
             last_step, last_span = last[2:]

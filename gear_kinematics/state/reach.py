@@ -88,6 +88,10 @@ class RotorLimits(NamedTuple):
     acceleration: float  # rad/s²
     period: float = math.inf  # rad, after which readings repeat
 
+    def hides_turn(self, span: int) -> bool:
+        """Whether the rotor can turn by half of what readings repeat after, in a time, ns."""
+        return 2e-9 * self.speed * span >= self.period
+
     def even_step(self, span: Any) -> Any:
         """Return by how much successive steps may differ, rad, if each takes about a time, ns.
 
@@ -212,7 +216,7 @@ class Repeats:
         """
         if span < self.lasts or not repeated:
             self.lasted, self.lasts = [], self.lasts if span >= self.lasts else 0.0
-        elif 2e-9 * limits.speed * span >= limits.period:
+        elif limits.hides_turn(span):
             self.lasted = [*self.lasted[1 - _OFTEN :], 0.5 * (span + repeated)]
             if len(self.lasted) == _OFTEN:
                 self.lasts = min(self.lasted)
