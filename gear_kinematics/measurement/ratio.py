@@ -30,10 +30,12 @@ _MAX_DISTANCE = 2
 has it beyond a single one."""
 _BEYOND = 0.05  # share of such recordings: a coincidence must be as much less likely there
 _CANDIDATES = 10
+_ROUNDS = 4  # from a ratio of the wrong sign at fast rotors, three
 _UNITS = {'degrees': math.degrees(1.0), 'turns': 1.0 / TURN}  # per rad, of a rotor by mistake
 _MOST_ERROR = 0.5
 """Greatest error of a gear without a delay, play and noise over its motion, rms. It is about 1 or
 more where the output is the angle of another joint, a time, a current or a temperature."""
+_EXCHANGED = 1.2  # times the rotor's travel, by which encoders at one shaft never differ
 _MULTIPLE = 1e-3  # from a whole multiple of the assumed ratio, as by wrong counts per turn
 
 
@@ -70,27 +72,28 @@ def wrong_ratio(encoders: Encoders, assumed: Fraction) -> Observed | None:
     This needs an output that, between samples, turns at most half a turn more or less than the
     assumed ratio implies.
     """
-    found = _estimated(encoders, assumed)
+    found = _estimated(encoders, assumed) or _estimated(encoders, -assumed)
     if found and found.fits(assumed):
         return None
-    upside_down = _estimated(encoders, 1 / assumed)
+    if found and found.fits(-assumed):
+        measured = found.measured
+        return Observation.COUNTS_BACKWARDS(measured=measured, assumed=assumed, ratio=-assumed)
+    inverse = _estimated(encoders, 1 / assumed)
     for ratio in (1 / assumed, -1 / assumed):
-        if upside_down and upside_down.fits(ratio):
-            measured = upside_down.measured
+        if inverse and inverse.fits(ratio):
+            measured = inverse.measured
             return Observation.UPSIDE_DOWN(measured=measured, assumed=assumed, ratio=ratio)
     if not found:
         if _wraps(encoders.rotor.turned):
             return Observation.WRAPS_UNCOUNTED()
-        more = np.ptp(np.unwrap(encoders.measured)) > np.ptp(encoders.rotor.turned)
+        output = float(np.ptp(np.unwrap(encoders.measured)))
+        more = output > _EXCHANGED * float(np.ptp(encoders.rotor.turned))
         return Observation.EXCHANGED() if more else None
-    if found.fits(-assumed):
-        what, ratio = Observation.COUNTS_BACKWARDS, -assumed
-    else:
-        what = Observation.ANOTHER_RATIO if found.taken else Observation.OTHER_RATIOS
-        ratio = found.candidates[0]
-        times = round(found.measured.value / assumed)
-        if times > 1 and abs(found.measured.value / (times * assumed) - 1) < _MULTIPLE:
-            what, ratio = Observation.MULTIPLE_RATIO, times * assumed
+    what = Observation.ANOTHER_RATIO if found.taken else Observation.OTHER_RATIOS
+    ratio = found.candidates[0]
+    times = round(found.measured.value / assumed)
+    if times > 1 and abs(found.measured.value / (times * assumed) - 1) < _MULTIPLE:
+        what, ratio = Observation.MULTIPLE_RATIO, times * assumed
     return what(measured=found.measured, assumed=assumed, ratio=ratio)
 
 
@@ -110,14 +113,23 @@ def not_followed(angle: Array, error: Array, assumed: Fraction) -> Observed | No
 
 
 def _estimated(encoders: Encoders, assumed: Fraction) -> RatioEstimate | None:
-    """Estimate the ratio, starting from one that is about right; None if that is impossible."""
-    ideal = encoders.at_measured(encoders.ideal(assumed))
+    """Estimate the ratio, starting from one that is about right; None if that is impossible.
+
+    A wrong ratio can imply that the output wrapped between samples. So the ratio that it shows is
+    the next one to start from, until one shows itself.
+    """
     time = encoders.seconds if encoders.timed else None
-    output = ideal + encoders.error(assumed)
-    try:
-        return estimate_ratio(ideal * float(assumed), output, time, encoders.interpolated)
-    except RecordingError:
-        return None
+    for _ in range(_ROUNDS):
+        ideal = encoders.at_measured(encoders.ideal(assumed))
+        output = ideal + encoders.error(assumed)
+        try:
+            found = estimate_ratio(ideal * float(assumed), output, time, encoders.interpolated)
+        except RecordingError:
+            return None
+        if found.fits(assumed):
+            return found
+        assumed = Fraction(found.measured.value)
+    return None
 
 
 def estimate_ratio(
@@ -151,7 +163,7 @@ def estimate_ratio(
         raise RecordingError(str(Observation.NOT_FOLLOWED()))
     turned = math.degrees(abs(measured.value) * fit.travel)
     measured = measured.inverse()
-    if abs(measured.value) + measured.expanded < 1.0:
+    if abs(measured.value) + _MAX_DISTANCE * measured.expanded < 1.0:
         raise RecordingError('the output turns more than the rotor: exchange the two')
     return _judged(measured, turned)
 
