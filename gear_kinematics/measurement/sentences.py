@@ -157,10 +157,10 @@ class Observation(Enum):
         '; backward it lags by {lost:arcmin}′, by lost motion or by a delay between the encoders.'
     )
     LOSS_NOT_TOLD = _DEVIATES + '; what it loses on reversals is unknown.'
-    DELAY_TAKEN_OUT = (
-        'The stamps of the two encoders differ by a delay. It has been taken out of the '
-        'transmission error.'
+    SCATTERS = _DEVIATES + (
+        ', most of it from one reading to the next: turn slower, or read both encoders at once.'
     )
+    DELAY_TAKEN_OUT = 'A delay between the stamps of the encoders is not in these figures.'
     DELAY_NOT_TOLD = (
         'The speed varies too little to tell lost motion from a delay between the encoders: move '
         'at several speeds.'

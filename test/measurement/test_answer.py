@@ -216,3 +216,17 @@ def test_lost_motion_is_right_however_late_the_output_is(report_of, shared_path,
     found = report_of(time_s=time, rotor_rad=rotor, output_rad=delayed).transmission
     assert found.delay.value == pytest.approx(late, abs=1e-4)
     assert abs(found.lost_motion.value - 6.9 * ARC_MINUTE) <= found.lost_motion.expanded
+
+
+@pytest.mark.parametrize(('speed', 'scatters'), [(0.2, False), (40.0, True)])
+def test_what_the_moments_of_reading_add_is_not_called_an_error_of_the_gear(
+    report_of, speed, scatters
+):
+    """The gear deviates by 17′; messages of the output come up to 3 ms late, in which it turns."""
+    random = np.random.default_rng(4)
+    time = 0.01 * np.arange(4000)
+    late = random.uniform(0.0, 3e-3, len(time))
+    turned, seen = (speed * np.sin(0.3 * when) / 0.3 for when in (time, time + late))
+    output = seen + 2.5e-3 * np.sin(seen)
+    report = report_of(time=time, rotor=-19.0 * turned, output=output)
+    assert (answer(report).what is Observation.SCATTERS) is scatters
