@@ -20,7 +20,7 @@ UNITS = {'angle': 'rad', 'torque': 'N·m', 'speed': 'rad/s', 'time': 's'}
 """The units of all numbers in a file."""
 _GREATEST = 1e30  # far above any number of a real gear
 _LONGEST_PERIOD = 2**26  # rotor turns; products of two such numbers are exact in float64
-_WIDEST = 0.1  # rad: half width of an interval beyond which no gear and encoders deviate
+WIDEST = 0.1  #: rad: half width of an interval beyond which no gear and encoders deviate
 
 
 def is_calibration(path: Path) -> bool:
@@ -126,7 +126,7 @@ class Calibration:
         width = self.half_width
         bounds = {
             f'an interval of ± {width:.3g} rad is too wide for a gear; are its numbers in rad?': (
-                width <= _WIDEST
+                width <= WIDEST
             ),
             f"an error of {reach:.3g} rad is no gear's; are its numbers in rad?": reach <= math.pi,
             f'the orders must repeat within {_LONGEST_PERIOD} rotor turns': (

@@ -18,7 +18,7 @@ from calibrating import (
     judged,
     recorded,
 )
-from gear_recordings import encoders
+from gear_recordings import encoders, two_encoders_at_one_shaft
 from simulated_gear import GearSet, gears, simulate, strokes, wandering
 
 from gear_kinematics.correction.corrector import Corrector
@@ -181,6 +181,14 @@ def test_the_same_gear_has_its_own_zero_in_each_recording():
         error = s.measured[:, 0] - s.rotor[:, 0] / -19.0
         assert used.zero == pytest.approx(error.mean(), abs=2e-3)
     assert improvement(result) > 1.0 / 0.15
+
+
+def test_a_fast_shaft_is_not_calibrated_by_what_its_messages_come_late():
+    """At 300 rad/s it turns by 0.6 rad in the 2 ms by which a message may be late."""
+    rotor, output, time = two_encoders_at_one_shaft(300.0, seed=1)
+    both = encoders(rotor, output, np.round(1e9 * time))
+    with pytest.raises(RecordingError, match=r'fast: the output scatters by ± .*: turn slower'):
+        fit([Recording(Path(__file__), 'fast', (), len(time), both)], Fraction(-1))
 
 
 def test_recordings_that_tell_nothing_are_refused():

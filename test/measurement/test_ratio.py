@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gear_recordings import encoders
+from gear_recordings import encoders, two_encoders_at_one_shaft
 from simulated_encoders import TURN, with_play
 
 from gear_kinematics.kinematics import GearRatio
@@ -294,22 +294,10 @@ def test_a_wrong_ratio_is_named_with_the_recorded_one(assumed, encoder):
     assert values['measured'].value == pytest.approx(-58 / 3, abs=5e-3)
 
 
-def shaft_with_two_encoders(speed, seed):
-    """Angles and times of two encoders that count against each other, up to a speed in rad/s.
-
-    They are read every 10 ms by two messages, the second of which comes 0 to 2 ms later.
-    """
-    random = np.random.default_rng(seed)
-    time = 0.01 * np.arange(2000)
-    late = random.uniform(0.0, 2e-3, len(time))
-    turned, seen = (0.5 * speed / 20.0 * when**2 for when in (time, time + late))
-    return turned, -seen, time
-
-
 @pytest.mark.parametrize('speed', [100.0, 300.0])
 def test_a_fast_output_does_not_seem_to_wrap(speed):
     """Between two rows it turns by up to 1 or 3 rad, and by twice that against a wrong sign."""
-    rotor, output, time = shaft_with_two_encoders(speed, seed=1)
+    rotor, output, time = two_encoders_at_one_shaft(speed, seed=1)
     both = encoders(rotor, output, np.round(1e9 * time).astype(np.int64))
     assert wrong_ratio(both, GearRatio(-1)) is None
     what, values = wrong_ratio(both, GearRatio(1))
@@ -319,7 +307,7 @@ def test_a_fast_output_does_not_seem_to_wrap(speed):
 
 def test_two_encoders_at_one_shaft_are_not_to_be_exchanged():
     """The coupling between them twists by one and a half times the ±, as on a test bench."""
-    rotor, output, time = shaft_with_two_encoders(20.0, seed=1)
+    rotor, output, time = two_encoders_at_one_shaft(20.0, seed=1)
     twisted = output * (1.0 + 1.5 * estimate_ratio(rotor, output, time).measured.expanded)
     assert wrong_ratio(encoders(rotor, twisted, np.round(1e9 * time)), GearRatio(-1)) is None
 

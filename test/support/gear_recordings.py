@@ -83,6 +83,20 @@ def encoders(
     )
 
 
+def two_encoders_at_one_shaft(
+    speed: float, seed: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Angles and times of two encoders that count against each other, up to a speed in rad/s.
+
+    They are read every 10 ms by two messages, the second of which comes 0 to 2 ms later.
+    """
+    random = np.random.default_rng(seed)
+    time = 0.01 * np.arange(2000)
+    late = random.uniform(0.0, 2e-3, len(time))
+    turned, seen = (0.5 * speed / 20.0 * when**2 for when in (time, time + late))
+    return turned, -seen, time
+
+
 class Samples(NamedTuple):
     """What is recorded of a joint."""
 

@@ -8,6 +8,7 @@ The interval is that of the errors in left-out parts, and the uncertainties of t
 those of the jackknife over the blocks, so that noise need not be white.
 """
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
@@ -17,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from gear_kinematics.correction.calibration_file import (
+    WIDEST,
     Calibration,
     Compliance,
     Order,
@@ -123,8 +125,14 @@ def _result(
     before, after, width, coverage = model.checked(values)
     travels = [s.output[s.used] for s in samples]
     motion = np.concatenate([travel - travel.mean() for travel in travels])
+    names = ', '.join(s.recording.name for s in samples)
     if wrong := not_followed(motion, before, ratio):
-        raise RecordingError(f'{", ".join(s.recording.name for s in samples)}: {wrong}')
+        raise RecordingError(f'{names}: {wrong}')
+    if width > WIDEST:
+        raise RecordingError(
+            f'{names}: the output scatters by ± {math.degrees(width):.3g}° against the rotor, '
+            'more than that of a gear: turn slower, or read both encoders at once'
+        )
     fitted = [*_fitted(model)]
     entries, terms = [entry for entry, _ in fitted], tuple(term for _, term in fitted)
     trends = sum(
