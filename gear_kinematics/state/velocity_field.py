@@ -11,7 +11,7 @@ from operator import mul
 
 import numpy as np
 
-from gear_kinematics.state.belief import VelocityMeaning
+from gear_kinematics.state.belief import VelocityMeaning, velocity_factors
 from gear_kinematics.state.disorder import spaced
 from gear_kinematics.state.reach import FLOOR
 from gear_kinematics.state.statuses import Condition, Fact
@@ -52,17 +52,7 @@ class VelocityField:
 
     def __init__(self, output_factor: float) -> None:
         """Start without readings; the rotor's velocity times a factor is that of the output."""
-        self._factors = {
-            VelocityMeaning.ZERO: 0.0,
-            VelocityMeaning.RPM: 30.0 / math.pi,
-            VelocityMeaning.TURNS: 0.5 / math.pi,
-            VelocityMeaning.DEGREES: 180.0 / math.pi,
-            VelocityMeaning.OUTPUT: output_factor,
-            VelocityMeaning.OPPOSITE: -1.0,
-            VelocityMeaning.OF_TURNS: 2.0 * math.pi,
-            VelocityMeaning.OF_DEGREES: math.pi / 180.0,
-            VelocityMeaning.OF_OUTPUT: 1.0 / output_factor,
-        }
+        self._factors = velocity_factors(output_factor)
         self.finding = VelocityMeaning.UNDECIDED
         self.factor = math.nan  # ratio of velocities in messages to the slope of positions
         self.contradicts = False  # whether the velocities contradict the positions
@@ -70,7 +60,8 @@ class VelocityField:
         self._late = 0  # 1 if the velocities may be late, -1 if the positions may
         self._past: Fact | None = None  # the last contradiction that ended
         self.decided: int | None = None  # ns, the stamp of the reading that decided first
-        self._candidate = VelocityMeaning.UNDECIDED
+        self._candidate: tuple[VelocityMeaning, bool] | None = None
+        """What the last comparison found, and whether only that the velocities are unrelated."""
         self._moved = False  # whether there was a velocity other than 0
         self.restart()
 
@@ -318,6 +309,8 @@ class VelocityField:
             abs((q - p) / (t - s) * 1e9 - slope) > _STEADY * abs(slope)
             for (s, p, _), (t, q, _) in pairwise(readings[::stride])
         ):
+            if self._candidate == (VelocityMeaning.UNKNOWN, False):
+                self._candidate = None  # readings that are repeated look like it
             return True
         most = (_STEADY if slope else _STANDS) * max(abs(mean), abs(slope))
         fall = not slope and abs(velocities[-1]) < (1.0 - _STEADY) * abs(velocities[0])
@@ -331,14 +324,15 @@ class VelocityField:
     def _decide(self, factor: float, certain: VelocityMeaning | None = None) -> None:
         """Change the finding if it is certain, or two comparisons in a row find the same."""
         found, stamp = certain or self._meaning_of(factor), self._readings[-1][0]
-        if certain or found is self._candidate:
+        candidate = found, math.isnan(factor)
+        if certain or candidate == self._candidate:
             self.decided = stamp if self.decided is None else self.decided
             if self.contradicts and found is VelocityMeaning.RIGHT:
                 self._past = Condition.VELOCITIES_WERE(time=stamp / SECOND, doubt=self.meaning)
             self.finding, self.factor = found, factor
             self.contradicts = found is not VelocityMeaning.RIGHT
             self.confirmed = self.confirmed if self.contradicts else stamp
-        self._candidate = found
+        self._candidate = candidate
 
     def _meaning_of(self, factor: float) -> VelocityMeaning:
         """Return what velocities are that are a multiple of the right ones."""

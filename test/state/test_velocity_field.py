@@ -97,6 +97,18 @@ def test_velocities_that_are_late_or_held_are_not_stuck(seen, change):
     assert all(sample.velocity is not None for sample in heard(motion, 50, change + 1.0)[1])
 
 
+@pytest.mark.parametrize('rate', [100, 500])
+@pytest.mark.parametrize('held', [0.076, 0.078, 0.08])
+def test_right_velocities_beside_readings_that_are_repeated_are_no_unknown_quantity(held, rate):
+    def motion(time):  # in most intervals of 0.1 s, there is one new reading
+        read = held * math.floor(time / held + 1e-9)
+        return 100.0 * read + 0.02 * math.sin(7.0 * read), 100.0
+
+    rotor, samples = heard(motion, rate, 8.0, doubted=True)
+    assert rotor.velocity_field.meaning is None
+    assert all(sample.velocity == 100.0 for sample in samples)
+
+
 @pytest.mark.parametrize('bits', [16, 32])
 def test_negative_velocities_that_are_sent_as_unsigned_are_found_at_once(bits):
     """As from the register of a servo, in steps of 0.229 rpm."""
