@@ -14,13 +14,18 @@ from os.path import commonprefix
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import stdtr
 
 from gear_kinematics.measurement.figures import gear_figures
 from gear_kinematics.measurement.loops import ALIKE
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.measured import HYSTERESIS
-from gear_kinematics.statistics.uncertainty import COVERAGE, Component, Estimate, combined
+from gear_kinematics.statistics.uncertainty import (
+    COVERAGE,
+    Component,
+    Estimate,
+    combined,
+    probability_beyond,
+)
 
 _OF_SMALL_RAMPS = (HYSTERESIS, 'friction')
 SIGNIFICANCE = 1.0 - COVERAGE  # probability of a false alarm in either family of `judged`
@@ -169,8 +174,7 @@ def _chance(estimate: Estimate) -> float | None:
         return None
     if not estimate.standard:
         return float(estimate.value == 0.0)
-    degrees = np.floor(estimate.degrees_of_freedom + 1e-6)
-    return float(2.0 * stdtr(degrees, -abs(estimate.value / estimate.standard)))
+    return probability_beyond(estimate.value / estimate.standard, estimate.degrees_of_freedom)
 
 
 def judged(changes: Sequence[Change]) -> list[Change]:
