@@ -14,10 +14,13 @@ class TwinModel(Protocol):
     rotor_velocity: float  # velocity of the rotor, rad/s
     output_angle: float  # angle φ5 of the output shaft, rad
     output_velocity: float  # velocity of the output shaft, rad/s
-    branch_torques: tuple[float, ...]  # T_k of each on the output shaft, N·m; 0 out of mesh
     output_locked: bool  # whether the output shaft is locked
     rotor_locked: bool  # whether the rotor is locked
     notice: str  # how the motion has differed from that of the gear since this was cleared; or ''
+
+    @property
+    def branch_torques(self) -> tuple[float, ...]:
+        """Torque T_k of each branch on the output shaft, N·m; 0 out of mesh."""
 
     def advance(self, duration: float, rotor_torque: float, load_torque: float) -> None:
         """Advance by a time, s, with torques of the motor and on the output shaft, N·m."""

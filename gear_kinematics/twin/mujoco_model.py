@@ -100,11 +100,20 @@ class MujocoModel:
         angles, velocities, gear = self._angles.tolist(), self._velocities.tolist(), self._gear
         self.rotor_angle, self.rotor_velocity = angles[self._rotor], velocities[self._rotor]
         self.output_angle, self.output_velocity = angles[self._output], velocities[self._output]
+        self._turned = [angles[joint] for joint in self._satellites]
+        if gear.curve:  # which the friction follows, slowly, as the output moves on a spring
+            self._friction[self._output] = self._torques()[1]
+
+    @property
+    def branch_torques(self) -> tuple[float, ...]:
+        """See `TwinModel`."""
+        return self._torques()[0]
+
+    def _torques(self) -> tuple[tuple[float, ...], float]:
+        """Compute the torques and the friction, N·m, where they are asked for."""
+        gear = self._gear
         ideal = (1.0 / gear.ratio - 1.0) * self.rotor_angle + gear.error(self.rotor_angle)
-        # The torques change slowly, as the output moves on a spring.
-        self.branch_torques, self._friction[self._output] = gear.torques(
-            [ideal - angles[joint] for joint in self._satellites]
-        )
+        return gear.torques([ideal - turned for turned in self._turned])
 
 
 def check(text: str) -> None:
