@@ -2,6 +2,7 @@
 """gearkin plot and gearkin animate as someone who makes a figure runs them."""
 
 import re
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -10,10 +11,9 @@ from blocked_bags import refusal
 from gear_kinematics.commands.cli import main
 from gear_kinematics.share import share_directory
 
-pytest.importorskip('matplotlib', reason='matplotlib is not installed')
-
-from PIL import Image
-
+Image = pytest.importorskip('PIL.Image', reason='pillow is not installed')
+# Found and not imported, which takes long, and all workers would do.
+pytestmark = pytest.mark.skipif(not find_spec('matplotlib'), reason='matplotlib is not installed')
 SERVO = str(share_directory() / 'bags' / 'servo_point_to_point')
 SIGNATURES = {'png': b'\x89PNG\r\n\x1a\n', 'svg': b'<?xml', 'pdf': b'%PDF-', 'gif': b'GIF89a'}
 

@@ -2,6 +2,7 @@
 """The data given to matplotlib, against 50-digit and matrix-method motion."""
 
 import math
+from importlib.util import find_spec
 from io import BytesIO
 from itertools import pairwise
 from pathlib import Path
@@ -18,10 +19,9 @@ from gear_kinematics.plotting.trajectory import Trajectory
 from gear_kinematics.report.image import to_image
 from gear_kinematics.shape.outlines import bodies
 
-pytest.importorskip('matplotlib', reason='matplotlib is not installed')
-
-from PIL import Image
-
+Image = pytest.importorskip('PIL.Image', reason='pillow is not installed')
+# Found and not imported, which takes long, and all workers would do.
+pytestmark = pytest.mark.skipif(not find_spec('matplotlib'), reason='matplotlib is not installed')
 MODULE = 0.0005  # m
 PNG = Path('figure.png')
 

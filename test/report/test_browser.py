@@ -10,7 +10,7 @@ import numpy as np
 import oracle
 import pytest
 import report_samples as samples
-from chromium import noting
+from chromium import expect, noting
 
 from gear_kinematics import plotting
 from gear_kinematics.kinematics import Branch, Mechanism
@@ -23,9 +23,6 @@ from gear_kinematics.validation.findings import sentence
 from gear_kinematics.validation.report import Series
 
 pytestmark = pytest.mark.slow
-
-sync_api = pytest.importorskip('playwright.sync_api', reason='no playwright is installed')
-expect = sync_api.expect
 
 PIXEL = 1.0
 TIMES = [0.25 * k for k in range(41)]

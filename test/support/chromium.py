@@ -22,6 +22,13 @@ def chromium() -> Iterator:
         browser.close()
 
 
+def expect(shown):
+    """Give what waits for an element to be as expected, by Playwright, whose import takes long."""
+    from playwright.sync_api import expect  # noqa: PLC0415, where there is a browser
+
+    return expect(shown)
+
+
 def noting(page):
     """Let a page note in `seen` what it asks for and complains about."""
     page.seen = []

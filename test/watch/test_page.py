@@ -8,7 +8,7 @@ import threading
 from contextlib import contextmanager
 
 import pytest
-from chromium import noting
+from chromium import expect, noting
 from live import Listener
 from watching import (
     DEADLINE,
@@ -27,12 +27,8 @@ from gear_kinematics.watch.view import Entry, Guide, View
 
 pytestmark = [pytest.mark.live, pytest.mark.slow, pytest.mark.usefixtures('driver')]
 
-sync_api = pytest.importorskip('playwright.sync_api', reason='no playwright is installed')
 pytest.importorskip('tornado', reason='no tornado is installed')
 from gear_kinematics.watch.server import Server  # noqa: E402, needs it
-
-expect = sync_api.expect
-
 
 # Without the page of a driver, which draws all the time
 
