@@ -99,7 +99,8 @@ $(VENV)/%.stamp: requirements/%.txt setup.py setup.cfg pyproject.toml
 		echo 'Python has no ensurepip: apt install $(notdir $(PYTHON))-venv' >&2; exit 1; }
 	test -x $(BIN)/pip || $(PYTHON) -m venv --clear $(VENV)
 	@echo 'installing $< into $(VENV)'
-	@$(BIN)/python requirements/install.py $< $(PIP_LOG) || { $(EXPLAIN_PIP) >&2; exit 1; }
+	@cmp -s $< $(VENV)/uv-$(<F) || $(BIN)/python requirements/install.py $< $(PIP_LOG) || { \
+		$(EXPLAIN_PIP) >&2; exit 1; }
 	$(PIP_INSTALL) --no-deps --no-build-isolation -e .
 	@broken=$$($(BIN)/pip check --disable-pip-version-check) || { echo "$$broken" >&2; exit 1; }
 	@touch $@
