@@ -113,7 +113,7 @@ def test_nothing_heavy_is_imported_before_signals_are_handled():
     ('--help', 'bag correction measurement parameters plotting state validation'),
     (f'info {BAG}', 'plotting shape validation watch'),
     (f'validate {BAG}', 'measurement plotting watch'),
-    ('describe', 'measurement validation watch'),
+    ('describe', 'measurement state validation watch'),
 ], ids=lambda text: text.split()[0])  # fmt: skip
 def test_a_command_imports_no_room_that_it_does_not_use(command, unused):
     code = f'try:\n {GEARKIN}\nfinally: print(*sys.modules)'

@@ -10,7 +10,7 @@ from gear_kinematics.commands.files import add_force
 from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.plotting.trajectory import Trajectory, read_trajectory
+from gear_kinematics.plotting.trajectory import Trajectory
 from gear_kinematics.shape.teeth import InterferenceError, tooth_pair
 
 
@@ -48,6 +48,8 @@ def recording(options: argparse.Namespace, config: NodeParameters) -> Trajectory
             if getattr(options, name) is not None:
                 raise ValueError(f'--{name.replace("_", "-")} needs --bag')
         return None
+    from gear_kinematics.plotting.recorded import read_trajectory  # noqa: PLC0415, slow
+
     start = options.start_offset or 0.0
     with (
         bags.naming(options.bag),

@@ -2,19 +2,13 @@
 """The rotor's motion over time: recorded, or at a constant speed."""
 
 import math
-from pathlib import Path
 from typing import NamedTuple, Self
 
 import numpy as np
 
-from gear_kinematics.bag import Bag, BagError, ReportProgress
-from gear_kinematics.bag.roles import find_rotor_topic
 from gear_kinematics.kinematics import Mechanism, MotionState, solve, split_turns
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.wire.batches import Array
-from gear_kinematics.wire.cdr import SECOND
 
 MOST_TURNS = 1000  #: rotor turns at a constant speed; animations cannot show more
 _PER_TURN = 360  # samples
@@ -71,32 +65,3 @@ class Trajectory(NamedTuple):
         position = np.interp(time, self.time, self.turns * TURN + self.angle)
         turns, angle = split_turns(position)
         return type(self)(time, turns, angle, np.interp(time, self.time, self.velocity))
-
-
-def read_trajectory(
-    path: Path,
-    parameters: NodeParameters,
-    rotor_topic: str | None = None,
-    progress: ReportProgress | None = None,
-) -> Trajectory:
-    """Read the rotor's motion from a bag, up to the first stamp that jumps back.
-
-    Missing velocities are derived from the positions. Raises BagError if the bag cannot be read,
-    or has fewer than two rotor states of different times.
-    """
-    with Bag(path) as bag:
-        topic = find_rotor_topic(bag, rotor_topic, parameters.rotor_joint)
-        messages = [message for batch in bag.batches([topic], progress) for message in batch]
-    gear = GearState(parameters)
-    samples = gear.batch(messages, topic).samples
-    anew = np.flatnonzero(np.diff(samples.stamp) < 0)
-    _, used = np.unique(samples.stamp[: anew[0] + 1 if len(anew) else None], return_index=True)
-    if len(used) < 2:  # noqa: PLR2004, no motion
-        why = f' ({gear.input.why_rejected})' if gear.input.rejected else ''
-        raise BagError(f'{path}: {topic} has fewer than two rotor states of different times{why}')
-    stamps, turns, angle, velocity = (column[used] for column in samples[:4])
-    time = (stamps - stamps[0]) / SECOND
-    positions = (turns - turns[0]) * TURN + angle
-    with np.errstate(over='ignore', invalid='ignore'):
-        velocity = np.where(np.isnan(velocity), np.gradient(positions, time), velocity)
-    return Trajectory(time, turns, angle, velocity, bool(samples.referenced[used].all()))

@@ -12,7 +12,8 @@ from shipped_bags import ROTOR, write_bag
 from gear_kinematics.bag import BagError
 from gear_kinematics.kinematics import matrix_method
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.plotting.trajectory import MOST_TURNS, Trajectory, read_trajectory
+from gear_kinematics.plotting.recorded import read_trajectory
+from gear_kinematics.plotting.trajectory import MOST_TURNS, Trajectory
 from gear_kinematics.share import share_directory
 from gear_kinematics.wire.cdr import JointStateTemplate
 
