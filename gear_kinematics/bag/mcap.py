@@ -5,15 +5,21 @@ import os
 import struct
 from bisect import bisect_left
 from collections.abc import Collection, Iterator
+from contextlib import suppress
+from itertools import pairwise
 from operator import itemgetter
 from pathlib import Path
 from zlib import crc32
 
+import numpy as np
+
 from gear_kinematics.bag.codecs import CODECS, ReadLimits
+from gear_kinematics.bag.runs import starts_of_runs
 from gear_kinematics.bag.storage import Message, Published, Storage, Topic, UnsortedError
+from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
 MCAP_MAGIC = b'\x89MCAP0\r\n'
-_FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _DATA_END = 2, 3, 4, 5, 6, 15
+_FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _INDEX, _DATA_END = 2, 3, 4, 5, 6, 7, 15
 _DATA = frozenset({_SCHEMA, _CHANNEL, _MESSAGE, _CHUNK})
 _NO_SCHEMA = ('', '', '')  # type, syntax, definition
 _RECORD = struct.Struct('<BQ')  # opcode, length of the body
@@ -24,6 +30,7 @@ _PADDING = bytes(_MESSAGE_START.size)  # appended to the last record, which may 
 _CUT_OFF = 'cut off within a record; mcap recover saves what is before it'
 _LATEST = 2**63 - 1  # ns
 _PIECE, _PIECE_SIZE = 4096, 2**22  # messages outside of chunks that are read at once; bytes
+_INDEX_START = 6  # bytes before the times and places of messages
 _MAX_OPEN, _PER_CHUNK = 2**28, 2**18  # bytes of open chunks, and those added for each
 _RECEIVED = itemgetter(1)
 
@@ -42,6 +49,7 @@ class Mcap(Storage):
         self._offset = 0
         self._schemas: dict[int, tuple[str, str, str]] = {}
         self._channels: dict[int, Topic] = {}
+        self._chunked = True  # whether all messages that were found are in chunks
         self._wanted: Collection[str] = ()
         self._wanted_channels: dict[int, str] = {}
 
@@ -70,42 +78,75 @@ class Mcap(Storage):
     def pieces(self, topics: Collection[str]) -> Iterator[list[Message]]:
         """Read messages, sorted within chunks or pieces; UnsortedError if that is not enough."""
         self._read_summary()
-        chunks = self._overlapping_chunks()
+        chunks, may_restart = self._overlapping_chunks()
         if chunks:
             self.topics()  # a channel may be described in a chunk that is read later
         self._wanted = topics
         for channel, topic in self._channels.items():
             self._want(channel, topic)
+        starts = None if not chunks else self._starts_of_runs() if may_restart else []
         last = 0
-        for piece in filter(None, self._merged(chunks) if chunks else self._nearly_sorted()):
-            if piece[0][1] < last:
+        for piece in self._nearly_sorted(starts) if starts or not chunks else self._merged(chunks):
+            if piece and piece[0][1] < last:
                 raise UnsortedError
-            last = piece[-1][1]
-            yield piece
+            last = piece[-1][1] if piece else 0  # an empty one ends a run
+            if piece:
+                yield piece
 
-    def _nearly_sorted(self) -> Iterator[list[Message]]:
-        """Yield the messages from front to back; a piece is held back to sort them."""
+    def _starts_of_runs(self) -> list[int]:
+        """Find the wanted messages that begin another run, by reading up to any damage."""
+        times: list[tuple[str, int]] = []
+        with suppress(Exception):  # reading the messages raises it again
+            for piece in self._unsorted():
+                times += [message[:2] for message in piece]
+        return starts_of_runs(times)
+
+    def _parts(self, starts: list[int] | None) -> Iterator[list[Message]]:
+        """Yield sorted pieces of the file, and an empty one before each run but the first."""
+        read, before = 0, list[Message]()
+        for piece in filter(None, self._unsorted()):
+            ordered = sorted(piece, key=_RECEIVED)
+            begin = [start - read for start in starts or () if 0 <= start - read < len(piece)]
+            if starts is None and (ordered != piece or (before and piece[0][1] < before[-1][1])):
+                # Messages outside of chunks are written one by one, in the order of reception.
+                rows = [message[:2] for message in (*before, *piece)]
+                found = starts_of_runs(rows, mixed=self._chunked)
+                begin = [start - len(before) for start in found if start >= len(before)]
+            for first, end in pairwise([0, *begin, len(piece)]):
+                if first in begin:
+                    yield []
+                if first < end:
+                    yield sorted(piece[first:end], key=_RECEIVED) if begin else ordered
+            read += len(piece)
+            before = [] if self._chunked else piece
+
+    def _nearly_sorted(self, starts: list[int] | None) -> Iterator[list[Message]]:
+        """Yield the messages from front to back; a piece is held back to sort them.
+
+        Messages that begin another run of the recording are given, or are sought in each piece.
+        An empty piece comes before each run but the first.
+        """
         pending: list[Message] = []
         try:
-            for piece in filter(None, self._unsorted()):
-                piece.sort(key=_RECEIVED)
-                if pending:
-                    if piece[0][1] < pending[-1][1]:
-                        merged = sorted(pending + piece, key=_RECEIVED)
-                        pending, piece = merged[: len(pending)], merged[len(pending) :]  # noqa: PLW2901
-                    yield pending
+            for piece in self._parts(starts):
+                if pending and piece and piece[0][1] < pending[-1][1]:
+                    merged = sorted(pending + piece, key=_RECEIVED)
+                    pending, piece = merged[: len(pending)], merged[len(pending) :]  # noqa: PLW2901
+                yield pending
                 pending = piece
         except Exception:
             yield pending
             raise
         yield pending
 
-    def _overlapping_chunks(self) -> list[tuple[int, int, int, int]]:
+    def _overlapping_chunks(self) -> tuple[list[tuple[int, int, int, int]], bool]:
         """Return first time, position, length and size of all chunks, if any overlap.
 
-        Without overlaps in time, or with messages outside of chunks, the list is empty.
+        Without overlaps in time, or with messages outside of chunks, the list is empty. Also
+        return whether another run may begin, as the times of a channel fall, or have no index.
         """
         chunks, latest, overlap = list[tuple[int, int, int, int]](), 0, False
+        last, back = dict[int, np.int64](), False
         offset = self._stream.seek(len(MCAP_MAGIC))
         while len(header := self._stream.read(_CHUNK_START.size)) == _CHUNK_START.size:
             opcode, length, start, end, size = _CHUNK_START.unpack(header)
@@ -113,13 +154,22 @@ class Mcap(Storage):
             if opcode in {0, _FOOTER, _DATA_END} or after > self._size:
                 break
             if opcode == _MESSAGE:
-                return []
+                self._chunked = False
+                return [], False
             if opcode == _CHUNK:
                 chunks.append((start, offset, length, size))
                 overlap |= bool(end) and start < latest  # the times of an empty chunk are 0
                 latest = max(latest, end)
+            if opcode == _INDEX and _INDEX_START + 16 <= length <= self.limits.max_record:
+                self._stream.seek(offset + _RECORD.size)
+                index = self._stream.read(length)
+                (channel,) = struct.unpack_from('<H', index)
+                times = np.frombuffer(index, '<i8', 2 * (length // 16), _INDEX_START)[::2]
+                fell = np.diff(times, prepend=last.get(channel, times[0])) < -CLOCK_RESET
+                back |= bool(np.any(fell))
+                last[channel] = times[-1]
             offset = self._stream.seek(after)
-        return chunks if overlap else []
+        return chunks if overlap else [], back or not last
 
     def _merged(self, chunks: list[tuple[int, int, int, int]]) -> Iterator[list[Message]]:
         """Merge chunks by time; messages of the same time stay in the order of the file."""
@@ -147,8 +197,8 @@ class Mcap(Storage):
                 ready += messages[:before]
                 del messages[:before]
             opened = {position: messages for position, messages in opened.items() if messages}
-            ready.sort(key=_RECEIVED)
-            yield ready
+            if ready:
+                yield sorted(ready, key=_RECEIVED)
         yield from self._unsorted(whole)  # finds how the file ends
 
     def _unsorted(self, start: int = len(MCAP_MAGIC)) -> Iterator[list[Message]]:

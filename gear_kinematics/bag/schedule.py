@@ -53,10 +53,12 @@ def count_due(source: Bag, topics: Collection[str]) -> int | None:
 
 def _one_round(source: Bag, topics: Collection[str]) -> Iterator[tuple[int, Message]]:
     """Yield messages with the time since the first one, ns."""
-    begin = None
+    begin, last = None, 0
     for message in source.messages(topics):
         _, received, _ = message
-        begin = received if begin is None else begin
+        if begin is None or received < last:  # the clock of the recorder was reset
+            begin = received - (last - begin if begin is not None else 0)
+        last = received
         yield received - begin, message
     if begin is None:
         raise BagError(f'{source.path}: nothing to play on {", ".join(topics)}')

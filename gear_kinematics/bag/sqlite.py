@@ -5,13 +5,18 @@ import sqlite3
 import struct
 from collections.abc import Collection, Iterator
 from contextlib import suppress
+from itertools import pairwise
+from operator import le
 from pathlib import Path
 from typing import Any
 
 from gear_kinematics.bag.codecs import ReadLimits
+from gear_kinematics.bag.runs import starts_of_runs
 from gear_kinematics.bag.storage import Message, Storage, Topic
 
 _STEPS = 1000
+_SAMPLED, _TIME_OF_ROW = 1000, 'SELECT timestamp FROM messages WHERE id = ?'
+_LATEST = 2**63 - 1  # number of a row
 _PIECE, _PIECE_SIZE = 256, 2**20  # messages, bytes
 
 
@@ -73,11 +78,39 @@ class Sqlite(Storage):
         for topic in wanted.values():
             self.check_encoding(topic)
         names = {key: topic.name for key, topic in wanted.items()}
-        return self._messages(names, chosen=[] if len(names) == len(known) else list(names))
+        chosen = [] if len(names) == len(known) else list(names)
+        starts = self._starts_of_runs()
+        for first, end in pairwise([-_LATEST - 1, *starts, _LATEST] if starts else []):
+            yield from self._messages(names, chosen or list(names), first, end)
+        if not starts:
+            yield from self._messages(names, chosen)
 
-    def _messages(self, names: dict[int, str], chosen: list[int]) -> Iterator[list[Message]]:
+    def _starts_of_runs(self) -> list[int]:
+        """Find the rows that begin another run, if the times of samples of the rows fall."""
+        try:
+            first, last = next(self._database.execute('SELECT min(id), max(id) FROM messages'))
+            sampled = [
+                time
+                for row in range(first, last, max(1, (last - first) // _SAMPLED))
+                for (time,) in self._database.execute(_TIME_OF_ROW, [row])
+            ]
+            if all(map(le, sampled, sampled[1:])):
+                return []
+            rows = self._database.execute('SELECT topic_id, timestamp FROM messages ORDER BY id')
+            starts = starts_of_runs(rows)
+            at = 'SELECT id FROM messages ORDER BY id LIMIT 1 OFFSET ?'
+            return [row for k in starts for (row,) in self._database.execute(at, [k])]
+        except Exception:  # noqa: BLE001, reading the messages raises it again
+            return []
+
+    def _messages(
+        self, names: dict[int, str], chosen: list[int], first: int | None = None, end: int = 0
+    ) -> Iterator[list[Message]]:
         # Without a condition, which is evaluated for each message, reading takes less time.
         condition = f'WHERE topic_id IN ({",".join("?" * len(chosen))})' if chosen else ''
+        if first is not None:
+            condition += ' AND id >= ? AND id < ?'
+            chosen = [*chosen, first, end]
         left, piece, size = self._size, list[Message](), 0
         try:
             for key, received, data in self._database.execute(

@@ -88,7 +88,10 @@ class Storage:
         raise NotImplementedError
 
     def pieces(self, topics: Collection[str]) -> Iterator[list[Message]]:
-        """Read messages in the order of reception; an error comes after the last readable one."""
+        """Read messages in the order of reception; an error comes after the last readable one.
+
+        Where the clock of the recorder was reset, times of reception begin anew.
+        """
         raise NotImplementedError
 
     def close(self) -> None:

@@ -55,7 +55,7 @@ class TopicSummary(NamedTuple):
 class Summary(NamedTuple):
     """The contents of a recording."""
 
-    duration: float  # time from the first to the last message, s
+    duration: float  # time from the first to the last message, s; where time began anew, of all
     topics: tuple[TopicSummary, ...]  # all topics; those with a part come first
     unclear: str  # why the rotor's topic is not known, or empty
     damage: str  # where reading ended, if the recording is damaged
@@ -85,7 +85,7 @@ def summarise(
         recorded = joints_on(bag, [rotor])[rotor]
         followed[rotor] = next((joint for joint in joints if joint in recorded), joints[0])
     times = {topic: [np.zeros((2, 0), np.int64)] for topic in bag.topics}
-    ends: list[int] = []
+    duration = last = 0
     stamped = {topic for topic, kind in bag.topics.items() if kind in _WITH_STAMPS} - bag.not_cdr
     try:
         for batch in bag.batches(bag.topics, progress, any_encoding=True):
@@ -108,7 +108,9 @@ def summarise(
                 others[topic] += int(np.count_nonzero(~own))
                 malformed[topic] += int(np.count_nonzero(~good))
                 times[topic].append(np.stack([stamp, received])[:, own & good])
-            ends = [*ends[:1], batch[0][1], batch[-1][1]]
+            clock = np.array([received for _, received, _ in batch], np.int64)
+            duration += int(np.maximum(np.diff(clock, prepend=last or clock[0]), 0).sum())
+            last = int(clock[-1])
     except DamagedBagError as error:
         damage = str(error)
     topics = [
@@ -126,8 +128,7 @@ def summarise(
     ]
     order = ['rotor', *_PARTS.values(), '']
     topics.sort(key=lambda topic: (order.index(topic.part), topic.name))
-    duration = (max(ends) - min(ends)) / SECOND if ends else 0.0
-    return Summary(duration, tuple(topics), unclear, damage)
+    return Summary(duration / SECOND, tuple(topics), unclear, damage)
 
 
 def _summary(

@@ -103,14 +103,40 @@ def test_files_that_are_listed_by_name_are_read_in_their_order(recorded, tmp_pat
     path = split(tmp_path / 'bag', recorded, 'sqlite3')
     names = [f'bag_{number}.db3' for number in range(11)]
     starts = [recorded[number * 82][1] for number in range(11)]  # split: 900 messages in 11 files
-    files = [
-        {'path': name, 'starting_time': {'nanoseconds_since_epoch': start}}
-        for name, start in zip(names, starts, strict=True)
-    ]
+    files = _files_of_metadata(names, starts, [start - 1 for start in starts[1:]])
     assert sorted(names) != names
     files = files[::-1] if version > 4 else None
     change_metadata(path, relative_file_paths=sorted(names), files=files)
     assert read(path) == recorded
+
+
+def _files_of_metadata(names, starts, ends) -> list[dict]:
+    return [
+        {
+            'path': name,
+            'starting_time': {'nanoseconds_since_epoch': start},
+            'duration': {'nanoseconds': end - start},
+        }
+        for name, start, end in zip(names, starts, [*ends, starts[-1] + 1], strict=True)
+    ]
+
+
+def test_files_whose_times_begin_anew_are_read_by_their_numbers(recorded, tmp_path):
+    """As where a simulation is reset while its time is recorded, in the last file of three."""
+    first = [(topic, 10 * received - 10**19, data) for topic, received, data in recorded[:600]]
+    again = [
+        (topic, 10 * received - 10**19 - 4 * 10**9, data) for topic, received, data in recorded
+    ]
+    messages = first + again[600:]
+    path = split(tmp_path / 'bag', messages, 'mcap', parts=3)
+    starts = [messages[k][1] for k in (0, 300, 600)]
+    assert sorted(starts) != starts
+    names = [f'bag_{number}.mcap' for number in range(3)]
+    ends = [messages[k - 1][1] for k in (300, 600)]
+    files = _files_of_metadata(names, starts, ends)
+    files[-1]['duration']['nanoseconds'] = messages[-1][1] - starts[-1]
+    change_metadata(path, files=files)
+    assert read(path) == messages
 
 
 @pytest.mark.parametrize('prefix', ['rosbag2', '3_runs'])

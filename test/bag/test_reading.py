@@ -172,6 +172,36 @@ def test_chunks_that_overlap_are_merged_in_the_order_of_reception(recorded, tmp_
     assert read(path) == sorted(by_topic, key=lambda message: message[1])
 
 
+RECORDERS = {
+    'one chunk': partial(mcap_file, chunk_size=2**20),
+    'chunks': mcap_file,
+    'chunks without an index': partial(mcap_file, **NO_INDEX),
+    'chunks of a killed recorder': partial(mcap_file, finish=False),
+    'no chunks': partial(mcap_file, use_chunking=False),
+    'sqlite3': partial(folder, storage='sqlite3'),
+}
+
+
+@pytest.mark.parametrize('kind', RECORDERS)
+def test_runs_stay_in_their_order_where_time_begins_anew(recorded, tmp_path, kind):
+    """As of a simulation that is reset while it is recorded with its own time."""
+    first = [(topic, 10 * received - 10**19, data) for topic, received, data in recorded]
+    assert first[-1][1] - first[0][1] > 2 * 10**9
+    again = [(topic, received - 7_000_003, data) for topic, received, data in first]
+    runs = first + again + again[:300]
+    path = RECORDERS[kind](tmp_path / 'b.mcap', runs)
+    assert read(path) == runs
+    assert read(path, ['/rotor_state']) == [m for m in runs if m[0] == '/rotor_state']
+
+
+@pytest.mark.parametrize('kind', RECORDERS.keys() - {'no chunks'})
+def test_recordings_in_chunks_that_follow_each_other_are_sorted_by_time(recorded, tmp_path, kind):
+    """As where a program writes the later one first."""
+    later = [(topic, received + 10**10, data) for topic, received, data in recorded]
+    path = RECORDERS[kind](tmp_path / 'b.mcap', later + recorded)
+    assert read(path) == recorded + later
+
+
 def test_chunks_of_a_rewritten_file_are_merged_as_mcap_does(shared_path):
     path = shared_path('data/faults/chunks_not_in_log_order.mcap')
     with path.open('rb') as stream:

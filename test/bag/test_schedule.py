@@ -34,6 +34,11 @@ def test_due_times(options, expected):
     assert schedule([5.0, 6.0, 6.5, 9.0], **options) == expected
 
 
+def test_messages_are_due_one_after_another_where_the_time_of_a_recording_begins_anew():
+    again = [(0.0, 5.0), (1.0, 6.0), (1.0, 0.0), (1.5, 0.5), (7.5, 6.5)]
+    assert schedule([received for _, received in again]) == again
+
+
 @pytest.mark.parametrize(('times', 'options', 'due'), [
     ([5.0, 6.0, 7.0], {}, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]),
     ([5.0, 6.0, 7.0], {'rate': 2.0}, [0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 4.5]),

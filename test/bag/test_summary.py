@@ -28,6 +28,14 @@ def summary(path, *arguments):
         return summarise(bag, *arguments)
 
 
+def test_the_duration_is_that_of_all_runs_where_time_begins_anew(tmp_path):
+    """Twice 0.99 s, from 5 s and from 4.5 s on."""
+    stamps = [*range(5 * 10**9, 6 * 10**9, 10**7), *range(4_500_000_000, 5_500_000_000, 10**7)]
+    messages = [('/motor', stamp, rotor_bytes(stamp, ['m1'], [0.0])) for stamp in stamps]
+    found = summary(write_bag(tmp_path / 'bag', messages, {'/motor': JOINT_STATE}))
+    assert found.duration == pytest.approx(1.98)
+
+
 def test_gaps_are_counted(tmp_path):
     """At 100 Hz, from the 19th to the 30th message are 11 periods."""
     (topic,) = summary(write(tmp_path / 'bag', '/motor', lost=range(20, 30))).topics

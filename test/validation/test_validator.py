@@ -6,12 +6,14 @@ import re
 import struct
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 import replaying
 from live import rotor_bytes
+from made_bags import folder, mcap_file
 from node_loop import answered
 from replaying import SECOND, edited
 from shipped_bags import BAGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, config_of, read_bag
@@ -25,6 +27,7 @@ from gear_kinematics.validation.document import moving
 from gear_kinematics.validation.findings import findings, sentence
 from gear_kinematics.validation.matching import WINDOW
 from gear_kinematics.validation.task import Task, Tolerances
+from gear_kinematics.validation.validate_bag import validate_bag
 from gear_kinematics.validation.validator import Validator
 from gear_kinematics.wire.batches import FIELDS
 
@@ -50,6 +53,34 @@ def change_all(messages: list[Message], topic: str, edit: Callable) -> list[Mess
 
 def index_of(messages: list[Message], topic: str, number: int = CHANGED) -> int:
     return [k for k, (name, _, _) in enumerate(messages) if name == topic][number - 1]
+
+
+@pytest.mark.parametrize('make', [
+    folder,
+    partial(folder, storage='sqlite3'),
+    partial(mcap_file, use_chunking=False),  # as with --storage-preset-profile fastwrite
+], ids=['mcap', 'sqlite3', 'fastwrite'])  # fmt: skip
+def test_a_simulation_that_is_reset_while_it_is_recorded_is_judged_as_the_node_saw_it(
+    tmp_path, make
+):
+    """Its stamps and, with --use-sim-time, the times of reception begin anew."""
+    first = read_bag(BAGS / 'servo_point_to_point')
+    back = 5_003_000  # ns: the second run begins so much earlier than the first
+
+    def shifted(message) -> None:
+        set_stamp(message, replaying.stamp_of(message) - back)
+
+    again = [
+        (topic, received - back, edited(data, TYPES[topic], shifted))
+        for topic, received, data in first
+    ]
+    path = make(tmp_path / 'bag', first + again)
+    report = validate_bag(Task(path, config_of('servo_point_to_point')))
+    assert (report.verdict, report.rotor.resets) == (Verdict.PASS, 1)
+    assert [topic.compared for topic in report.topics] == [6000, 6000]
+    duration = (first[-1][1] - first[0][1] + back) / SECOND
+    (found,) = [text for text in texts(report) if 'the clock was set back' in text]
+    assert float(found.split('at least ')[1].split(' s')[0]) == pytest.approx(duration, rel=0.01)
 
 
 def set_stamp(message, stamp: int) -> None:

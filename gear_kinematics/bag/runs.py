@@ -1,0 +1,38 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Runs of a recording: what was recorded until its clock began anew.
+
+Under `ros2 bag record --use-sim-time`, times of reception are those of a simulation, and begin
+anew when it is reset. The messages of both runs then have the same times, and stay in their order.
+"""
+
+from collections.abc import Hashable, Iterable
+
+import numpy as np
+
+from gear_kinematics.wire.joint_reader import CLOCK_RESET
+
+_MIXED = 10  # times that another run begins, for a topic: by more, times of runs are the same
+
+
+def starts_of_runs(messages: Iterable[tuple[Hashable, int]], *, mixed: bool = True) -> list[int]:
+    """Return the numbers of messages, as recorded, that begin another run; mostly none.
+
+    Messages are given by topic and time of reception, ns. The times of a topic fall there by more
+    than a second, and those before and after are `mixed`. Otherwise messages, or chunks of them,
+    are only out of order, and belong together.
+    """
+    numbers = dict[Hashable, int]()
+    rows = ((numbers.setdefault(topic, len(numbers)), received) for topic, received in messages)
+    topic, times = np.fromiter(rows, np.dtype((np.int64, 2))).T
+    by_topic = np.argsort(topic, kind='stable')
+    fell = (np.diff(times[by_topic]) < -CLOCK_RESET) & (np.diff(topic[by_topic]) == 0)
+    starts = list[int]()
+    for at, before in sorted(zip(by_topic[1:][fell], by_topic[:-1][fell], strict=True)):
+        if not starts or before >= starts[-1]:  # otherwise another topic begins the same run
+            starts.append(int(at))
+    if not (starts and mixed):
+        return starts
+    run = np.searchsorted(starts, np.arange(len(times)), side='right')
+    by_time = np.lexsort((times, topic))
+    changes = (np.diff(run[by_time]) != 0) & (np.diff(topic[by_time]) == 0)
+    return starts if np.count_nonzero(changes) > _MIXED * len(starts) * len(numbers) else []
