@@ -14,9 +14,8 @@ from zlib import crc32
 import numpy as np
 
 from gear_kinematics.bag.codecs import CODECS, ReadLimits
-from gear_kinematics.bag.runs import starts_of_runs
+from gear_kinematics.bag.runs import Array, may_restart, starts_of_runs
 from gear_kinematics.bag.storage import Message, Published, Storage, Topic, UnsortedError
-from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
 MCAP_MAGIC = b'\x89MCAP0\r\n'
 _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _INDEX, _DATA_END = 2, 3, 4, 5, 6, 7, 15
@@ -64,6 +63,7 @@ class Mcap(Storage):
     def topics(self) -> list[Topic]:
         """Return the topics of the index, or else of the readable part of the file."""
         self._read_summary()
+        self._channels = self._channels or dict(self.found)
         if not self._channels:
             try:
                 for _ in self._unsorted():
@@ -71,6 +71,7 @@ class Mcap(Storage):
             except Exception:
                 if not self._channels:
                     raise
+            self.found |= self._channels
         if self._channels and all(topic.encoding == 'ros1' for topic in self._channels.values()):
             raise ValueError('it holds messages of ROS 1; give the .bag that it was made from')
         return list(self._channels.values())
@@ -143,10 +144,10 @@ class Mcap(Storage):
         """Return first time, position, length and size of all chunks, if any overlap.
 
         Without overlaps in time, or with messages outside of chunks, the list is empty. Also
-        return whether another run may begin, as the times of a channel fall, or have no index.
+        return whether another run may begin in them.
         """
         chunks, latest, overlap = list[tuple[int, int, int, int]](), 0, False
-        last, back = dict[int, np.int64](), False
+        indexes: list[tuple[int, int]] = []
         offset = self._stream.seek(len(MCAP_MAGIC))
         while len(header := self._stream.read(_CHUNK_START.size)) == _CHUNK_START.size:
             opcode, length, start, end, size = _CHUNK_START.unpack(header)
@@ -161,15 +162,16 @@ class Mcap(Storage):
                 overlap |= bool(end) and start < latest  # the times of an empty chunk are 0
                 latest = max(latest, end)
             if opcode == _INDEX and _INDEX_START + 16 <= length <= self.limits.max_record:
-                self._stream.seek(offset + _RECORD.size)
-                index = self._stream.read(length)
-                (channel,) = struct.unpack_from('<H', index)
-                times = np.frombuffer(index, '<i8', 2 * (length // 16), _INDEX_START)[::2]
-                fell = np.diff(times, prepend=last.get(channel, times[0])) < -CLOCK_RESET
-                back |= bool(np.any(fell))
-                last[channel] = times[-1]
+                indexes.append((offset + _RECORD.size, length))
             offset = self._stream.seek(after)
-        return chunks if overlap else [], back or not last
+        return (chunks, may_restart(self._times_of_index(indexes))) if overlap else ([], False)
+
+    def _times_of_index(self, places: list[tuple[int, int]]) -> Iterator[tuple[bytes, Array]]:
+        """Read the channels and times of indexes of messages, by their places and lengths."""
+        for place, length in places:
+            self._stream.seek(place)
+            index = self._stream.read(length)
+            yield index[:2], np.frombuffer(index, '<i8', 2 * (length // 16), _INDEX_START)[::2]
 
     def _merged(self, chunks: list[tuple[int, int, int, int]]) -> Iterator[list[Message]]:
         """Merge chunks by time; messages of the same time stay in the order of the file."""

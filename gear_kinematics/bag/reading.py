@@ -2,6 +2,7 @@
 """Reads recordings of any storage, and opens their files by content, whatever their names."""
 
 import tempfile
+from collections import defaultdict
 from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Mapping
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass, field
@@ -89,6 +90,7 @@ class Bag:
         self.path = Path(path)
         self._readings = ExitStack()
         self._described: dict[str, Topic] = {}
+        self._found = defaultdict[Path, dict[int, Topic]](dict)
         self.joints = {}
         with bag_errors(self.path):
             self._files, self._listed, self.message_count = find_contents(self.path)
@@ -184,6 +186,7 @@ class Bag:
         for file in self._files:
             try:
                 with _opened(file, limits) as storage:
+                    storage.found = self._found[file]
                     for topic in storage.topics():
                         self._described.setdefault(topic.name, topic)
             except BagError:
@@ -203,6 +206,7 @@ class Bag:
         read, limits = 0, self._limits()
         for file in self._files:
             with _opened(file, limits, read) as storage:
+                storage.found = self._found[file]
                 storage.any_encoding = options.get('any_encoding', False)
                 storage.publish_times = options.get('publish_times', False)
                 for piece in _plain(storage.pieces(topics), limits):

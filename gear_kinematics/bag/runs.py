@@ -8,8 +8,11 @@ anew when it is reset. The messages of both runs then have the same times, and s
 from collections.abc import Hashable, Iterable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
+
+Array = NDArray[np.int64]
 
 _MIXED = 10  # times that another run begins, for a topic: by more, times of runs are the same
 
@@ -36,3 +39,16 @@ def starts_of_runs(messages: Iterable[tuple[Hashable, int]], *, mixed: bool = Tr
     by_time = np.lexsort((times, topic))
     changes = (np.diff(run[by_time]) != 0) & (np.diff(topic[by_time]) == 0)
     return starts if np.count_nonzero(changes) > _MIXED * len(starts) * len(numbers) else []
+
+
+def may_restart(indexes: Iterable[tuple[Hashable, Array]]) -> bool:
+    """Return whether times of a topic fall in the order of recording, or none are given.
+
+    Times, (n,), ns, are given with their topic.
+    """
+    last: dict[Hashable, np.int64] = {}
+    for topic, times in indexes:
+        if np.any(np.diff(times, prepend=last.get(topic, times[0])) < -CLOCK_RESET):
+            return True
+        last[topic] = times[-1]
+    return not last

@@ -78,6 +78,7 @@ class Storage:
     def __init__(self, limits: ReadLimits) -> None:
         """Start with the limits on the files of the bag."""
         self.limits = limits
+        self.found: dict[int, Topic] = {}  # channels that only reading the whole file shows
         self.read = 0  # number of messages that the caller has taken from `pieces`
         self.unclosed = False  # whether it ended, when it was read, as if more could follow
         self.any_encoding = False  # whether messages are read that are not CDR, too

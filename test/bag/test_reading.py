@@ -32,6 +32,7 @@ from rosbags import rosbag1, rosbag2
 from shipped_bags import TYPES, write_bag
 
 from gear_kinematics.bag import Bag, BagError
+from gear_kinematics.bag.mcap import Mcap
 
 OTHERS = (
     ('/a', 'my_msgs/msg/Odd', 'cdr', 'ros2msg', b'!! no [definition\xff'),
@@ -252,6 +253,21 @@ def test_a_bag_without_messages_is_written_and_read(tmp_path, storage):
         assert (bag.topics, bag.message_count) == (TYPES, 0)
         assert not list(bag.messages(TYPES))
         assert file_of(bag.path).name.startswith('bag_0.')
+
+
+def test_the_topics_of_a_file_without_a_summary_are_sought_once(recorded, tmp_path, monkeypatch):
+    """Its chunks overlap, so that all topics must be known before messages are read."""
+    by_topic = sorted(recorded, key=lambda message: message[0])
+    path = mcap_file(tmp_path / 'b.mcap', by_topic, finish=False)
+    opened = []
+    open_chunk = Mcap._chunk_records
+    monkeypatch.setattr(Mcap, '_chunk_records', lambda *a: opened.append(a) or open_chunk(*a))
+    with Bag(path) as bag:
+        count = len(opened)
+        assert count > 1
+        for reading in (1, 2):
+            assert len([*bag.messages(TYPES)]) == len(recorded)
+            assert len(opened) == (1 + reading) * count
 
 
 def test_a_file_without_a_summary_is_read_in_pieces_to_find_its_topics(recorded, tmp_path):
