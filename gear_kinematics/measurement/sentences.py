@@ -83,7 +83,7 @@ class Observation(Enum):
     STATES_THINNED = '{topic}: one state of {every} is used' + _THINNED
     STATES_OUT_OF_ORDER = '{topic}: {count} states out of order'
     ROWS_THINNED = 'one row of {every} is used' + _THINNED
-    ROWS_LEFT_OUT = _ROWS + 'no numbers, too large ones, or sums'
+    ROWS_LEFT_OUT = _ROWS + 'no numbers, too large ones, or sums and the like'
     ROWS_AGAIN = _ROWS + 'they repeat the one before'
     NO_TIMES = _ROWS + 'no time in {column}'
     TIMES_OUT_OF_ORDER = _ROWS + 'the time in {column} is out of order'

@@ -26,7 +26,9 @@ _ANEW = 0.6
 half of them are: none are held."""
 _EVEN = 2.0  # 95 % of the readings are held for no more than this times the usual number of rows
 _TINY = 1e-30  # so that an axis at rest is nothing divided by something
-_ROUNDED = 0.01  # of a sum, which rows that were left out change, too
+_FOOTER, _STEP_BELOW = 6, 3.0
+"""Most rows of sums and the like below a table; least step to them, in the largest above."""
+_ROUNDED = 0.01  # of a sum, or of what columns span, which rows that were left out change, too
 _LATE = 0.5  # share of the motion expected within a hold, below which the axis stands in it
 
 
@@ -75,17 +77,18 @@ def rows_of(
     remarks: list[Observed],
     *,
     timed: bool,
+    every: int,
 ) -> list[tuple[list[str], Array]]:
     """Find which series were sampled together, and in which of their `usable` rows, (n,).
 
     If they are `timed`, each has rows of its own where tables with other times were joined: few
     rows have all, as gaps are empty, or none has two new values, as gaps repeat the last ones.
-    So it has where a logger held its readings over several rows: the first of them is used. A last
-    row of sums is left out.
+    So it has where a logger held its readings over several rows: the first of them is used. Last
+    rows of sums, means or the like are left out. The series have one row in `every` of a file.
     """
     together = np.all([*usable.values()], axis=0)
-    if all(_ends_with_sum(values[together]) for values in series.values()):
-        together[np.flatnonzero(together)[-1]] = False
+    if last := _footer(np.array([values[together] for values in series.values()], float), every):
+        together[np.flatnonzero(together)[-last:]] = False
     own = _new(series) if timed else {}
     if timed and 2 * np.count_nonzero(together) < max(map(np.count_nonzero, usable.values())):
         own = usable
@@ -102,12 +105,25 @@ def rows_of(
     return [([*usable], together)]
 
 
-def _ends_with_sum(values: Array) -> bool:
-    """Return whether the last of many values is the sum of the others, but for roundings."""
-    if len(values) <= _FEWEST:
-        return False
-    off = abs(values[-1] - values[:-1].sum())
-    return bool(off < _ROUNDED * abs(values[-1]))
+def _footer(table: Array, every: int) -> int:
+    """Return how many of the last of many rows are sums, means or the like of those above.
+
+    The table, (columns, n), has one row in `every` of a file. Such rows begin by a step that is
+    larger than all others.
+    """
+    steps = np.abs(np.diff(table))
+    for count in range(min(_FOOTER, table.shape[1] - _FEWEST), 0, -1):
+        above, below = table[:, :-count], table[:, -count:]
+        if not np.any(steps[:, -count] > _STEP_BELOW * steps[:, :-_FOOTER].max(axis=1)):
+            continue
+        mean, deviation, span = above.mean(axis=1), above.std(axis=1), np.ptp(above, axis=1)
+        total, square = every * above.sum(axis=1), np.hypot(mean, deviation)
+        known = [total, mean, deviation, square, span, above.min(axis=1), above.max(axis=1)]
+        slack = [_ROUNDED * np.abs(total) + (every - 1) * span, *6 * [_ROUNDED * span]]
+        off = np.abs(below - np.array(known)[..., np.newaxis])
+        if (off <= np.array(slack)[..., np.newaxis]).all(axis=1).any(axis=0).all():
+            return count
+    return 0
 
 
 def held_readings(

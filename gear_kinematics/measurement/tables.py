@@ -163,7 +163,8 @@ class _Samples:
             del self.found['torque'], data['torque'], usable['torque']
         groups = [([role], rows) for role, rows in usable.items()]
         if len({*clocks.values()}) == 1:
-            groups = rows_of(data, usable, self.remarks, timed=clock is not None)
+            timed, every = clock is not None, self._every
+            groups = rows_of(data, usable, self.remarks, timed=timed, every=every)
         if not all(rows.any() for _, rows in groups):
             names = ', '.join(column.name for column in self.found.values())
             raise ValueError(f'no usable rows: none has numbers such as -12.5 in all of {names}')

@@ -208,6 +208,11 @@ ENCODERS = {
         f'np.float64({at:.2f}),"[\'m1\', \'out\']","array(\'d\', [{rotor:.5f}, {out:.5f}])"\n'
         for at, rotor, out in zip(t, r, o, strict=True)),
     'a row of sums': lambda t, r, o: written([t, r, o], NAMES) + f'{sum(t)},{sum(r)},{sum(o)}\n',
+    'rows of the sums and the means': lambda t, r, o: written([t, r, o], NAMES) + written(
+        np.transpose([[sum(one), np.mean(one)] for one in (t, r, o)]), '', '{:.5f}'),
+    'rows of ranges and of root mean squares': lambda t, r, o: written(
+        [t, r, o], NAMES) + written(
+        np.transpose([[np.ptp(k), np.hypot(np.mean(k), np.std(k))] for k in (t, r, o)]), ''),
     'seconds of the day': plain('time_of_day,rotor,output', time=lambda v: f'{v + 32400.0:.2f}'),
     'Serial Studio': plain('RX Date/Time,rotor,output',
         time=lambda v: moment(' ')(v)[:-3].replace('-', '/').replace('.', '::')),
@@ -1378,6 +1383,32 @@ def test_series_that_take_turns_are_all_read_in_part(tmp_path, gear, reference, 
     assert recording.remarks == (Observation.ROWS_THINNED(every=3),)
     np.testing.assert_allclose(recording.both.rotor.turned, r[::3], rtol=1e-14)
     np.testing.assert_allclose(recording.both.measured, o[1::3][:-1], rtol=1e-14)
+
+
+def test_a_sum_below_a_table_of_which_rows_are_left_out_is_no_sample(
+    tmp_path, gear, reference, monkeypatch
+):
+    """One row in two is read, so that the sum is twice that of these rows, and a little more."""
+    monkeypatch.setattr(dialects, '_MOST_ROWS', 1000)
+    columns = [each[:1000] for each in reference('encoders')]
+    content = written(columns, NAMES) + ','.join(str(sum(each)) for each in columns) + '\n'
+    recording = read_table(saved(tmp_path, content), Sources(), gear.gear.gear_ratio)
+    assert recording.remarks[0] == Observation.ROWS_THINNED(every=2)
+    assert recording.remarks[1:] == (Observation.ROWS_LEFT_OUT(rows=1),)
+    np.testing.assert_allclose(recording.both.measured, columns[2][::2], atol=1e-5)
+
+
+@pytest.mark.parametrize('end', ['greatest', 'mean'])
+def test_a_motion_that_ends_at_its_greatest_or_mean_angles_has_all_its_rows(
+    tmp_path, gear, reference, end
+):
+    t, r, o = reference('encoders')
+    ahead = -o  # turns the same way
+    last = 1 + int(np.argmax(r) if end == 'greatest' else np.argmin(np.abs(r[100:] - r.mean())))
+    last += 100 * (end == 'mean')
+    content = written([t[:last], r[:last], ahead[:last]], NAMES)
+    recording = read_table(saved(tmp_path, content), Sources(), gear.gear.gear_ratio)
+    assert (recording.rows, recording.remarks) == (last, ())
 
 
 @pytest.mark.parametrize('other', ['time,output_time', 'time1,time2', 'time_a,time_b'])
