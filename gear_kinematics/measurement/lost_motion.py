@@ -58,7 +58,7 @@ def measure(
     """
     encoders, ratio = recording.encoders, parameters.gear.gear_ratio
     found = wrong = None
-    if encoders:
+    if encoders and not encoders.wound_up(ratio):
         wrong = check_ratio(encoders, ratio)
         found = transmission_figures(encoders, ratio, parameters.transmission_error_travel)
     report = LostMotion(recording.name, recording, ratio, transmission=found, wrong_ratio=wrong)

@@ -164,7 +164,7 @@ def estimate_ratio(
     turned = math.degrees(abs(measured.value) * fit.travel)
     measured = measured.inverse()
     if abs(measured.value) + _MAX_DISTANCE * measured.expanded < 1.0:
-        raise RecordingError('the output turns more than the rotor: exchange the two')
+        raise RecordingError(str(Observation.EXCHANGED()))
     return _judged(measured, turned)
 
 

@@ -23,6 +23,7 @@ Array = NDArray[Any]
 MOST_MESSAGES = 500_000  # of the rotor that are examined; they take about 200 bytes each
 _SPEED_WINDOW = 0.02  # s, over which the speed is averaged
 _MOST_TWIST = 0.35  # rad of the output under torque; a shaft that turns further is not locked
+_MOST_IDEAL = 0.5  # of its motion, that a held rotor accounts for
 
 
 class RecordingError(ValueError):
@@ -143,6 +144,14 @@ class Encoders:
         if not self.timed or not (self.share * (1.0 - self.share)).any():
             return 0.0
         return float(np.median(np.diff(self.rotor.stamp))) / SECOND
+
+    def wound_up(self, ratio: Fraction) -> bool:
+        """Return whether the output only winds up under torque, as the rotor is locked or held."""
+        if self.torque(ratio) is None:
+            return False
+        ideal, output = np.ptp(self.at_measured(self.ideal(ratio))), np.ptp(self.measured)
+        turned = max(output, abs(float(ratio)) * ideal)
+        return bool(ideal < _MOST_IDEAL * output and turned <= _MOST_TWIST)
 
     def at_measured(self, values: Array) -> Array:
         """Interpolate a quantity of the rotor to the measured angles."""
@@ -293,6 +302,8 @@ class Recording:
         if both is None:
             return self.locked
         torque, twist = float(ratio) * both.at_measured(both.rotor.effort), -both.error(ratio)
+        if both.wound_up(ratio) and np.cov(torque, twist)[0, 1] < 0.0:
+            twist = -twist  # the torque is that of the load, against the gear's
         known, step = np.isfinite(torque), both.error_step(ratio)
         found = Loading(torque, twist, both.moment, both.timed, step, measured=True)
         return found.chosen(known) if known.any() else None

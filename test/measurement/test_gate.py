@@ -447,6 +447,22 @@ def test_a_calibration_does_not_help_where_the_error_rises(shared_path):
     assert not fit([recording], RATIO).helps
 
 
+@pytest.mark.parametrize('sign', [1.0, -1.0], ids=['of the load', 'of the gear'])
+@pytest.mark.parametrize('yields', [0.0, 0.0005], ids=['locked', 'held by its servo'])
+def test_ramps_against_a_rotor_that_hardly_moves_are_measured(tmp_path, config, yields, sign):
+    """The rotor follows the output as far as it yields, which both encoders show."""
+    gear, noise = Gear(play=0.0, stiffness=600.0, friction=1.0), np.random.default_rng(3)
+    torque = ramps(*[(20.0, 400)] * 2)
+    rotor = -19.0 * yields * torque / 20.0 + 1e-5 * noise.standard_normal(len(torque))
+    output = creep(gear, torque) + yields * torque / 20.0
+    columns = {'time_s': 0.01 * np.arange(len(torque)), 'rotor_rad': rotor, 'output_rad': output}
+    path = write_csv(tmp_path / 'r.csv', **columns, torque_nm=sign * torque)
+    found = measure(read(path, config), config)
+    assert (found.wrong_ratio, found.measured) == (None, True)
+    assert float(found.figures.hysteresis.value) == pytest.approx(2.0 / 600.0, rel=0.03)
+    assert found.figures.stiffness[-1].slope.value == pytest.approx(600.0, rel=0.01)
+
+
 def test_exchanged_columns_are_named(shared_path):
     path = shared_path('data/faults/both_encoders_clean.csv')
     exchanged = read_table(path, Sources(rotor='output_rad', output='rotor_rad'), RATIO)
