@@ -4,6 +4,7 @@
 import re
 import shlex
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from itertools import filterfalse, islice, permutations, product
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from gear_kinematics.measurement.columns import ColumnsError, Sources, option
+from gear_kinematics.measurement.columns import Column, ColumnsError, Sources, option
 from gear_kinematics.measurement.dialects import TableFile
 from gear_kinematics.measurement.names import (
     ANGLE_UNITS,
@@ -88,6 +89,17 @@ def rising(table: TableFile) -> dict[str, str]:
     """Return the first of the columns whose numbers only rise, as those of times do, if any."""
     names = filter(None, table.names[:_FIRST])
     return next(({'time': name} for name in names if _rises(table, name)), {})
+
+
+def no_times(table: TableFile, found: Mapping[str, Column]) -> str:
+    """Say that no times were found, and which other column may have them, as its numbers rise."""
+    used = {column.name for column in found.values()}
+    with suppress(ValueError):  # of columns that are not read
+        name = rising(table._replace(names=[n for n in table.names if n not in used])).get('time')
+        values = np.asarray(table.load([name])[0][name] if name else ()).astype(float)
+        if np.any(np.diff(values) != 1.0):  # no numbers of rows
+            return f'no times (perhaps --time-column={shlex.quote(str(name))})'
+    return 'no times'
 
 
 def _rises(table: TableFile, name: str) -> bool:

@@ -200,6 +200,8 @@ def _column(role: str, name: str, unit: str, given: Sources, common: str) -> Col
     """Return a column with its unit, which is that of the other angle, `common`, if unknown."""
     says, units = meaning(name), ROLES[role]
     own = unit = unit or says.unknown
+    if role in {'time', 'output_time'} and unit == 'counts':  # ticks, whose size sampling shows
+        unit = ''
     such = f'{name} [{next(iter(units))}]'
     if role in ANGULAR:
         own = given.unit or unit

@@ -237,7 +237,7 @@ def _layout(lines: Sequence[str]) -> _Layout:
     begins = (k for k in range(len(filled)) if all(map(is_whole, filled[k : k + _BEGIN])))
     if not numeric or (first := next(begins, None)) is None:
         raise ValueError(
-            'no rows of numbers: write a CSV with one row of names, and numbers without units'
+            'no rows of numbers: write a CSV with one row of names, and a number in each cell'
         )
     start = filled[first]
     above = [line for line in lines[:start] if not _NO_NAMES.fullmatch(line)]

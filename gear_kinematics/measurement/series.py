@@ -75,9 +75,9 @@ def rows_of(
     series: Mapping[str, Array],
     usable: Mapping[str, Array],
     remarks: list[Observed],
+    every: int,
     *,
     timed: bool,
-    every: int,
 ) -> list[tuple[list[str], Array]]:
     """Find which series were sampled together, and in which of their `usable` rows, (n,).
 

@@ -11,7 +11,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
-from gear_kinematics.measurement.advice import advice, rising
+from gear_kinematics.measurement.advice import advice, no_times, rising
 from gear_kinematics.measurement.assumed_units import against, differ_as_degrees
 from gear_kinematics.measurement.clocks import (
     are_apart,
@@ -163,8 +163,7 @@ class _Samples:
             del self.found['torque'], data['torque'], usable['torque']
         groups = [([role], rows) for role, rows in usable.items()]
         if len({*clocks.values()}) == 1:
-            timed, every = clock is not None, self._every
-            groups = rows_of(data, usable, self.remarks, timed=timed, every=every)
+            groups = rows_of(data, usable, self.remarks, self._every, timed=clock is not None)
         if not all(rows.any() for _, rows in groups):
             names = ', '.join(column.name for column in self.found.values())
             raise ValueError(f'no usable rows: none has numbers such as -12.5 in all of {names}')
@@ -185,7 +184,7 @@ class _Samples:
         role = 'output' if 'output' in self.found else 'angle'
         self.used = len(self.series[role].stamp)
         named = ' and '.join(dict.fromkeys(clocks.values()))
-        self.said = [f'time [{clock.unit}] from {named}' if clock else 'no times']
+        self.said = [f'time [{clock.unit}] from {named}' if clock else no_times(table, self.found)]
         self.said += map(described, self.found, self.found.values())
         kept = next(rows for roles, rows in groups if role in roles)
         rows = len(kept) if len(groups) == 1 else np.count_nonzero(kept)

@@ -1451,6 +1451,31 @@ def test_two_times_are_asked_for_wherever_they_stand(tmp_path, gear, reference, 
     assert read(path, gear, followed(told.value)).both.before[0] == 12
 
 
+@pytest.mark.parametrize(('name', 'unit', 'start'), [
+    ('Ticks', 1e7, 638_700_000_000_000_000),  # of .NET, 100 ns since the year 1
+    ('clock value 2', 1e3, 0),
+])  # fmt: skip
+def test_a_column_that_rises_where_no_times_are_found_is_proposed(
+    tmp_path, gear, reference, name, unit, start
+):
+    t, r, o = reference('encoders')
+    times = start + np.round(t * unit).astype(int)
+    path = saved(tmp_path, written([times, r, o], f'{name},rotor,output', '{}'))
+    said = read(path, gear).columns[0]
+    given = shlex.split(said.partition('perhaps ')[2].rstrip(')'))
+    assert given == [f'--time-column={name}']
+    found = read(path, gear, Sources(time=name)).both
+    assert (found.timed, found.duration) == (True, pytest.approx(52.76, rel=1e-3))
+
+
+@pytest.mark.parametrize('first', ['row', 'cycle'])
+def test_numbers_of_rows_and_repeats_are_not_proposed_as_times(tmp_path, gear, reference, first):
+    t, r, o = reference('encoders')
+    numbers = np.arange(len(t)) if first == 'row' else np.sin(t).round(3)
+    path = saved(tmp_path, written([numbers, r, o], f'{first},rotor,output', '{}'))
+    assert read(path, gear).columns[0] == 'no times'
+
+
 def test_times_that_may_be_of_the_torque_alone_are_named(tmp_path, gear, reference):
     t, a, q = reference('ramps')
     path = saved(tmp_path, written([t, a, t + 0.5, q], 'time,angle,time.1,torque', '{:.5f}'))
