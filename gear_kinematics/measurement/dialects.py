@@ -248,7 +248,7 @@ def _layout(lines: Sequence[str]) -> _Layout:
         found = _names(above, separator, max(map(len, samples)), 1 + max(numeric), begin)
         if not found[0][0]:  # the index of pandas
             found[0][0] = 'time' if MOMENT.fullmatch(row[0]) else '1'
-        elif MOMENT.fullmatch(found[0][0]):
+        elif weight(found[0][0], '.') and not any(weight(name, '.') for name in found[0][1:]):
             found[0][0] = 'time of the line'  # rather than which, others are used
         beside = zip(found[0], found[0][1:], row[1:], strict=False)
         found[1].update({k: one for k, of, one in beside if re.fullmatch('(?i)units?', of)})

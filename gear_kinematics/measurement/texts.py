@@ -19,12 +19,18 @@ _OTHERS = {
 """Encodings of Windows: Katakana, words in Korean or traditional Chinese, which may look like
 simplified Chinese, four letters in Cyrillic, or two Chinese characters."""
 
+_LEVEL = r'(?:TRACE|DEBUG|INFO|NOTICE|WARN(?:ING)?|ERROR)'
 _LOGGED = re.compile(
     r'(?m)^(?:\[(?=[^]\n]*\d:\d\d)([^]\n]*)\][ \t]*|(\d\d:\d\d:\d\d[.:]\d+) -?>[ \t]*|'
+    rf'(\d{{4}}-\d\d-\d\d[ T]\d\d:\d\d:\d\d[.,]\d+)[^\n\d]*?\b{_LEVEL}\b'
+    r'(?: +\| \S+(?= -))?(?: -|[:\]])? +|'
+    rf'(?:\[[\w.-]+-\d+\] )?\[{_LEVEL}\] \[(\d+\.\d+)\] \[[^]\n]*\]: |'
+    r'[EWIDV] \((\d+)\) [\w.-]+: |'
     r'(\d{4}-\d\d-\d\d \d\d:\d\d:\d\d[.,]\d+) +(?![AP]M|UTC|Z|[-+](\d\d:|0\d{3})|\+1\d{3})'
     r'(?=[^ ,;\t\n]+[,;\t]))'
 )
-"""Stamps that terminals, such as Tera Term and the Arduino IDE, write before each line."""
+"""Stamps that terminals, such as Tera Term and the Arduino IDE, and the logs of Python, ROS and
+ESP-IDF write before each line."""
 _LABEL = re.compile(r'(?m)(?:(?<=[\s,;])|^)([^\W\d]\w*) ?[:=] ?(?=[-+.\d])')
 """Names before each number, as sketches print them for the plotter of the Arduino IDE."""
 _PYTHON = re.compile(r"\b(?:np\.\w+|array|tensor)\((?:'\w', ?)?([^()=]*?)(?:, \w+=[\w.':]+)*\)")
@@ -76,9 +82,12 @@ def plainer(text: str, separators: Sequence[str]) -> tuple[Callable[[str], str],
     """
     rules: list[tuple[re.Pattern[str], Any]] = [(_PYTHON, r'\1')] * bool(_PYTHON.search(text))
     if logged := 2 * len(_LOGGED.findall(text)) > text.count('\n'):
-        mark = max(separators, key=_LOGGED.sub('', text).count)
+        rest = _LABEL.sub('', _LOGGED.sub('', text[: text.rfind('\n')]))
+        mark = max(separators, key=rest.count)
         joint = 'T' if mark == ' ' else ' '
-        rules.append((_LOGGED, lambda at: at[at.lastindex].replace(' ', joint) + mark))
+        rules.append(
+            (_LOGGED, lambda at: at[at.lastindex].replace(' ', joint).replace(',', '.') + mark)
+        )
     labels = [*map(_LABEL.findall, text.split('\n')[1:_LINES])]
     several = len(labels) > 1 and labels[0] == labels[-2] != labels[0][:1]
     rules += [(_LABEL, '')] * several

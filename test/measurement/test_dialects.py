@@ -234,6 +234,22 @@ ENCODERS = {
     'stamps of the Arduino IDE alone': lambda t, r, o: written(
         [t, r, o], '09:59:40.000 -> rotor,output', (
             lambda v: f'{moment()(v)[11:-3]} ->', '{:.5f}', '{:.5f}')).replace('>,', '> '),
+    'the log of Python': lambda t, r, o: written(
+        [t, r, o], '2026-11-26 09:59:40,000 - bench - INFO - rotor,output', (
+            lambda v: f'{moment(" ", decimals=",")(v)[:-3]} - bench - INFO -', '{:.5f}', '{:.5f}')
+        ).replace('-,', '- '),
+    'the log of Python, with a label before each number': lambda t, r, o: written(
+        [t, r, o], '', (
+            lambda v: f'{moment(" ", decimals=",")(v)[:-3]} DEBUG: rotor:', '{:.5f}',
+            ' output: {:.5f}')).replace('rotor:,', 'rotor: '),
+    'the log of ROS': lambda t, r, o: written(
+        [t, r, o], '[INFO] [1790000000.000000000] [bench]: rotor;output', (
+            lambda v: f'[INFO] [{v + 1.79e9:.9f}] [bench]:', '{:.5f}', '{:.5f}'), ';'
+        ).replace(':;', ': '),
+    'the log of ESP-IDF': lambda t, r, o: written(
+        [t, r, o], 'I (300) bench: rotor,output', (
+            lambda v: f'I ({300 + 1e3 * v:.0f}) bench:', '{:.5f}', '{:.5f}')
+        ).replace(':,', ': '),
     'a label before each number': lambda t, r, o: written(
         [t * 1e3, r, o], '', ('t_ms:{:.0f}', 'motor: {:.5f}', 'output={:.5f}'), '\t'),
     'labels behind stamps of the Arduino IDE': lambda t, r, o: written(
