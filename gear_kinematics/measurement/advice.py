@@ -19,6 +19,7 @@ from gear_kinematics.measurement.names import (
     FOREIGN,
     TIME_UNITS,
     TORQUE_UNITS,
+    WANTED,
     meaning,
     usual_unit,
 )
@@ -30,11 +31,9 @@ _FIRST = 4  # number of columns among which the times are
 _ALIKE, _COPIED = 0.3, 1.0 - 1e-6
 """Least correlation of the steps of both encoders; that of one angle in two units."""
 _LISTED = 600  # characters of the list of columns
-_WANTED = r'target|action|goal|desire|cmd|command|setpoint|demand|(?<![a-z])(ref|des)(?![a-z])'
-"""Words in names of columns of what was commanded, not measured."""
 _NO_ANGLE = re.compile(
     r'(?i)torq|effort|force|curr|(?<!tra)vel(?!_mapper)|speed|rpm|/ ?s(ec)?\b|temp|time|stamp|'
-    rf'control|elec|tau|index|valid|cell|acc(?!um)|dot|err|volt|power|^t$|^[ftm][xyz]|^i_?[qd](?![a-z])|{_WANTED}'
+    rf'control|elec|tau|index|valid|cell|acc(?!um)|dot|err|volt|power|^t$|^[ftm][xyz]|^i_?[qd](?![a-z])|{WANTED}'
 )
 """Words in names of columns that are not proposed as angles."""
 _LIKELY = re.compile(
@@ -147,7 +146,7 @@ def _examples(table: TableFile) -> Iterator[Mapping[str, str]]:
     ]
     torques = [
         name
-        for name in filterfalse(re.compile(f'(?i){_WANTED}').search, names)
+        for name in filterfalse(re.compile(f'(?i){WANTED}').search, names)
         if _TORQUE.search(name) or units[name] in TORQUE_UNITS
     ]
     # Of columns without names, the first that only rises has times, unless there are but two.

@@ -5,6 +5,7 @@ import re
 import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 from typing import NamedTuple
 
 from gear_kinematics.kinematics.rotor_turns import TURN
@@ -14,6 +15,7 @@ from gear_kinematics.measurement.names import (
     FOREIGN,
     TIME_UNITS,
     TORQUE_UNITS,
+    WANTED,
     meaning,
     usual_unit,
 )
@@ -133,6 +135,12 @@ def find_columns(
         side = next((role for role in sides if role in named), sides[0])
         found = {'angle': found[side]} | {r: found[r] for r in found if r in {'torque', 'time'}}
         side = side if side in named else 'angle'
+    elif (short := _without_path(header)) and not named:
+        texts = [{short[k]: one[k] for k in one.keys() & short} for one in (below, clocks, first)]
+        texts[1] = {name: short.get(clock, clock) for name, clock in texts[1].items()}
+        columns = find_columns([*short.values()], given, *texts).items()
+        full = {last: name for name, last in short.items()}
+        return {role: column._replace(name=full[column.name]) for role, column in columns}
     else:
         known = ', '.join((*GIVEN_UNITS, *TORQUE_UNITS))
         raise ColumnsError(
@@ -154,6 +162,16 @@ def find_columns(
         for role in ROLES
         if role in found
     }
+
+
+def _without_path(names: Sequence[str]) -> dict[str, str]:
+    """Return names without the path that all but times begin with, as tags of a PLC do, if any."""
+    values = [name for name in names if name and meaning(name).role != 'time']
+    alike = takewhile(lambda letters: len({*letters}) == 1, zip(*values, strict=False))
+    path = re.sub(r'[^/.;|:\]]*$', '', ''.join(letters[0] for letters in alike))[:-1]
+    short = {name: name.removeprefix(path) for name in names}
+    sure = path and not re.search(f'(?i){WANTED}', path) and len({*short.values()}) == len(names)
+    return short if sure else {}
 
 
 def own_clocks(names: Sequence[str], columns: Mapping[str, Column]) -> dict[str, str]:

@@ -39,6 +39,8 @@ FOREIGN = {*_SHARES.split(), *_OTHERS.split()}
 """Units of quantities other than torque and angle, and words that may be times."""
 _CERTAIN = {'time', 'stamp', 'timestamp', 'timestamps', 'zeit', 'zeitstempel'}
 """Words for times that mean them beside unknown words, too, if the numbers rise."""
+WANTED = r'target|action|goal|desire|cmd|command|setpoint|demand|(?<![a-z])(ref|des)(?![a-z])'
+"""Words in names of columns of what was commanded, not measured."""
 _SPEEDS = {'rpm', 'rps', 'dps', 'cps'}
 _OF_ONE = re.compile(r't(_[a-z]+|[mol])( ?[\[(].*)?|.*[a-z][./]t')
 """Names that may be the times of one side, such as t_m, but not T_m, a torque or temperature."""
@@ -109,6 +111,7 @@ _PLAINER: Mapping[str, Any] = {
     r'\\\w+:\d+$': '',  # device and raster, of INCA
     r'(?i)^(time|zeit) +\d+ - [^[]*': r'\1',  # of catman
     r'(?i)joint[ _]?(states?)': r'\1',  # in names of topics
+    r'(?<=\.)(lr|r|f|fb|st)(?=[A-Z][a-z].*(Pos|Ang|Winkel|Enc|Tor|Mom))': '',  # types of a PLC
     r'(?i)[ _]?of[ _]?day(?![a-z])': '',  # which is no unit
     r'(?i)(?<![a-z])(time(?:stamp)?|zeit|elapsed|t)[ _,]+(min|h)$': r'\1 [\2]',
     r'((?i:moment|torque)) M(?![^\W_])': r'\1',  # the symbol, and no motor

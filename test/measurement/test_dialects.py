@@ -1484,6 +1484,35 @@ def test_a_column_that_rises_where_no_times_are_found_is_proposed(
     assert (found.timed, found.duration) == (True, pytest.approx(52.76, rel=1e-3))
 
 
+@pytest.mark.parametrize('form', [
+    '[default]Bench/{}/Position',  # Ignition
+    'ns=4;s=Cell 3.Bench.{}.Position',  # OPC UA
+    '/0:Objects/4:Cell/4:{}/4:ActPos',
+    'Channel1.Device1.{}.Position',  # KEPServerEX
+    'ns=2;s=|var|PLC.Application.GVL.r{}Pos',  # CODESYS
+])  # fmt: skip
+def test_tags_of_a_plc_are_known_by_what_differs_in_them(tmp_path, gear, reference, form):
+    """What all begin with says nothing; whether they are in degrees or counts is asked for."""
+    t, r, o = reference('encoders')
+    names = [form.format(one) for one in ('Motor', 'Output')]
+    content = written([t, r * DEG, o * DEG], ','.join(['Timestamp', *names]), '{:.5f}')
+    path = saved(tmp_path, content)
+    with pytest.raises(RecordingError, match=r'give its unit with --angle-unit'):
+        read(path, gear)
+    recording = read(path, gear, Sources(unit='deg'))
+    assert [text.partition(' from ')[2] for text in recording.columns[1:3]] == names
+    np.testing.assert_allclose(np.ptp(recording.both.measured), np.ptp(o), rtol=1e-3)
+
+
+@pytest.mark.parametrize('other', ['error', 'target'])
+def test_commands_are_not_known_by_what_differs_in_them(tmp_path, gear, reference, other):
+    t, r, o = reference('encoders')
+    head = f'time,target/motor/position,target/output/position,{other}/x'
+    path = saved(tmp_path, written([t, r, o, 0.1 * r], head, '{:.5f}'))
+    with pytest.raises(RecordingError, match='neither an angle'):
+        read(path, gear)
+
+
 @pytest.mark.parametrize('first', ['row', 'cycle'])
 def test_numbers_of_rows_and_repeats_are_not_proposed_as_times(tmp_path, gear, reference, first):
     t, r, o = reference('encoders')
