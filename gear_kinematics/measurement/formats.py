@@ -35,6 +35,7 @@ from gear_kinematics.measurement.names import meaning
 from gear_kinematics.measurement.series import series_of
 
 _ROWS = 100  # that show whether a column says which series a row is of
+_COVER = 50  # rows; a first sheet with fewer may describe those that follow
 _ASAMMDF = re.compile(r'DG(M?)(\d+)_(.*)')
 """Names of channels of a group, and of its times (M), that asammdf exports."""
 _OBJECT = 0xDD000000  # begins the reference to an object, such as a table, in a file of MATLAB
@@ -194,10 +195,14 @@ def _mf4(path: Path) -> TableFile:
 
 
 def _workbook(path: Path) -> TableFile:
-    """Read the first sheet, in which names and units are found as in a text."""
+    """Read the first sheet that is no cover, in which names and units are found as in a text."""
     import pandas as pd  # noqa: PLC0415, of an extra
 
-    sheet = pd.read_excel(path, header=None, engine='openpyxl')  # not that of an old .xls
+    with pd.ExcelFile(path, engine='openpyxl') as book:  # not that of an old .xls
+        sheet, *_ = parsed = [book.parse(0, header=None)]
+        if len(sheet) < _COVER:
+            parsed += [book.parse(name, header=None) for name in book.sheet_names[1:]]
+            sheet = next((one for one in parsed if len(one) >= _COVER), sheet)
     try:
         return open_text(path, sheet.to_csv(header=False, index=False).encode())
     except ValueError as error:

@@ -17,6 +17,10 @@ class FindingCause(Enum):
 
     # The messages of an output topic, and their fields
     NOTHING_COMPARED = 'no message could be compared'
+    NO_STAMP_OF_INPUT = (
+        'no message has the stamp of an input on {topic}, as if messages on one of the two topics '
+        'had been stamped anew, or lost digits of their stamps'
+    )
     MISSING = '{messages} missing' + _FIRST
     EXTRA = '{messages} too many' + _FIRST
     OUT_OF_ORDER = '{messages} out of order' + _FIRST
@@ -155,6 +159,7 @@ class FindingCause(Enum):
 
 LESS_GRAVE = {
     FindingCause.NOTHING_COMPARED,
+    FindingCause.NO_STAMP_OF_INPUT,
     FindingCause.MISSING,
     FindingCause.EXTRA,
     FindingCause.OUT_OF_ORDER,

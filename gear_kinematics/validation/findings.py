@@ -115,7 +115,10 @@ def worst_field(report: BagReport) -> FieldReport | None:
 def faults(report: BagReport) -> Iterator[Finding]:
     """Yield why topics and their fields fail."""
     for topic in report.topics:
-        if not topic.compared:
+        if topic.extra and report.rotor and report.rotor.valid and not topic.compared:
+            values = {'topic': report.rotor.topic}
+            yield Finding(FindingCause.NO_STAMP_OF_INPUT, topic.topic, values=values)
+        elif not topic.compared:
             yield Finding(FindingCause.NOTHING_COMPARED, topic.topic)
         for cause, count, stamp in (
             (FindingCause.MISSING, topic.missing, topic.first_missing),

@@ -1257,6 +1257,14 @@ def workbook(path, time, rotor, output):
     return Sources()
 
 
+def covered_workbook(path, *columns):
+    pytest.importorskip('openpyxl')
+    pd = pytest.importorskip('pandas')
+    with pd.ExcelWriter(path) as book:
+        pd.DataFrame({'Bench': [7], 'Gear': ['A 5']}).to_excel(book, sheet_name='Info')
+        return workbook(book, *columns)
+
+
 def tdms(path, time, rotor, output):
     nptdms = pytest.importorskip('nptdms')
     with nptdms.TdmsWriter(path) as writer:
@@ -1312,6 +1320,7 @@ FORMATS |= {'unnamed.mat': scope_without_labels, 'dspace.mat': control_desk}
 FORMATS |= {
     'jsonl': json_lines,
     'xlsx': workbook,
+    'cover.xlsx': covered_workbook,
     **dict.fromkeys(('csv.gz', 'tsv.zst', 'TXT.zip', 'log'), text),
 }
 

@@ -20,6 +20,7 @@ from shipped_bags import BAGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, config_
 from validating import feed, field_of, texts, topic_of, validate
 
 from gear_kinematics.bag import Message
+from gear_kinematics.bag.roles import Topics
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.validation.causes import FindingCause
@@ -81,6 +82,28 @@ def test_a_simulation_that_is_reset_while_it_is_recorded_is_judged_as_the_node_s
     duration = (first[-1][1] - first[0][1] + back) / SECOND
     (found,) = [text for text in texts(report) if 'the clock was set back' in text]
     assert float(found.split('at least ')[1].split(' s')[0]) == pytest.approx(duration, rel=0.01)
+
+
+@pytest.mark.parametrize('topic', [ROTOR, OUTPUT])
+@pytest.mark.parametrize('anew', ['by reception', 'in µs'])
+def test_topics_that_were_stamped_anew_are_named(topic, anew):
+    """As by a program that converts, relays or filters one of the two."""
+    messages = [m for m in read_bag(BAGS / 'servo_point_to_point')[:900] if m[0] != POSES]
+
+    def stamped(message, received) -> None:
+        stamp = replaying.stamp_of(message)
+        set_stamp(message, received if anew == 'by reception' else stamp // 1000 * 1000)
+
+    changed = [
+        (name, received, edited(data, TYPES[name], partial(stamped, received=received)))
+        if name == topic
+        else (name, received, data)
+        for name, received, data in messages
+    ]
+    report = validate(changed, config_of('servo_point_to_point'), Topics(poses=''))
+    assert report.verdict == Verdict.FAIL
+    first, *_ = findings(report)
+    assert 'no message has the stamp of an input on /rotor_state' in first.text
 
 
 def set_stamp(message, stamp: int) -> None:
