@@ -102,7 +102,10 @@ def no_times(table: TableFile, found: Mapping[str, Column]) -> str:
 
 
 def _rises(table: TableFile, name: str) -> bool:
-    values = np.asarray(table.load([name])[0][name])
+    try:
+        values = np.asarray(table.load([name])[0][name])
+    except ValueError:  # of a column that need not be read
+        return False
     several = values.dtype.kind in 'iufM' and len(values) > 1
     return several and bool(np.all(values[1:] >= values[:-1]) and values[-1] > values[0])
 

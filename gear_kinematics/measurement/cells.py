@@ -31,6 +31,8 @@ _RARE = (
     ("[ '\u2019\u00a0\u202f]", r"(?<=\d)[ '\u2019\u00a0\u202f](?=\d{3}\b)", ''),
 )
 """What few columns contain, and how numbers are written without it."""
+_MARKED, _FEW_MARKED = r'[^\w\s]?[\d.,]+[^\w\s]?', 0.01
+"""Numbers with one more mark, such as 12.5- or <0.1; share of the rows that can have them."""
 _IDS = re.compile(r'((joint|motor|actuator|servo|axis|node|can|id|name|index) ?)+')
 """Names of the column of a table with a row for each joint."""
 _TOPICS = (
@@ -96,8 +98,12 @@ def numbers(column: Any, point: str = '.') -> Any:
     plain = text.str.replace(other, '' if thousands else '.', regex=True)
     values = pd.to_numeric(plain.str.replace(',', '.'), errors='coerce').to_numpy(float)
     if known := np.count_nonzero(np.isfinite(values)):
-        others = np.count_nonzero(~np.isfinite(values) & ~text.str.lower().isin(MISSING))
-        return values if known >= others else np.full(len(values), np.nan)
+        others = text[~np.isfinite(values) & ~text.str.lower().isin(MISSING)]
+        marked = others[others.str.fullmatch(_MARKED)]
+        if len(marked) > _FEW_MARKED * len(values):
+            cause = f'{column.name} has cells such as {marked.iloc[0]}, which are no numbers'
+            raise ValueError(f'{cause}: write them like -12.5')
+        return values if known >= len(others) else np.full(len(values), np.nan)
     moments = _moments(text)
     return moments.to_numpy('datetime64[ns]') if moments.notna().any() else values
 

@@ -1522,6 +1522,18 @@ def test_commands_are_not_known_by_what_differs_in_them(tmp_path, gear, referenc
         read(path, gear)
 
 
+@pytest.mark.parametrize('sign', ['{:.5f}-', '\u2013{:.5f}', '<{:.5f}'])
+def test_numbers_with_unknown_marks_are_no_gaps(tmp_path, gear, reference, sign):
+    """Taken for gaps, the rotor would have the rows above 0 alone, and the output the others."""
+
+    def signed(value):
+        return sign.format(-value) if value < 0.0 else f'{value:.5f}'
+
+    path = saved(tmp_path, written(reference('encoders'), NAMES, ('{:.2f}', signed, signed)))
+    with pytest.raises(RecordingError, match=r'rotor has cells such as .*, which are no numbers'):
+        read(path, gear)
+
+
 @pytest.mark.parametrize('first', ['row', 'cycle'])
 def test_numbers_of_rows_and_repeats_are_not_proposed_as_times(tmp_path, gear, reference, first):
     t, r, o = reference('encoders')
