@@ -16,7 +16,7 @@ from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
 BAG_NAME = re.compile(r'\.(mcap|db3|bag)(\.(zstd|zst|lz4))?$')
 _STORAGE_NAME = re.compile(
-    r'(?:(?P<counter>\d+)_(?P<prefix>.+)_\d{4}(_\d\d){2}-\d\d(_\d\d){2}|(?P<name>.+?)(_(?P<number>\d+))?)'
+    r'(?!\._)(?:(?P<counter>\d+)_(?P<prefix>.+)_\d{4}(_\d\d){2}-\d\d(_\d\d){2}|(?P<name>.+?)(_(?P<number>\d+))?)'
     r'\.(?P<kind>mcap|db3)(\.(zstd|zst|lz4))?$'
 )
 """Name of a file of a recording; since Lyrical, of a split one, a counter and the date."""
@@ -127,7 +127,8 @@ def _leads_astray(path: Path) -> bool:
 
 
 def _may_hold(path: Path) -> bool:
-    return path.is_dir() or bool(BAG_NAME.search(path.name))
+    name = path.name  # beside each file, archives of macOS have one that begins with ._
+    return path.is_dir() or bool(BAG_NAME.search(name) and not name.startswith('._'))
 
 
 class Contents(NamedTuple):
@@ -146,10 +147,13 @@ def find_contents(path: Path) -> Contents:
     if not path.is_dir():
         raise ValueError('no such file or folder')
     metadata = path / METADATA
-    if metadata.exists():
-        with bag_errors(metadata):
-            return _listed_contents(path, read_yaml(metadata, BagError, _Loader))
-    # A recorder that was killed has written no metadata.
+    if metadata.exists() and metadata.stat().st_size:
+        try:
+            with bag_errors(metadata):
+                return _listed_contents(path, read_yaml(metadata, BagError, _Loader))
+        except BagError as error:
+            raise BagError(f'{error}; without {METADATA}, the files are read') from error
+    # A recorder that was killed has written no metadata, or none yet.
     files = [file for file in path.iterdir() if _STORAGE_NAME.match(file.name)]
     if not files:
         raise ValueError('the folder holds neither metadata.yaml nor a .mcap or .db3 file')

@@ -4,7 +4,7 @@
 from pathlib import Path
 
 import pytest
-from made_bags import change_metadata, read, split, split_without_metadata
+from made_bags import change_metadata, mcap_file, read, split, split_without_metadata
 from shipped_bags import BAGS
 
 from gear_kinematics.bag import Bag, BagError
@@ -108,6 +108,28 @@ def test_files_that_are_listed_by_name_are_read_in_their_order(recorded, tmp_pat
     files = files[::-1] if version > 4 else None
     change_metadata(path, relative_file_paths=sorted(names), files=files)
     assert read(path) == recorded
+
+
+def test_a_recording_whose_metadata_were_not_written_yet_is_read(recorded, tmp_path):
+    """As after a loss of power; and as packed by macOS, which adds a file to each."""
+    path = split(tmp_path / 'bag', recorded, 'mcap', parts=2)
+    (path / 'metadata.yaml').write_bytes(b'')
+    for file in [*path.iterdir()]:
+        (path / f'._{file.name}').write_bytes(b'\0\5\x16\7')
+    assert read(path) == recorded
+    (path / 'metadata.yaml').unlink()
+    assert read(path) == recorded
+    assert find_bags([str(tmp_path)]).bags == [path]
+    lone = mcap_file(tmp_path / 'lone.mcap', recorded)
+    (tmp_path / '._lone.mcap').write_bytes(b'\0\5\x16\7')
+    assert sorted(find_bags([str(tmp_path)]).bags) == [path, lone]
+
+
+def test_damaged_metadata_are_refused_with_what_to_do(recorded, tmp_path):
+    path = split(tmp_path / 'bag', recorded, 'mcap', parts=2)
+    (path / 'metadata.yaml').write_text('rosbag2_bagfile_information:\n  version: 9\n')
+    with pytest.raises(BagError, match=r'is missing; without metadata\.yaml, the files are read'):
+        read(path)
 
 
 def _files_of_metadata(names, starts, ends) -> list[dict]:
