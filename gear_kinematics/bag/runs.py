@@ -38,7 +38,8 @@ def starts_of_runs(messages: Iterable[tuple[Hashable, int]], *, mixed: bool = Tr
     run = np.searchsorted(starts, np.arange(len(times)), side='right')
     by_time = np.lexsort((times, topic))
     changes = (np.diff(run[by_time]) != 0) & (np.diff(topic[by_time]) == 0)
-    return starts if np.count_nonzero(changes) > _MIXED * len(starts) * len(numbers) else []
+    fallen = len({*topic[by_topic[1:][fell]].tolist()})
+    return starts if np.count_nonzero(changes) > _MIXED * len(starts) * fallen else []
 
 
 def may_restart(indexes: Iterable[tuple[Hashable, Array]]) -> bool:

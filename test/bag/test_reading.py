@@ -33,6 +33,7 @@ from shipped_bags import TYPES, write_bag
 
 from gear_kinematics.bag import Bag, BagError
 from gear_kinematics.bag.mcap import Mcap
+from gear_kinematics.bag.runs import starts_of_runs
 
 OTHERS = (
     ('/a', 'my_msgs/msg/Odd', 'cdr', 'ros2msg', b'!! no [definition\xff'),
@@ -193,6 +194,16 @@ def test_runs_stay_in_their_order_where_time_begins_anew(recorded, tmp_path, kin
     path = RECORDERS[kind](tmp_path / 'b.mcap', runs)
     assert read(path) == runs
     assert read(path, ['/rotor_state']) == [m for m in runs if m[0] == '/rotor_state']
+
+
+def test_runs_are_found_beside_many_topics_of_few_messages():
+    """Both runs have the times of 0.3 s at 100 Hz; of 200 latched topics they have one each."""
+    times = [*range(2 * 10**9, 4 * 10**9, 10**7), *range(2 * 10**9, 23 * 10**8, 10**7)]
+    messages = [('/rotor_state', time) for time in times]
+    latched = [(f'/latched_{k}', 2 * 10**9) for k in range(200)]
+    (start,) = starts_of_runs([*latched, *messages])
+    assert start == 200 + 200
+    assert not starts_of_runs([*latched, *sorted(messages)])
 
 
 @pytest.mark.parametrize('kind', RECORDERS.keys() - {'no chunks'})
