@@ -147,7 +147,8 @@ def find_contents(path: Path) -> Contents:
     if not path.is_dir():
         raise ValueError('no such file or folder')
     metadata = path / METADATA
-    if metadata.exists() and metadata.stat().st_size:
+    empty = metadata.is_file() and not metadata.stat().st_size
+    if metadata.exists() and not empty:
         try:
             with bag_errors(metadata):
                 return _listed_contents(path, read_yaml(metadata, BagError, _Loader))
