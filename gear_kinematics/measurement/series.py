@@ -109,19 +109,22 @@ def _footer(table: Array, every: int) -> int:
     """Return how many of the last of many rows are sums, means or the like of those above.
 
     The table, (columns, n), has one row in `every` of a file. Such rows begin by a step that is
-    larger than all others.
+    larger than all others, but for a last one of sums, which are certain without it.
     """
     steps = np.abs(np.diff(table))
     for count in range(min(_FOOTER, table.shape[1] - _FEWEST), 0, -1):
         above, below = table[:, :-count], table[:, -count:]
-        if not np.any(steps[:, -count] > _STEP_BELOW * steps[:, :-_FOOTER].max(axis=1)):
+        jumps = np.any(steps[:, -count] > _STEP_BELOW * steps[:, :-_FOOTER].max(axis=1))
+        if count > 1 and not jumps:
             continue
         mean, deviation, span = above.mean(axis=1), above.std(axis=1), np.ptp(above, axis=1)
         total, square = every * above.sum(axis=1), np.hypot(mean, deviation)
         known = [total, mean, deviation, square, span, above.min(axis=1), above.max(axis=1)]
         slack = [_ROUNDED * np.abs(total) + (every - 1) * span, *6 * [_ROUNDED * span]]
         off = np.abs(below - np.array(known)[..., np.newaxis])
-        if (off <= np.array(slack)[..., np.newaxis]).all(axis=1).any(axis=0).all():
+        fits = (off <= np.array(slack)[..., np.newaxis]).all(axis=1)
+        fits[int(every == 1) :] &= jumps
+        if fits.any(axis=0).all():
             return count
     return 0
 

@@ -1423,6 +1423,16 @@ def test_a_sum_below_a_table_of_which_rows_are_left_out_is_no_sample(
     np.testing.assert_allclose(recording.both.measured, columns[2][::2], atol=1e-5)
 
 
+def test_a_last_row_of_sums_that_is_in_reach_is_no_sample(tmp_path, gear):
+    """The steps from place to place are as large as that to the sums."""
+    rotor = np.repeat([0.0, 40.0, -39.0, 38.5, -38.0], 12) / 12.0
+    columns = 0.01 * np.arange(len(rotor)), rotor, -rotor / 19.0
+    content = written(columns, NAMES) + ','.join(str(sum(each)) for each in columns) + '\n'
+    recording = read_table(saved(tmp_path, content), Sources(), gear.gear.gear_ratio)
+    assert recording.rows == len(rotor)
+    assert Observation.ROWS_LEFT_OUT(rows=1) in recording.remarks
+
+
 @pytest.mark.parametrize('end', ['greatest', 'mean'])
 def test_a_motion_that_ends_at_its_greatest_or_mean_angles_has_all_its_rows(
     tmp_path, gear, reference, end
