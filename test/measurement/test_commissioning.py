@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gear_recordings import encoders
+from gear_recordings import encoders, two_encoders_at_one_shaft
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from simulated_encoders import TURN, Drive, ramped_strokes, stamps
@@ -133,6 +133,15 @@ def test_position_that_repeats_after_another_range(size, low, step, found, every
     assert file.rotor_encoder_range == pytest.approx(found, rel=4e-6, abs=1e-8)
     error = (rotor - file.rotor_zero) / -19.0 - output
     assert np.max(np.abs(wrapped(error, size / 19, -size / 38))) < 4e-3
+
+
+def test_wraps_of_a_fast_output_are_counted_by_the_rotor():
+    """From row to row it turns by up to 0.29 turns, and where two rows are left out, by 0.76."""
+    rotor, output, times = two_encoders_at_one_shaft(150.0, seed=1)
+    kept = np.arange(len(times)) % 20 < 18
+    result = commissioned(recorded(rotor[kept], wrapped(output[kept], TURN), times[kept]))
+    assert result.between == -1
+    assert abs(result.ratio.measured.value + 1.0) < 2.0 * result.ratio.measured.expanded < 0.01
 
 
 def test_a_slip_of_a_position_that_repeats_is_named(tmp_path):

@@ -2,6 +2,7 @@
 """Both encoders of a gear in one recording, without wraps."""
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Literal
 
 import numpy as np
@@ -11,6 +12,7 @@ from gear_kinematics.measurement.encoder_range import count_wraps, find_range, o
 from gear_kinematics.measurement.gate import gated
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RecordingError
 from gear_kinematics.measurement.sentences import Observation
+from gear_kinematics.measurement.two_encoders import output_by_rotor
 from gear_kinematics.wire.cdr import SECOND
 
 _NEAR = 0.1  # s, greatest distance of the sample from the moment that the user names
@@ -47,12 +49,17 @@ class Joint:
                 hint = 'for a CSV, --angle-unit, --rotor-counts and --output-counts give the unit'
                 raise RecordingError(f'{path}: the positions of the {body} are {unit}; {hint}')
         period, wraps = find_range(rotor, motion.seconds, encoders.rotor_step)
-        output_wraps = count_wraps(measured, TURN)
+        output_wraps = count_wraps(measured, TURN, seconds=encoders.seconds)
         rotor = np.unwrap(rotor, period=period) if wraps else rotor
         measured = np.unwrap(measured) if output_wraps else measured
         turns, angle = split_turns(rotor)
         motion = motion._replace(turns=turns, angle=angle)
         unwrapped = replace(encoders, rotor=motion, measured=measured)
+        slope = output_by_rotor(unwrapped.at_measured(motion.turned), measured)
+        if output_wraps and slope:  # by the rotor, as a fast output may turn by half a turn a row
+            ratio = Fraction(1.0 / slope)
+            measured = unwrapped.at_measured(unwrapped.ideal(ratio)) + unwrapped.error(ratio)
+            unwrapped = replace(unwrapped, measured=measured)
         if period not in {0.0, TURN}:  # a range that the gate did not know
             recording = gated(replace(recording, encoders=unwrapped))
             unwrapped = recording.both
