@@ -7,8 +7,8 @@
 # identifiers only differ in the last byte, as the source addresses of J1939 do, also where the .dbc has standard
 # identifiers. Of two signals of one name, the last one counts: 20 rad of the first axis are read as 22236.3 rad.
 # Expected of a signal whose sign in the .dbc is "-": -5 N·m. What happens: the sign is read, but not used: 650.36 N·m.
-# Expected of a torque of 10 N·m in the byte order of Motorola ("@0"): 10 N·m. What happens: 532.48 N·m, as its start bit
-# is counted from the other end. A speed without a sign, in the byte order of Intel, is right.
+# Expected of a torque of 10 N·m in the byte order of Motorola, "@0": 10 N·m. What happens: 532.48 N·m, as its start
+# bit is counted from the other end. A speed without a sign, in the byte order of Intel, is right.
 # For us: decode with another library, as cantools, unless all signals are without signs and of Intel's byte order.
 #
 # Exit code 0: still so. Needs cargo; installs the version into a temporary folder.

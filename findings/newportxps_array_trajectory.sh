@@ -8,8 +8,8 @@
 # are 0, as the speeds are the differences of the ways and not the ways divided by the time; a stage that follows the
 # file stops thirteen times. For the same reason the limits do not help: 50° each 0.1 s are 500°/s, which are accepted
 # with a greatest speed of 20°/s and a greatest acceleration of 80°/s², where a ValueError is to be raised.
-# By the documentation each point is the middle between two ends of segments. Expected: the ends are at -0.5°, 0.5° and so
-# on. What happens: they are at 0.475°, 1.475° and so on, as the first way does not begin at the start, -0.525°.
+# By the documentation each point is the middle between two ends of segments. Expected: the ends are at -0.5°, 0.5° and
+# so on. What happens: they are at 0.475°, 1.475° and so on, as the first way does not begin at the start, -0.525°.
 # For us: use straight scans, or write such a file yourself, if an encoder is to be measured at an even speed.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
