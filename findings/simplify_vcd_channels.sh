@@ -5,7 +5,7 @@
 # A value change dump has the channels A and B of an encoder, from which a shaft turns forward by 4 counts. Expected of
 # the simplified file: the names A and B, or at least "a" for the first channel and "b" for the second. What happens:
 # the names are lost, and "a" and "b" are given in the order of a set of Python, which changes from start to start, here
-# by PYTHONHASHSEED: the shaft has turned by 2 or by -2 counts. Two counts are missing, as the changes at time 0 are left
+# by PYTHONHASHSEED: the shaft turned by 2 or by -2 counts. Two counts are missing, as the changes at time 0 are left
 # out, so that the first states are unknown; if the times begin at 1, it is 4 or -4. Expected of --truncate-before 25us:
 # the states of both channels at the start. What happens: only that of the channel which changed last is there.
 # For us: compare the identifiers ("!") in both files to know A from B, and let no recording begin at time 0.
