@@ -1,12 +1,12 @@
 #!/bin/bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# ace128_driver 0.1.2 (Rust): position 127 of 128 of an absolute encoder is 360°, and a contact that bounces is 0°.
+# ace128_driver 0.1.2 (Rust): position 127 of 128 of an absolute encoder is 360°, and a contact that fails makes it 0°.
 #
 # Its documentation gives angles in steps of 2 pi / 128. Expected of read_angle() at position 64, half a turn: 180°, and
 # at 127, the last one: 357.19°. What happens: a step is 2 pi / 127, so that 64 is at 181.42°, and 127 at 360°, where
-# position 0 is 0° and the same place of the shaft: within one turn, the angle gains 2.83°. Expected of a pattern that
-# none of the 128 positions has, as of a contact that bounces or a torn wire: an error. What happens: Ok(0.0), which is
-# also the angle of position 0. read() gives None for it. Pins stand here at the levels of the data sheet's table.
+# position 0 is 0° and the same place of the shaft: within one turn, the angle gains 2.81°. Expected of a pattern that
+# none of the 128 positions has, as of a dirty contact or a torn wire: an error. What happens: Ok(0.0), which is also
+# the angle of position 0. read() gives None for it. Pins stand here at the levels of the library's table ACE128_MAP.
 # For us: take read(), leave out None, and multiply by 2 pi / 128 yourself; or a joint jumps to 0° now and then.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.
@@ -53,7 +53,7 @@ fn main() {
         assert_eq!(encoder(levels).read(), Ok(Some(position)));
         assert!((angle - expected).abs() < 1e-3);
     }
-    // At position 64 the contact of pin 8 bounces.
+    // At position 64 the contact of pin 8 is open, where it should be closed, or the other way round.
     let levels = ACE128_MAP.iter().position(|entry| *entry == Some(64)).unwrap() ^ 0x80;
     println!("with one wrong contact at 64: read() {:?}, read_angle() {:?}", encoder(levels).read(), encoder(levels).read_angle());
     assert_eq!((encoder(levels).read(), encoder(levels).read_angle()), (Ok(None), Ok(0.0)));
