@@ -6,9 +6,11 @@
 # velocity_to_vactual(200, 16, 12 MHz), whose first argument is in full steps a second: 4474, which turns a motor of 200
 # steps once a second. What happens: 2237, as the formula in its documentation leaves out the division by 2; the motor
 # turns once in two seconds. By the data sheet, 20 mOhm of the chip are in series with the sense resistor. Expected of
-# current_to_cs() for 1000 mA at 110 mOhm: 17, with which the motor gets 994 mA. What happens: 14, with which it gets
-# 829 mA, and which cs_to_current() gives back as 979 mA.
-# For us: take 2^24 / fclk for VACTUAL, and add 0.02 to the resistance; or a gear ratio comes out half as large.
+# current_to_cs() for 1000 mA at 110 mOhm: 17, with which the motor gets 994 mA. What happens: 14, as its formula has
+# the sense resistor alone; with it the motor gets 829 mA, which cs_to_current() gives as 979 mA. The speeds and
+# currents of the motor are calculated here by the formulas of the data sheet.
+# For us: multiply microsteps a second by 2^24 / fclk for VACTUAL, and add 0.02 to the resistance; or a gear ratio that
+# is found from the speed that was set comes out wrong by 2.
 #
 # Exit code 0: still so. Needs cargo; installs the version into a temporary folder.
 set -euo pipefail
