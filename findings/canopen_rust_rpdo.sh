@@ -4,11 +4,12 @@
 #
 # A drive has a target torque, a target position and a target speed in three RPDOs. Expected: the object dictionary has
 # the numbers that were sent, with their bytes from low to high, as they arrive by SDO of the same library. What
-# happens: their bytes are exchanged, so that 100 is 25600. Other goals are lost without an error: that of an RPDO of
-# type 255, which by CiA 301 takes effect when it is received, unless it also has an event timer, which should only
-# watch over it; and that for an object whose access type in the .eds is "rww", one of the six of CiA 306, as this is
-# taken as neither readable nor writable; SDO refuses to read it, too. The NMT command to stop with node 0 is for all
-# nodes. Expected: the drive stops. What happens: it stays operational, as it only hears its own number.
+# happens: their bytes are exchanged, so that 100 is 25600. Two kinds of goals are lost without an error. By CiA 301, an
+# RPDO of type 255 takes effect when it is received, and its event timer only watches over it. What happens: without an
+# event timer, its goal is never taken. An access type "rww" in the .eds is one of the six of CiA 306. What happens: it
+# is taken as neither readable nor writable, so that the goal is lost, and SDO refuses to read the object. The NMT
+# command to stop with node 0 is for all nodes. Expected: the drive stops. What happens: it stays operational, as it
+# only hears its own number.
 # For us: send goals by SDO, and stop each node by its number, before a wrong motion is taken for a gear's.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.
