@@ -2,12 +2,12 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # vcdvcd 2.6.0: of a .vcd that has the changes of two encoder channels in one line, no edge is read, without an error.
 #
-# In a value change dump (IEEE 1364) the changes at one time are separated by white space, as line feeds or blanks.
+# A value change dump has a free format (IEEE 1364): its changes are separated by white space, be it line feeds or blanks.
 # Expected: the channels A and B of an encoder have the same edges if a line says "1! 0"", or is indented by a blank, as
 # if each change had a line of its own. What happens: the rest of the line is taken as the identifier of a channel that
 # is not asked for, and left out; an indented line is left out whole. Both channels are empty, so that the shaft stands
-# still; with changes in one line only now and then, the shaft loses counts. pyvcd 0.5.0 reads all three files alike. In
-# one line with the time, as sigrok writes them ("#10 1! 0""), vcdvcd reads the changes, too.
+# still. In one line with the time, as sigrok writes them ("#10 1! 0""), vcdvcd reads the changes, too. pyvcd 0.5.0
+# reads all four files alike.
 # For us: read such a file by the tokens of pyvcd, or put each change into a line of its own beforehand.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
