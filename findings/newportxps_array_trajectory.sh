@@ -1,15 +1,16 @@
 #!/bin/bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# newportxps 2026.1.1: a rotary stage that is to turn evenly stops at each point, and 500°/s pass at a limit of 20°/s.
+# newportxps 2026.1.1: a rotary stage that is to turn evenly through 11 points stops 13 times, and 500°/s pass as 20°/s.
 #
 # An array trajectory has points of an axis at even times; the file for the XPS has the time, the way and the speed at
 # the end of each segment. A stage is to turn from 0° to 10° by 1° each 0.1 s. Expected: speeds of 10°/s, as
 # define_line_trajectories() of this library writes them for the same scan, and 0 at the end. What happens: all speeds
-# are 0, as the speeds are the differences of the ways and not the ways divided by the time; a stage that follows the
-# file stops thirteen times. For the same reason the limits do not help: 50° each 0.1 s are 500°/s, which are accepted
+# are 0, as they are made of the differences of the ways and not of the ways: by the file, a stage stops at the end of
+# each of the 13 segments. For the same reason the limits do not help: 50° each 0.1 s are 500°/s, which are accepted
 # with a greatest speed of 20°/s and a greatest acceleration of 80°/s², where a ValueError is to be raised.
 # By the documentation each point is the middle between two ends of segments. Expected: the ends are at -0.5°, 0.5° and
 # so on. What happens: they are at 0.475°, 1.475° and so on, as the first way does not begin at the start, -0.525°.
+# No controller takes part here: the file is looked at which would be sent to it.
 # For us: use straight scans, or write such a file yourself, if an encoder is to be measured at an even speed.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
