@@ -6,8 +6,8 @@
 # numbers of CiA 301; its high byte is the class: 0x23 current, 0x32 voltage, 0x42 temperature. Expected of Emcy: its
 # "code", a field whose values are these classes, is the high byte. What happens: it is the low byte, the class is in
 # "vendor_code". An over-current (0x2310) and a temperature (0x4210) are generic errors, an undervoltage (0x3220) is a
-# current, a lost heartbeat (0x8130) is a voltage, a disabled drive (0x5441) is an ambient temperature, and the fault of
-# an encoder (0x7305) is an error of the parser, so that the message is lost.
+# current, a lost heartbeat (0x8130) is a voltage, a contact in the power section (0x5441) is an ambient temperature,
+# and the fault of an encoder (0x7305) cannot be read at all: Emcy::read() gives an error.
 # For us: take vendor_code as the class, or read the first two bytes as a little-endian number yourself.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.
