@@ -6,8 +6,9 @@
 # each character takes 87 µs. Expected of read_value(READ_ABSCNTR, 1): the whole line. What happens: what has arrived
 # when the first bytes are there is taken as the answer. If its second piece comes later, "C=12" is returned, without an
 # error. The rest is not thrown away, so that each later query is answered by what came before it: the next one by an
-# empty text, then a temperature is read as "C=12345" and a position as "T=40", for good. A pseudo-terminal answers here
-# as a drive does, with 0.1 s between two pieces, and the queries are 0.5 s apart.
+# empty text, then a temperature is read as "C=12345" and a position as "T=40", as long as the program runs here, though
+# all later answers come in one piece. A pseudo-terminal answers here as a drive does; once, it makes a pause of 0.1 s
+# between two pieces of an answer. The queries are 0.5 s apart.
 # For us: send by send_raw_command() and read from .ser up to the carriage return yourself.
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
