@@ -6,8 +6,9 @@
 # is 20 units of the current, here 2 mW. Expected of next_measurement() at 3.2 A and 26 V, where the register is 41600:
 # 83.2 W. What happens: -47.872 W, as the register is taken with a sign; up to 65.5 W it is right. simulate(), which is
 # to calculate as the chip does, also limits the power to 65535, but gives -47.872 W for the same state. Expected of it
-# for a motor that feeds -1 A back: -1 A. What happens: 5.5536 A in units of 200 uA, and an overflow in units of 100 uA,
-# as the voltage of the shunt is taken without its sign. A table of registers answers here as the chip does.
+# for a motor that feeds -1 A back: -1 A. What happens: 5.5536 A in units of 200 uA at 12 V, and the error MathOverflow
+# in units of 100 uA at 26 V, as the voltage of the shunt is taken without its sign. A table of registers answers here
+# as the chip does.
 # For us: multiply the current with the voltage of the bus yourself, or a motor seems to brake where it is driven most.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.
