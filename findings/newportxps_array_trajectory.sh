@@ -1,6 +1,6 @@
 #!/bin/bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# newportxps 2026.1.1: a rotary stage that is to turn evenly through 11 points stops 13 times, and 500°/s pass as 20°/s.
+# newportxps 2026.1.1: a stage that is to turn evenly through 11 points stops 13 times; 500°/s pass at a limit of 20°/s.
 #
 # An array trajectory has points of an axis at even times; the file for the XPS has the time, the way and the speed at
 # the end of each segment. A stage is to turn from 0° to 10° by 1° each 0.1 s. Expected: speeds of 10°/s, as

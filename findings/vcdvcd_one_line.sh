@@ -2,7 +2,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # vcdvcd 2.6.0: of a .vcd that has the changes of two encoder channels in one line, no edge is read, without an error.
 #
-# A value change dump has a free format (IEEE 1364): its changes are separated by white space, be it line feeds or blanks.
+# A value change dump has a free format (IEEE 1364): its changes are separated by white space, line feeds or blanks.
 # Expected: the channels A and B of an encoder have the same edges if a line says "1! 0"", or is indented by a blank, as
 # if each change had a line of its own. What happens: the rest of the line is taken as the identifier of a channel that
 # is not asked for, and left out; an indented line is left out whole. Both channels are empty, so that the shaft stands
