@@ -1,13 +1,14 @@
 #!/bin/bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# l298n 0.2.0 (Rust): forward() drives a motor backward, and stop(), which is to let it run out freely, brakes it.
+# l298n 0.2.0 (Rust): stop(), to let a motor run out, brakes it, and forward() and reverse() are exchanged.
 #
-# By the data sheet of an L298 and the comments of this library, with the enable input high, the first input high and
-# the second low is forward, the opposite is reverse, and two equal inputs are a fast stop, which brakes the motor by
-# its own current; with the enable input low the motor runs out freely. Expected of forward(): first high, second low.
-# What happens: first low, second high, which is reverse, and so is reverse() forward. Expected of stop(), "Free Running
-# Motor Stop": the enable input or the duty is low. What happens: both inputs are high and the duty stays as it is,
-# exactly as by brake(). Pins that keep their levels stand here for those of a board.
+# By the data sheet of an L298, two equal inputs are a fast stop while the enable input is high: they brake the motor by
+# its own current. With the enable input low, the motor runs out freely. Expected of stop(), by its comment the "Free
+# Running Motor Stop" with "Ven = L": the enable input or the duty is low. What happens: both inputs are high, and the
+# duty stays as it is, exactly as by brake(). The comments of forward() and reverse() have the data sheet's names of the
+# two inputs: C high and D low is forward. Expected of forward(), with C as the first input and D as the second: first
+# high, second low. What happens: first low, second high, and the opposite by reverse(). Pins that keep their levels
+# stand here for those of a board.
 # For us: set_duty(0) lets the motor run out; a friction that is measured with stop() is that of the short circuit.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.
@@ -18,7 +19,7 @@ mkdir "$folder/src"
 cd "$folder"
 cat > Cargo.toml <<'TOML'
 [package]
-name = "forward"
+name = "stop"
 version = "0.1.0"
 edition = "2021"
 [dependencies]
@@ -69,7 +70,7 @@ fn main() {
     let (first, second, enable) = (Pin::default(), Pin::default(), Enable::default());
     let mut motor = Motor::new(first.clone(), second.clone(), enable.clone());
     motor.set_duty(100);
-    // What the data sheet of the L298 says of the levels.
+    // What the data sheet of the L298 says of the levels, with C as the first input and D as the second.
     let state = || match (enable.0.get(), first.0.get(), second.0.get()) {
         ((false, _) | (true, 0), _, _) => "runs out freely",
         (_, true, false) => "forward",
