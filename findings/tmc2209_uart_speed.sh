@@ -10,7 +10,7 @@
 # the sense resistor alone; with it the motor gets 829 mA, which cs_to_current() gives as 979 mA. The speeds and
 # currents of the motor are calculated here by the formulas of the data sheet.
 # For us: multiply microsteps a second by 2^24 / fclk for VACTUAL, and add 0.02 to the resistance; or a gear ratio that
-# is found from the speed that was set comes out wrong by 2.
+# is found from the speed that was set is wrong by a factor of 2.
 #
 # Exit code 0: still so. Needs cargo; installs the version into a temporary folder.
 set -euo pipefail
