@@ -61,8 +61,8 @@ def check_ratio(encoders: Encoders, assumed: GearRatio) -> Observed | None:
     """
     error, wrong = encoders.error(assumed), wrong_ratio(encoders, assumed)
     if float(np.ptp(np.remainder(error - error[0] + 0.5 * TURN, TURN))) >= 0.5 * TURN:
-        why = wrong or 'the ratio is wrong, or an encoder counts backwards'
-        raise RecordingError(f'the output does not follow the rotor: {why}')
+        causes = 'the ratio is wrong, an encoder slips, or both are read too far apart in time'
+        raise RecordingError(f'the output does not follow the rotor: {wrong or causes}')
     return Observation.NOT_THE_RATIO(assumed=assumed, why=wrong) if wrong else None
 
 
