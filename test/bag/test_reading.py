@@ -206,7 +206,7 @@ def test_runs_are_found_beside_many_topics_of_few_messages():
     assert not starts_of_runs([*latched, *sorted(messages)])
 
 
-@pytest.mark.parametrize('kind', RECORDERS.keys() - {'no chunks'})
+@pytest.mark.parametrize('kind', sorted(RECORDERS.keys() - {'no chunks'}))
 def test_recordings_in_chunks_that_follow_each_other_are_sorted_by_time(recorded, tmp_path, kind):
     """As where a program writes the later one first."""
     later = [(topic, received + 10**10, data) for topic, received, data in recorded]
