@@ -88,7 +88,7 @@ setup(
         # `gearkin plot`, `gearkin animate` and `--plot`
         'plot': ['matplotlib>=3.6', 'pillow'],
         # `gearkin lost-motion` and `calibrate`, and the load spectrum of `gearkin loads`
-        'measure': ['rainflow>=3.1', *PANDAS],
+        'measure': ['scipy>=1.11', 'rainflow>=3.1', *PANDAS],
         # Tables that are no text: .parquet, .mat, .xlsx, .tdms, .mf4
         'tables': [*PANDAS, *TABLES],
         # `--scheduler` of `gearkin validate` and `gearkin loads`

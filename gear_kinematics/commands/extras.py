@@ -10,8 +10,8 @@ _EXTRAS = {
     'mesh': {'mapbox_earcut'},
     'twin': {'mujoco'},
     'watch': {'tornado'},
-    'measure': {'pandas', 'rainflow'},
-    'tables': {'scipy', 'pyarrow', 'nptdms', 'asammdf', 'h5py', 'openpyxl'},
+    'measure': {'scipy', 'pandas', 'rainflow'},
+    'tables': {'pyarrow', 'nptdms', 'asammdf', 'h5py', 'openpyxl'},
     'rosbags': {'rosbags'},
     'cluster': {'distributed'},
 }

@@ -19,13 +19,7 @@ from gear_kinematics.measurement.figures import gear_figures
 from gear_kinematics.measurement.loops import ALIKE
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.measured import HYSTERESIS
-from gear_kinematics.statistics.uncertainty import (
-    COVERAGE,
-    Component,
-    Estimate,
-    combined,
-    probability_beyond,
-)
+from gear_kinematics.statistics.uncertainty import COVERAGE, Component, Estimate, combined
 
 _OF_SMALL_RAMPS = (HYSTERESIS, 'friction')
 SIGNIFICANCE = 1.0 - COVERAGE  # probability of a false alarm in either family of `judged`
@@ -174,7 +168,10 @@ def _chance(estimate: Estimate) -> float | None:
         return None
     if not estimate.standard:
         return float(estimate.value == 0.0)
-    return probability_beyond(estimate.value / estimate.standard, estimate.degrees_of_freedom)
+    from scipy.special import stdtr  # noqa: PLC0415, its import takes half of the start
+
+    degrees = np.floor(estimate.degrees_of_freedom + 1e-6)
+    return float(2.0 * stdtr(degrees, -abs(estimate.value / estimate.standard)))
 
 
 def judged(changes: Sequence[Change]) -> list[Change]:

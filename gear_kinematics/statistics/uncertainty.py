@@ -183,28 +183,3 @@ def _share_within(angle: float, degrees: int) -> float:
         total += term
         term *= cosine * cosine * (k - 1) / k
     return 2.0 / math.pi * (angle + sine * total) if odd else sine * total
-
-
-def probability_beyond(t: float, degrees: float) -> float:
-    """Probability that a variable of Student's distribution is at least as far from zero as t.
-
-    Fractions of a degree of freedom do not count; without a whole one, nothing is improbable.
-    """
-    if degrees >= _MAX_DEGREES:
-        return math.erfc(abs(t) / math.sqrt(2.0))
-    degrees = math.floor(degrees + 1e-6)
-    if degrees < 1:
-        return 1.0
-    angle = math.atan2(abs(t), math.sqrt(degrees))
-    if abs(t) < 1.0:
-        return 1.0 - _share_within(angle, degrees)
-    # The incomplete beta function as a series of positive terms (NIST Handbook, eq. 8.17.8), so
-    # that a small probability keeps its digits.
-    half, ratio = 0.5 * degrees, degrees / (degrees + t * t)
-    term = math.exp(math.lgamma(half + 0.5) - math.lgamma(half + 1.0)) * ratio**half
-    total = 0.0
-    while term > _ROUNDING * total:
-        total += term
-        half += 1.0
-        term *= ratio * (half - 0.5) / half
-    return total * math.sin(angle) / math.sqrt(math.pi)

@@ -362,16 +362,18 @@ def test_a_recording_of_another_ratio_is_unusable(tmp_path, capsys):
     assert found == ['hysteresis', 'backlash']  # as without a wrong ratio
 
 
-def test_without_scipy_only_tables_of_matlab_are_missing(recording, tmp_path):
+def test_without_scipy_only_comparisons_are_missing():
     """One process for all commands, as none of them can import it."""
-    matlab = tmp_path / 'gear.mat'
-    matlab.write_bytes(b'MATLAB 5.0 MAT-file'.ljust(200))
-    (tmp_path / 'later.csv').symlink_to(recording)
+    extra, missing = "gear_kinematics[measure]'", 'gear.csv: No such file'
+    ramps = Path(__file__).resolve().parents[2] / 'docs' / 'examples' / 'ramps.csv'
     expected = {
-        f'lost-motion --quiet {recording} {tmp_path / "later.csv"}': (0, ''),
-        f'lost-motion {matlab}': (2, "gear_kinematics[tables]'"),
-        'calibrate gear.csv': (2, 'gear.csv: No such file'),
+        'lost-motion gear.csv': (2, missing),
+        f'lost-motion -q {ramps} {ramps}': (2, extra),
+        'calibrate gear.csv': (2, missing),
+        'commission gear.csv': (2, missing),
         f'validate {BAGS / "servo_point_to_point"}': (0, ''),
+        'lost-motion --help': (0, ''),
+        '--help': (0, ''),
     }
     code = f"""
 import json, sys

@@ -11,7 +11,6 @@ from gear_kinematics.statistics.uncertainty import (
     Component,
     Estimate,
     jackknife,
-    probability_beyond,
     standard_error,
     student_t,
 )
@@ -24,24 +23,6 @@ def test_student_t_leaves_a_twentieth_outside(degrees):
         mpmath.mpf(degrees) / 2, 0.5, 0, degrees / (degrees + t * t), regularized=True
     )
     assert float(outside) == pytest.approx(0.05, rel=1e-12)
-
-
-@pytest.mark.parametrize('degrees', [1, 2, 3, 4, 7, 12, 51, 400, 3001, 9_999])
-def test_probability_beyond_is_that_of_students_distribution(degrees):
-    for t in (0.0, 0.1, 0.99, 1.0, 2.0, 3.5, 8.0, 30.0, 1e8):
-        share = mpmath.mpf(degrees) / (degrees + mpmath.mpf(t) ** 2)
-        expected = mpmath.betainc(mpmath.mpf(degrees) / 2, 0.5, 0, share, regularized=True)
-        for value in (t, -t):
-            found = probability_beyond(value, degrees + 0.9)
-            assert found == pytest.approx(float(expected), rel=1e-10, abs=1e-300)
-
-
-def test_probability_beyond_has_limits():
-    assert probability_beyond(2.0, math.inf) == pytest.approx(
-        float(mpmath.erfc(2**0.5)), rel=1e-15
-    )
-    assert probability_beyond(1e200, 3.0) == 0.0
-    assert probability_beyond(8.0, 0.9) == 1.0  # bounded by nothing, as `uncertainty`
 
 
 def test_student_t_of_many_degrees_is_that_of_the_normal_distribution():
