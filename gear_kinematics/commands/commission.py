@@ -18,6 +18,7 @@ from gear_kinematics.commands.encoders import (
 )
 from gear_kinematics.commands.joints import choose_joint
 from gear_kinematics.commands.output import (
+    Console,
     announce_ros,
     complain,
     message_progress,
@@ -123,7 +124,6 @@ def _hear(request: analysis.Request) -> analysis.Commissioning:
     """Listen to both encoders until all values are known, or the user ends it."""
     announce_ros(participants=1)
     # These need ROS, unlike most commands.
-    from gear_kinematics.report.terminal import Console  # noqa: PLC0415, slow
     from gear_kinematics.watch.commissioning import LiveCommissioning  # noqa: PLC0415
     from gear_kinematics.watch.drivers import listen  # noqa: PLC0415
     from gear_kinematics.watch.text import guide, list_drivers  # noqa: PLC0415

@@ -11,9 +11,10 @@ from gear_kinematics.bag import Bag, Message
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.bag.schedule import count_due
 from gear_kinematics.commands import ExitCode
-from gear_kinematics.commands.output import announce_ros, progress, say, show
+from gear_kinematics.commands.output import Console, announce_ros, progress
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import number
+from gear_kinematics.report.text import render
 from gear_kinematics.share import share_directory
 from gear_kinematics.validation.document import document
 from gear_kinematics.validation.task import Task, Tolerances
@@ -33,14 +34,17 @@ def run(_options: argparse.Namespace) -> ExitCode:
     # Needs ROS, unlike most commands.
     from gear_kinematics.ros.live import ReplayError, live_messages  # noqa: PLC0415
 
-    parameters, angles = NodeParameters.load(), [0.0]
+    console, parameters, angles = Console(), NodeParameters.load(), [0.0]
     tolerances = Tolerances(*[_TOLERANCE] * 4)
     tolerances = tolerances._replace(position=_TOLERANCE * parameters.eccentricity)
     path = share_directory() / 'bags' / _BAG
     task = Task(path, parameters, tolerances=tolerances, independent=True)
     with Bag(path) as bag:
         count = count_due(bag, [Topics().rotor])
-    say(f'Playing {_BAG}, {count} recorded rotor states, into gear_state_publisher over DDS.')
+    console.print(
+        f'Playing {_BAG}, {count} recorded rotor states, into gear_state_publisher over DDS.',
+        soft_wrap=not console.is_terminal,
+    )
     reader = JointReader(parameters.output_name)
     with progress('rotor states') as bars:
         bar = bars.add_task('', total=count)
@@ -56,14 +60,16 @@ def run(_options: argparse.Namespace) -> ExitCode:
         report = validate_bag(task, lambda sent, _: bars.update(bar, completed=sent), play)
     if report.error:
         raise ReplayError(report.error)
-    show(document([replace(report, bag=_BAG)]), brief=True)
+    render(document([replace(report, bag=_BAG)]), console, brief=True)
     if not (report.passed and report.independent):
         return ExitCode.FAILED
     greatest = math.degrees(max(map(abs, angles)))
     error = number(math.degrees(report.independent.errors['position']) * 60.0)
-    print(
+    console.print(
         f'The output turned by up to {greatest:.1f}°, and each angle that the node '
         f'published is right within {error}′.\n'
-        'Next: make simulator, and gearkin watch beside it; docs/first_hour.md goes on.'
+        'Next: make simulator, and gearkin watch beside it; docs/first_hour.md goes on.',
+        soft_wrap=True,
+        highlight=False,
     )
     return ExitCode.DONE

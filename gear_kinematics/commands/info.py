@@ -4,12 +4,14 @@
 import argparse
 from collections.abc import Iterator, Mapping
 
+from rich.text import Text
+
 from gear_kinematics.bag import Bag
 from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.bag.roles import described
 from gear_kinematics.bag.summary import Summary, summarise
 from gear_kinematics.commands import ExitCode, arguments, bags
-from gear_kinematics.commands.output import complain, message_progress, say
+from gear_kinematics.commands.output import Console, complain, message_progress
 from gear_kinematics.measurement.rotor_fields import recorded_questions
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import counted, number, printable
@@ -74,9 +76,10 @@ def _questions(
 
 
 def _print_summary(name: str, summary: Summary, asked: list[str], *, verbose: bool) -> None:
+    console = Console()
     parts = [printable(part) for part in (*_parts(summary, verbose=verbose), *asked)]
     text = ('\n  ' if verbose else '; ').join(parts)
-    say(f'{printable(name)}: {text}')
+    console.print(Text(f'{printable(name)}: {text}'), soft_wrap=not console.is_terminal)
 
 
 def _parts(summary: Summary, *, verbose: bool) -> Iterator[str]:

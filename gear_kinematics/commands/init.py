@@ -15,7 +15,7 @@ from gear_kinematics.commands.encoders import (
 )
 from gear_kinematics.commands.files import check_targets
 from gear_kinematics.commands.joints import ask, can_ask, choose_joint, joints_of_arm
-from gear_kinematics.commands.output import announce_ros, complain
+from gear_kinematics.commands.output import Console, announce_ros, complain
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.commissioning.analysis import Channel
 from gear_kinematics.measurement.rotor_fields import kind_of_encoder, questions
@@ -57,7 +57,6 @@ def run(options: argparse.Namespace) -> ExitCode:
     check_targets(options, {} if path.exists() else {'-o': options.output})
     announce_ros(participants=1)
     # These need ROS, unlike most commands.
-    from gear_kinematics.report.terminal import Console  # noqa: PLC0415, slow
     from gear_kinematics.watch.drivers import listen  # noqa: PLC0415
     from gear_kinematics.watch.text import list_drivers  # noqa: PLC0415
 

@@ -4,20 +4,14 @@
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING, Any, Self, TypeVar
 
-from gear_kinematics.report.document import Document, printable
-from gear_kinematics.report.text import lines
+from rich import console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+from gear_kinematics.report.document import printable
 from gear_kinematics.ros.workarounds.shared_memory import check_shared_memory
-
-if TYPE_CHECKING:
-    from rich.progress import Progress
-
-    from gear_kinematics.report.terminal import Console
-
-T = TypeVar('T')
 
 
 def complain(error: object) -> None:
@@ -59,6 +53,19 @@ def stopped_by_signals() -> Iterator[Callable[[], bool]]:
             signal.signal(number, handler)
 
 
+class Console(console.Console):
+    """Raises BrokenPipeError, instead of ending the process as rich does."""
+
+    @property
+    def is_terminal(self) -> bool:
+        """Whether a table can be shown; on a dumb terminal rich would show nothing of it."""
+        return os.environ.get('TERM') not in {'dumb', 'unknown'} and super().is_terminal
+
+    def on_broken_pipe(self) -> None:
+        """Raise the error for `closed_pipe_ignored`."""
+        raise BrokenPipeError
+
+
 @contextmanager
 def message_progress(
     name: str, *, quiet: bool = False
@@ -73,69 +80,15 @@ def message_progress(
         yield update
 
 
-def progress(unit: str, *, quiet: bool = False) -> 'NoProgress | Progress':
+def progress(unit: str, *, quiet: bool = False) -> Progress:
     """Create a progress bar on the terminal, on stderr to keep stdout clean."""
-    if quiet or not sys.stderr.isatty():
-        return NoProgress()
-    from rich import console  # noqa: PLC0415, slow
-    from rich import progress as bars  # noqa: PLC0415, slow
-
-    return bars.Progress(
-        bars.TextColumn('{task.description}', markup=False),
-        bars.BarColumn(),
-        bars.MofNCompleteColumn(),
-        bars.TextColumn(unit),
-        bars.TimeRemainingColumn(),
+    return Progress(
+        TextColumn('{task.description}', markup=False),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn(unit),
+        TimeRemainingColumn(),
         console=console.Console(stderr=True),
         transient=True,
+        disable=quiet or not sys.stderr.isatty(),
     )
-
-
-class NoProgress:
-    """Stands in for the bar where there is no terminal, and shows nothing."""
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        """End nothing."""
-
-    def add_task(self, *_: object, **_options: object) -> Any:
-        """Show no task."""
-
-    def update(self, *_: object, **_options: object) -> None:
-        """Show no advance."""
-
-    def track(self, done: Iterable[T], **_options: object) -> Iterable[T]:
-        """Return what is done."""
-        return done
-
-
-def show(document: Document, *, brief: bool) -> None:
-    """Print a report: tables on a terminal, one row per line elsewhere."""
-    if console := terminal():
-        from gear_kinematics.report.terminal import render  # noqa: PLC0415, slow
-
-        render(document, console, brief=brief)
-    else:
-        for line in lines(document, brief=brief):
-            print(line)
-
-
-def say(text: str) -> None:
-    """Print a text; a terminal breaks it between words."""
-    if console := terminal():
-        console.print(text, markup=False, highlight=False)
-    else:
-        print(text, flush=True)
-
-
-def terminal() -> 'Console | None':
-    """Return the console of stdout, or None where rich would show no tables."""
-    # What rich goes by, which takes a third of the start of a command and is not imported in vain.
-    if not ({'FORCE_COLOR', 'TTY_COMPATIBLE'} & os.environ.keys() or sys.stdout.isatty()):
-        return None
-    from gear_kinematics.report.terminal import Console  # noqa: PLC0415, slow
-
-    console = Console()
-    return console if console.is_terminal else None

@@ -9,7 +9,7 @@ from pathlib import Path
 from shlex import quote
 
 from gear_kinematics.commands import ExitCode, arguments, bags
-from gear_kinematics.commands.output import announce_ros, stopped_by_signals
+from gear_kinematics.commands.output import Console, announce_ros, stopped_by_signals
 from gear_kinematics.parameters import NODE, NodeParameters
 from gear_kinematics.report.document import counted, hertz
 from gear_kinematics.wire.nearest import listed
@@ -35,7 +35,6 @@ def run(options: argparse.Namespace) -> ExitCode:
     files = bags.files_of(options, configs, None) if configs else {}
     announce_ros(participants=1)
     # These need ROS, unlike most commands, and the last one rosbags.
-    from gear_kinematics.report.terminal import Console  # noqa: PLC0415, slow
     from gear_kinematics.ros.live import replay_node  # noqa: PLC0415
     from gear_kinematics.watch.gear import parameters_of  # noqa: PLC0415
     from gear_kinematics.watch.recorder import Recorder  # noqa: PLC0415

@@ -12,12 +12,13 @@ from types import MappingProxyType
 
 from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.files import add_force, check_targets, write_file, write_text
-from gear_kinematics.commands.output import closed_pipe_ignored, show
+from gear_kinematics.commands.output import Console, closed_pipe_ignored
 from gear_kinematics.report.document import Document, Origin, Verdict, printable
 from gear_kinematics.report.html import to_html
 from gear_kinematics.report.image import check_image, to_image
 from gear_kinematics.report.json import to_json
 from gear_kinematics.report.junit import to_junit
+from gear_kinematics.report.text import render
 from gear_kinematics.share import version
 
 _FORMS: Mapping[str, Callable[[Document], str]] = {
@@ -97,7 +98,7 @@ class Reporter:
         if printed and not self._silent:
             with closed_pipe_ignored():
                 shown = document.of_failed() if self._options.quiet else document
-                show(shown, brief=self._brief)
+                render(shown, Console(), brief=self._brief)
         for form, target in self._forms.items():
             write_text(target, _FORMS[form](document))
         if plot:

@@ -4,7 +4,7 @@
 import argparse
 
 from gear_kinematics.commands import ExitCode, arguments
-from gear_kinematics.commands.output import announce_ros, stopped_by_signals
+from gear_kinematics.commands.output import Console, announce_ros, stopped_by_signals
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -17,7 +17,6 @@ def run(options: argparse.Namespace) -> ExitCode:
     """Watch until interrupted; then raises KeyboardInterrupt, once everything is closed."""
     announce_ros(participants=1)
     # These need ROS, unlike most commands.
-    from gear_kinematics.report.terminal import Console  # noqa: PLC0415, slow
 
     if options.text:
         from gear_kinematics.watch.text import show  # noqa: PLC0415

@@ -202,21 +202,6 @@ def test_help_is_everywhere(command):
         assert listed.index('record') < listed.index('calibrate') < listed.index('describe')
 
 
-@pytest.mark.parametrize(('environment', 'tables'), [
-    ({}, False), ({'FORCE_COLOR': '1'}, True), ({'TTY_COMPATIBLE': '0'}, False),
-    ({'FORCE_COLOR': '1', 'TERM': 'dumb'}, False),
-])  # fmt: skip
-def test_a_pipe_gets_tables_where_the_environment_asks_for_them(
-    environment, tables, monkeypatch, capsys
-):
-    for name in ('FORCE_COLOR', 'TTY_COMPATIBLE'):
-        monkeypatch.delenv(name, raising=False)
-    for name, value in ({'TERM': 'xterm'} | environment).items():
-        monkeypatch.setenv(name, value)
-    assert main(['describe', '--ring-teeth', '80', '--satellite-teeth', '76']) == 0
-    assert ('\x1b[' in capsys.readouterr().out) == tables
-
-
 HEADINGS = (
     *('positional arguments', 'options', 'recording', 'motion', 'turn of a ring gear'),
     *('stiffness', 'gear', 'columns of a table', 'limits', 'several recordings'),

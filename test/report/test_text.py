@@ -10,8 +10,7 @@ import report_samples as samples
 from rich.console import Console
 
 from gear_kinematics.report.document import Document, Section, Sentence, Verdict, hertz, number
-from gear_kinematics.report.terminal import render
-from gear_kinematics.report.text import lines
+from gear_kinematics.report.text import lines, render
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.document import document
 from gear_kinematics.validation.findings import answer, faults, field_name, findings, sentence
@@ -19,8 +18,12 @@ from gear_kinematics.validation.findings import answer, faults, field_name, find
 ESCAPES = re.compile(r'\x1b\[[0-9;]*m')
 
 
-def piped(*reports):
-    return ''.join(f'{line}\n' for line in lines(document(reports)))
+def piped(*reports, encoding='utf-8', **options):
+    raw = io.BytesIO()
+    with io.TextIOWrapper(raw, encoding) as file:
+        render(document(reports), Console(file=file, **options))
+        file.flush()
+        return raw.getvalue().decode(encoding)
 
 
 def shown(*reports, width=100):
@@ -126,7 +129,7 @@ def test_sentences_tell_a_fault_wherever_a_part_fails_and_nowhere_else(report):
 
 
 def test_pipe_is_neither_wrapped_nor_decorated():
-    text = piped(*samples.ALL)
+    text = piped(*samples.ALL, width=40)
     assert '\x1b' not in text
     assert not set(text) & set('─━│┃┏•')
     assert max(map(len, text.splitlines())) > 100

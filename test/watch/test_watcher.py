@@ -27,12 +27,11 @@ from rich.console import Console
 from sensor_msgs.msg import JointState
 from watching import DEADLINE, WatcherStandIn
 
-from gear_kinematics.commands import init, joints
+from gear_kinematics.commands import init, joints, output
 from gear_kinematics.commands.cli import main
 from gear_kinematics.measurement.commissioning.analysis import Channel
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.arm import load_actuators
-from gear_kinematics.report import terminal
 from gear_kinematics.ros.graph import Graph
 from gear_kinematics.watch import drivers
 from gear_kinematics.watch.drivers import DriverTopic
@@ -509,9 +508,7 @@ def test_a_dumb_terminal_gets_lines_as_a_pipe_does(monkeypatch, kind):
     monkeypatch.setenv('TERM', kind)
     shown, stops = io.StringIO(), iter([False, True])
     recorder = SimpleNamespace(poll=lambda: None, absent='', heard={})
-    show_recording(
-        recorder, terminal.Console(file=shown, force_terminal=True), lambda: next(stops)
-    )
+    show_recording(recorder, output.Console(file=shown, force_terminal=True), lambda: next(stops))
     lines = re.match(r'[\d-]+T\S+ waiting for a gear_state_publisher\n', shown.getvalue())
     assert bool(lines) == (kind == 'dumb')
 
