@@ -9,7 +9,7 @@
 # arm gets the limits of the mimic, which are those of its motor times 5, not its own. The limits of positions are
 # right. By them, a trajectory of the arm by 1.5 rad takes 0.36 s instead of 2.08 s, at 8.6 rad/s and 50 rad/s². With a
 # multiplier of 0.05 the arm is too slow. In a group without the mimic, or a URDF without it, all of this is right.
-# The mimic itself loses its own limits: an output with stops at ±0.1 rad is valid at 0.5 rad.
+# It is documented that a mimic gets the limits of its motor, scaled; not that the joint behind it gets them.
 # For us: plan in groups that leave out each mimic, and compare the limits with those of getJointInfo().
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
@@ -77,11 +77,5 @@ for multiplier, group, expected in (
           f'moved in {found[2]:.3g} s at {found[3]:.3g} rad/s and {found[4]:.3g} rad/s²')
     assert np.isclose(made.getPositionLimitVectors(group)[1][-1], 2)
     assert np.allclose(found, expected, rtol=0.03)
-
-made = scene(5)
-made.setJointPositions(np.array([0.1, 0.0]))
-print('motor, output and arm:', made.getCurrentJointPositionsWithMimics(), 'rad')
-assert np.isclose(made.getCurrentJointPositionsWithMimics()[1], 0.5) and made.isValidConfiguration(np.array([0.1, 0.0]))
-assert not scene(None).isValidConfiguration(np.array([0.1, 0.5, 0.0]))
 PYTHON
 timeout 100 "$folder/venv/bin/python" "$folder/limits.py" "$folder/limits.yaml"
