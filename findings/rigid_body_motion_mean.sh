@@ -1,11 +1,11 @@
 #!/bin/bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # rigid-body-motion 0.9.3: the mean of five attitudes of an output at 120° is a half turn about another axis, and the
-# best rotation between markers in one plane is often none.
+# best rotation between markers in one plane is often wrong.
 #
 # Expected of qmean(), which is to be the eigenvector of the greatest eigenvalue: of an output that is read five times
 # between 118° and 122° about z, the attitude at 120°. What happens: it takes the first eigenvector of NumPy, and puts
-# its four numbers into the order of the eigenvalues: a half turn about an axis between x and z. At 30° it is
+# its four numbers into the order of the eigenvalues: a half turn about an axis in the plane of x and z. At 30° it is
 # right by luck, as the eigenvalues come in their order. Of 100 random attitudes that are read 20 times with a noise of
 # about 1°, about two thirds of the means are off by more than 0.1 rad.
 # Expected of best_fit_rotation() for four markers on a flange, in one plane to 0.1 mm, that has turned by 30° about z:
