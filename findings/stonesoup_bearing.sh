@@ -2,7 +2,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # stonesoup 1.9.1: half way between two readings of a shaft at 178° and -178°, it is interpolated at 0°.
 #
-# A state may have an angle, of the type Bearing, whose sums, differences and means go over ±180° as they should.
+# A state may have an angle, of the type Bearing, whose differences and means go over ±180° as they should.
 # Expected of interpolate_state_mutable_sequence() for a shaft that turns at 4°/s, with readings of type Bearing at 178°
 # and, 1 s later, at -178°: an angle of 180° after 0.5 s. What happens: the angles are interpolated as plain numbers, so
 # that the shaft is at 0° then, and at 89° after 0.25 s, as if it turned back by 356°. The results are no longer of the
