@@ -76,21 +76,23 @@ def rows_of(
     usable: Mapping[str, Array],
     remarks: list[Observed],
     every: int,
-    *,
-    timed: bool,
+    times: Array | None,
 ) -> list[tuple[list[str], Array]]:
     """Find which series were sampled together, and in which of their `usable` rows, (n,).
 
-    If they are `timed`, each has rows of its own where tables with other times were joined: few
+    If they have `times`, each has rows of its own where tables with other times were joined: few
     rows have all, as gaps are empty, or none has two new values, as gaps repeat the last ones.
     So it has where a logger held its readings over several rows: the first of them is used. Last
-    rows of sums, means or the like are left out. The series have one row in `every` of a file.
+    rows of sums, means or the like are left out, unless their times go on as before. The series
+    have one row in `every` of a file.
     """
     together = np.all([*usable.values()], axis=0)
-    if last := _footer(np.array([values[together] for values in series.values()], float), every):
+    last = _footer(np.array([values[together] for values in series.values()], float), every)
+    if last and not (times is not None and _goes_on(times[together], last)):
         together[np.flatnonzero(together)[-last:]] = False
-    own = _new(series) if timed else {}
-    if timed and 2 * np.count_nonzero(together) < max(map(np.count_nonzero, usable.values())):
+    own = {} if times is None else _new(series)
+    most = max(map(np.count_nonzero, usable.values()))
+    if times is not None and 2 * np.count_nonzero(together) < most:
         own = usable
     else:
         both = {role: values[together] for role, values in series.items() if role in _PAIRS}
@@ -105,11 +107,18 @@ def rows_of(
     return [([*usable], together)]
 
 
+def _goes_on(times: Array, last: int) -> bool:
+    """Return whether the `last` times follow by steps as those before, unlike sums and means."""
+    steps = np.diff(times).astype(float)
+    return bool(np.all((steps[-last:] > 0.0) & (steps[-last:] <= steps[:-last].max())))
+
+
 def _footer(table: Array, every: int) -> int:
     """Return how many of the last of many rows are sums, means or the like of those above.
 
     The table, (columns, n), has one row in `every` of a file. Such rows begin by a step that is
-    larger than all others, but for a last one of sums, which are certain without it.
+    larger than all others, but for a last one of sums, which are certain without it unless they
+    are 0. They are not all at the place of the first row, to which a motion may return at its end.
     """
     steps = np.abs(np.diff(table))
     for count in range(min(_FOOTER, table.shape[1] - _FEWEST), 0, -1):
@@ -123,8 +132,9 @@ def _footer(table: Array, every: int) -> int:
         slack = [_ROUNDED * np.abs(total) + (every - 1) * span, *6 * [_ROUNDED * span]]
         off = np.abs(below - np.array(known)[..., np.newaxis])
         fits = (off <= np.array(slack)[..., np.newaxis]).all(axis=1)
-        fits[int(every == 1) :] &= jumps
-        if fits.any(axis=0).all():
+        fits[int(every == 1 and total.any()) :] &= jumps
+        back = np.abs(below - table[:, :1]) <= _ROUNDED * span[:, np.newaxis]
+        if fits.any(axis=0).all() and not back.all():
             return count
     return 0
 

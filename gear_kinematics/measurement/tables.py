@@ -163,7 +163,7 @@ class _Samples:
             del self.found['torque'], data['torque'], usable['torque']
         groups = [([role], rows) for role, rows in usable.items()]
         if len({*clocks.values()}) == 1:
-            groups = rows_of(data, usable, self.remarks, self._every, timed=clock is not None)
+            groups = rows_of(data, usable, self.remarks, self._every, clock and raw[clock.name])
         if not all(rows.any() for _, rows in groups):
             names = ', '.join(column.name for column in self.found.values())
             raise ValueError(f'no usable rows: none has numbers such as -12.5 in all of {names}')

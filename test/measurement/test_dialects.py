@@ -8,6 +8,7 @@ import re
 import shlex
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
+from fractions import Fraction
 from functools import cache
 from time import process_time
 
@@ -1431,6 +1432,19 @@ def test_a_last_row_of_sums_that_is_in_reach_is_no_sample(tmp_path, gear):
     recording = read_table(saved(tmp_path, content), Sources(), gear.gear.gear_ratio)
     assert recording.rows == len(rotor)
     assert Observation.ROWS_LEFT_OUT(rows=1) in recording.remarks
+
+
+@pytest.mark.parametrize(('head', 'output'), [
+    ('rotor_rad,output_rad', [*np.radians(np.arange(0.0, 361.0, 10.0)), 0.0]),
+    ('rotor_rad,output_rad', np.round(9.0 * np.sin(np.arange(0.0, 401.0) * math.pi / 50.0))),
+    ('time_s,rotor_rad,output_rad', [*np.linspace(-1.0, 1.0, 401), 0.0, 0.0, 0.0]),
+])  # fmt: skip
+def test_a_motion_that_returns_at_once_has_all_its_rows(tmp_path, head, output):
+    """Its last step is larger than all others, or the sum of its rows 0 as the last one."""
+    columns = 0.1 * np.arange(len(output)), 19.0 * np.asarray(output), output
+    path = saved(tmp_path, written(columns[-head.count(',') - 1 :], head, '{:.5f}'))
+    recording = read_table(path, Sources(), Fraction(19))
+    assert (recording.rows, recording.remarks) == (len(output), ())
 
 
 @pytest.mark.parametrize('end', ['greatest', 'mean'])
