@@ -1546,7 +1546,7 @@ def test_commands_are_not_known_by_what_differs_in_them(tmp_path, gear, referenc
         read(path, gear)
 
 
-@pytest.mark.parametrize('sign', ['{:.5f}-', '\u2013{:.5f}', '<{:.5f}'])
+@pytest.mark.parametrize('sign', ['{:.5f}-', '\u2013{:.5f}', '<{:.5f}', '- {:.5f}', '{:.5e}-'])
 def test_numbers_with_unknown_marks_are_no_gaps(tmp_path, gear, reference, sign):
     """Taken for gaps, the rotor would have the rows above 0 alone, and the output the others."""
 
@@ -1556,6 +1556,14 @@ def test_numbers_with_unknown_marks_are_no_gaps(tmp_path, gear, reference, sign)
     path = saved(tmp_path, written(reference('encoders'), NAMES, ('{:.2f}', signed, signed)))
     with pytest.raises(RecordingError, match=r'rotor has cells such as .*, which are no numbers'):
         read(path, gear)
+
+
+def test_a_point_alone_is_a_gap(tmp_path, gear, reference):
+    """As statistics programs such as SAS write it."""
+    t, r, o = reference('encoders')
+    output = [f'{value:.5f}' if k % 20 else '.' for k, value in enumerate(o)]
+    path = saved(tmp_path, written([t, r, output], NAMES, ('{:.2f}', '{:.5f}', '{}')))
+    assert read(path, gear).rows == np.count_nonzero(np.arange(len(t)) % 20)
 
 
 @pytest.mark.parametrize('first', ['row', 'cycle'])
