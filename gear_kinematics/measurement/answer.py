@@ -20,6 +20,7 @@ _MOST_UNCERTAIN = 0.25  # share of the whole twist; beyond it, a ± leaves nothi
 _MOST_SCATTER = 0.6
 """Share of the transmission error that single readings have. It is at most 0.46 in three real
 recordings, and at least 0.7 in 53 of 58 of a bench that reads up to 9 ms apart."""
+_COARSE = 3.0  # times the step between readings, which alone makes them scatter by less
 _UNEQUAL = 0.18  # share of the sum of both peaks; they differ by less in 37 real recordings
 
 
@@ -29,10 +30,10 @@ def answer(report: LostMotion) -> Observed:
         return first
     if report.figures:
         return _of_ramps(report.figures)
-    found = report.transmission
-    if found is None or not (error := found.forward or found.backward):
+    found, encoders = report.transmission, report.recording.encoders
+    if found is None or encoders is None or not (error := found.forward or found.backward):
         return Observation.HARDLY_MOVES()
-    if _scatters(found):
+    if _scatters(found, encoders.error_step(report.gear_ratio).size):
         return Observation.SCATTERS(error=error)
     if found.lost_motion:
         return Observation.LOSES(error=error, lost=found.lost_motion)
@@ -42,10 +43,14 @@ def answer(report: LostMotion) -> Observed:
     return (Observation.LOSS_NOT_TOLD if both else Observation.DEVIATES)(error=error)
 
 
-def _scatters(found: TransmissionFigures) -> bool:
-    """Whether most of the error is between neighbouring readings, unlike that of a gear."""
+def _scatters(found: TransmissionFigures, step: float) -> bool:
+    """Return whether most of the error is between neighbouring readings, unlike that of a gear.
+
+    The step is that between readings of the error, rad.
+    """
     error = found.error[found.direction != 0]
-    return float(np.ptp(error - usual(error))) > _MOST_SCATTER * float(np.ptp(error))
+    least = max(_MOST_SCATTER * float(np.ptp(error)), _COARSE * step)
+    return float(np.ptp(error - usual(error))) > least
 
 
 def _of_ramps(figures: GearFigures) -> Observed:

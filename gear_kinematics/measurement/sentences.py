@@ -158,7 +158,8 @@ class Observation(Enum):
     )
     LOSS_NOT_TOLD = _DEVIATES + '; what it loses on reversals is unknown.'
     SCATTERS = _DEVIATES + (
-        ', most of it from one reading to the next: turn slower, or read both encoders at once.'
+        ', most of it from one reading to the next: it is noise, or falls if you turn slower or '
+        'read both encoders at once.'
     )
     DELAY_TAKEN_OUT = 'A delay between the stamps of the encoders is not in these figures.'
     DELAY_NOT_TOLD = (

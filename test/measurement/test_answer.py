@@ -230,3 +230,14 @@ def test_what_the_moments_of_reading_add_is_not_called_an_error_of_the_gear(
     output = seen + 2.5e-3 * np.sin(seen)
     report = report_of(time=time, rotor=-19.0 * turned, output=output)
     assert (answer(report).what is Observation.SCATTERS) is scatters
+
+
+@pytest.mark.parametrize('bits', [10, 14])
+def test_steps_of_an_encoder_are_not_said_to_scatter(report_of, bits):
+    """Readings jump by a step there and back, by more than the gear deviates."""
+    time, step = 0.01 * np.arange(4000), 2.0 * math.pi / 2**bits
+    turned = 2.0 * np.sin(0.3 * time)
+    output = turned + 2.0 * ARC_MINUTE / 2 ** (bits - 10) * np.sin(turned)
+    stepped = step * np.round(output / step)
+    report = report_of(time=time, rotor=-19.0 * turned, output=stepped)
+    assert answer(report).what is not Observation.SCATTERS
