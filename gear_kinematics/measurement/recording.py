@@ -23,7 +23,9 @@ Array = NDArray[Any]
 MOST_MESSAGES = 500_000  # of the rotor that are examined; they take about 200 bytes each
 _SPEED_WINDOW = 0.02  # s, over which the speed is averaged
 _MOST_TWIST = 0.35  # rad of the output under torque; a shaft that turns further is not locked
-_MOST_IDEAL = 0.5  # of its motion, that a held rotor accounts for
+_YIELDS, _READINGS = 0.5, 3
+"""Share of the output's motion that a held rotor moves by less than, unlike one that drives it;
+most readings of an encoder that shows little but its steps, which may be coarser."""
 
 
 class RecordingError(ValueError):
@@ -149,9 +151,10 @@ class Encoders:
         """Return whether the output only winds up under torque, as the rotor is locked or held."""
         if self.torque(ratio) is None:
             return False
-        ideal, output = np.ptp(self.at_measured(self.ideal(ratio))), np.ptp(self.measured)
-        turned = max(output, abs(float(ratio)) * ideal)
-        return bool(ideal < _MOST_IDEAL * output and turned <= _MOST_TWIST)
+        turned, output = np.ptp(self.at_measured(self.rotor.turned)), np.ptp(self.measured)
+        stepped = len(np.unique(self.rotor.turned)) <= _READINGS
+        moved = turned / abs(float(ratio)) if stepped else turned
+        return bool(moved < _YIELDS * output and max(turned, output) <= _MOST_TWIST)
 
     def at_measured(self, values: Array) -> Array:
         """Interpolate a quantity of the rotor to the measured angles."""

@@ -3,6 +3,7 @@
 
 import math
 import re
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -461,6 +462,32 @@ def test_ramps_against_a_rotor_that_hardly_moves_are_measured(tmp_path, config, 
     assert (found.wrong_ratio, found.measured) == (None, True)
     assert float(found.figures.hysteresis.value) == pytest.approx(2.0 / 600.0, rel=0.03)
     assert found.figures.stiffness[-1].slope.value == pytest.approx(600.0, rel=0.01)
+
+
+def test_ramps_against_a_rotor_that_moves_by_a_coarse_count_are_measured(tmp_path, config):
+    """Its encoder has 256 counts, so that one is two thirds of the output's whole motion."""
+    torque = ramps(*[(20.0, 400)] * 2)
+    rotor = 2.0 * np.pi / 256.0 * np.round(-0.6 * torque / 20.0)
+    output = creep(Gear(play=0.0, stiffness=600.0, friction=1.0), torque) - rotor / 19.0
+    path = write_csv(tmp_path / 'r.csv', rotor_rad=rotor, output_rad=output, torque_nm=torque)
+    found = measure(read(path, config), config)
+    assert (found.wrong_ratio, found.measured) == (None, True)
+    assert float(found.figures.hysteresis.value) == pytest.approx(2.0 / 600.0, rel=0.03)
+
+
+@pytest.mark.parametrize('amplitude', [0.02, 0.15])
+def test_a_rotor_that_moves_its_output_a_little_is_not_held(tmp_path, config, amplitude):
+    """The ratio is 10, not the assumed 30, of which the difference would be a twist."""
+    time = 0.01 * np.arange(4000)
+    phase, noise = 0.5 * time, np.random.default_rng(1)
+    rotor = amplitude * np.sin(phase) + 1e-5 * noise.standard_normal(len(time))
+    output = -rotor / 10.0 + 1e-6 * noise.standard_normal(len(time))
+    torque = 2.0 * np.sign(np.cos(phase)) + 3.0 * np.sin(phase)
+    columns = {'time_s': time, 'rotor_rad': rotor, 'output_rad': output, 'torque_nm': torque}
+    path, assumed = write_csv(tmp_path / 'r.csv', **columns), replace(config, gear_ratio='-30')
+    found = measure(read(path, assumed), assumed).wrong_ratio
+    assert found.what is Observation.NOT_THE_RATIO
+    assert found.values['why'].values['measured'].value == pytest.approx(-10.0, rel=0.05)
 
 
 def test_exchanged_columns_are_named(shared_path):
