@@ -3,10 +3,10 @@
 
 import re
 import shlex
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
-from itertools import filterfalse, islice, permutations, product
+from itertools import chain, filterfalse, islice, permutations, product
 from pathlib import Path
 from typing import Any
 
@@ -69,7 +69,7 @@ def advice(
         text += f' among the columns {listed}; name them with their units'
     for example in examples:
         if complete := _completed(example, sources, read):
-            words = [word for field in complete for word in (option(field), complete[field])]
+            options = {option(field): value for field, value in complete.items()}
             assumed = [
                 value.rpartition('[')[2].rstrip(']')
                 for value in complete.values()
@@ -78,10 +78,22 @@ def advice(
             if assumed:
                 text += f', with the right values in place of {", ".join(dict.fromkeys(assumed))}'
             command = sources.command or shlex.join(['gearkin', 'lost-motion', str(path)])
-            return f'{text}, for example: {command} {shlex.join(words)}'
+            words = [*_without(options, command), *chain(*options.items())]
+            return f'{text}, for example: {shlex.join(words)}'
     if error.example or '--' in str(error):
         return str(error)
     return f'{text}, by {", ".join(map(option, ("angle", "torque", "rotor", "output")))}'
+
+
+def _without(options: Container[str], command: str) -> Iterator[str]:
+    """Yield the words of a command line but for some options with their values."""
+    words = iter(shlex.split(command))
+    for word in words:
+        name, given, _ = word.partition('=')
+        if name not in options:
+            yield word
+        elif not given:
+            next(words, None)
 
 
 def rising(table: TableFile) -> dict[str, str]:

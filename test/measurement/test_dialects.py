@@ -1019,6 +1019,20 @@ def test_advice_repeats_the_options_that_were_given(tmp_path, gear, reference):
         read(path, gear, Sources(rotor_counts=4096, command=line))
 
 
+@pytest.mark.parametrize('given', ["--torque-column 'load 5'", "'--torque-column=load 5'"])
+def test_advice_replaces_the_options_that_it_corrects(tmp_path, gear, reference, given):
+    t, a, q = reference('ramps')
+    head = 'time_s,angle_rad,load 5'
+    path = saved(
+        tmp_path, written([t, a, np.round(q * 1e3)], head, ('{:.2f}', '{:.6f}', '{:.0f}'))
+    )
+    line = f'gearkin lost-motion {path} {given} --quiet'
+    with pytest.raises(RecordingError) as told:
+        read(path, gear, Sources(torque='load 5', command=line))
+    words = shlex.split(str(told.value).split('for example: ')[1])
+    assert words[3:] == ['--quiet', '--torque-column', 'load 5 [Nmm]']
+
+
 @pytest.mark.parametrize(
     ('name', 'unit'),
     [
