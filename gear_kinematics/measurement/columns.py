@@ -36,6 +36,10 @@ _REVOLUTIONS = re.compile(r'(?i)servo_stats.*position|pos_estimate|pos_rel|pos_a
 _NUMBERED = re.compile(r'(\W*\d+|_[a-z]|(?<=^t)[mol])(?=( ?[\[(].*)?$)')
 """Ends of time.1, as pandas repeats a name, of time_a, and of tm, before any unit."""
 _MOTEUS = {'position', 'torque', 'q_current'}
+_NOT_MEASURED = re.compile(rf'(?i){WANTED}|err|soll|planned|refer|simul|model')
+"""Words in the path of tags whose values are no measured angles."""
+_POSITION = re.compile(r'(?i)pos|ang(?!e)|encod|winkel|theta|(rad|deg|rev|counts?)\b')
+"""Words of which the tag of an angle has one, as Temperature.Motor does not."""
 DATES = ('date',), ('datum',)
 """Words of columns that have the times if no other has, but perhaps the day alone."""
 
@@ -165,12 +169,20 @@ def find_columns(
 
 
 def _without_path(names: Sequence[str]) -> dict[str, str]:
-    """Return names without the path that all but times begin with, as tags of a PLC do, if any."""
+    """Return names without the path that all but times begin with, as tags of a PLC do, if any.
+
+    Those of other quantities than angles and torques keep it, so that they stay unknown.
+    """
     values = [name for name in names if name and meaning(name).role != 'time']
     alike = takewhile(lambda letters: len({*letters}) == 1, zip(*values, strict=False))
     path = re.sub(r'[^/.;|:\]]*$', '', ''.join(letters[0] for letters in alike))[:-1]
-    short = {name: name.removeprefix(path) for name in names}
-    sure = path and not re.search(f'(?i){WANTED}', path) and len({*short.values()}) == len(names)
+    rests = {name: name.removeprefix(path) for name in names}
+    short = {
+        name: rest if _POSITION.search(name) or meaning(rest).role == 'torque' else name
+        for name, rest in rests.items()
+    }
+    plain = [*short.values()]
+    sure = plain != [*names] and len({*plain}) == len(names) and not _NOT_MEASURED.search(path)
     return short if sure else {}
 
 

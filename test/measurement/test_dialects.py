@@ -1560,6 +1560,18 @@ def test_commands_are_not_known_by_what_differs_in_them(tmp_path, gear, referenc
         read(path, gear)
 
 
+@pytest.mark.parametrize('form', [
+    'Temperature.{}', 'Bench/velocity/{}', 'Drehzahl.{}', 'torque/{}', 'PLC.Soll.{}.Position',
+    'error/{}/position', 'model.{}.position',
+])  # fmt: skip
+def test_tags_of_other_quantities_are_no_angles(tmp_path, gear, reference, form):
+    t, r, o = reference('encoders')
+    head = ','.join(['time', *(form.format(one) for one in ('motor', 'output'))])
+    path = saved(tmp_path, written([t, r, o], head, '{:.5f}'))
+    with pytest.raises(RecordingError, match='neither an angle'):
+        read(path, gear, Sources(unit='rad'))
+
+
 @pytest.mark.parametrize('sign', ['{:.5f}-', '\u2013{:.5f}', '<{:.5f}', '- {:.5f}', '{:.5e}-'])
 def test_numbers_with_unknown_marks_are_no_gaps(tmp_path, gear, reference, sign):
     """Taken for gaps, the rotor would have the rows above 0 alone, and the output the others."""
