@@ -22,7 +22,7 @@ simplified Chinese, four letters in Cyrillic, or two Chinese characters."""
 _LEVEL = r'(?:TRACE|DEBUG|INFO|NOTICE|WARN(?:ING)?|ERROR)'
 _LOGGED = re.compile(
     r'(?m)^(?:\[(?=[^]\n]*\d:\d\d)([^]\n]*)\][ \t]*|(\d\d:\d\d:\d\d[.:]\d+) -?>[ \t]*|'
-    rf'(\d{{4}}-\d\d-\d\d[ T]\d\d:\d\d:\d\d[.,]\d+)[^\n\d]*?\b{_LEVEL}\b'
+    rf'(\d{{4}}-\d\d-\d\d[ T]\d\d:\d\d:\d\d[.,]\d+)(?:[^\n\d]|[A-Za-z_]-?\d+)*?\b{_LEVEL}\b'
     r'(?: +\| \S+(?= -))?(?: -|[:\]])? +|'
     rf'(?:\[[\w.-]+-\d+\] )?\[{_LEVEL}\] \[(\d+\.\d+)\] \[[^]\n]*\]: |'
     r'[EWIDV] \((\d+)\) [\w.-]+: |'

@@ -236,8 +236,8 @@ ENCODERS = {
         [t, r, o], '09:59:40.000 -> rotor,output', (
             lambda v: f'{moment()(v)[11:-3]} ->', '{:.5f}', '{:.5f}')).replace('>,', '> '),
     'the log of Python': lambda t, r, o: written(
-        [t, r, o], '2026-11-26 09:59:40,000 - bench - INFO - rotor,output', (
-            lambda v: f'{moment(" ", decimals=",")(v)[:-3]} - bench - INFO -', '{:.5f}', '{:.5f}')
+        [t, r, o], '2026-11-26 09:59:40,000 - b2.arm - INFO - rotor,output', (
+            lambda v: f'{moment(" ", decimals=",")(v)[:-3]} - b2.arm - INFO -', '{:.5f}', '{:.5f}')
         ).replace('-,', '- '),
     'the log of Python, with a label before each number': lambda t, r, o: written(
         [t, r, o], '', (
