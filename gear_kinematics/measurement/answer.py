@@ -61,11 +61,12 @@ def _of_ramps(figures: GearFigures) -> Observed:
     if math.inf > width.expanded > most:
         return Observation.LOOPS_DIFFER(hysteresis=width)
     backlash, cause = figures.backlash, figures.backlash.cause
+    rests = {'hysteresis': width, 'end': figures.ramps[0].amplitude}
     if backlash.high is None:
-        return Observation.PLAY_UNKNOWN(hysteresis=width, cause=cause)
+        return Observation.PLAY_UNKNOWN(**rests, cause=cause)
     if value := backlash.value:
-        return Observation.PLAY(hysteresis=width, play=value)
-    known = {'hysteresis': width, 'low': backlash.low, 'high': backlash.high}
+        return Observation.PLAY(**rests, play=value)
+    known = rests | {'low': backlash.low, 'high': backlash.high}
     enough = 2.0 * figures.friction.value if figures.friction else math.inf
     if cause in {Cause.BENT, Cause.SOFT} and 0.0 < enough < _SMALLER * figures.ramps[0].amplitude:
         return Observation.PLAY_BY_SLOW_RAMPS(**known, torque=enough)

@@ -193,7 +193,14 @@ def _error_panel(motion: TransmissionFigures) -> doc.Panel:
 def _of_gear(found: GearFigures) -> dict[str, Any]:
     return {
         'rated_torque': found.rated_torque,
-        'ramps': [{'amplitude': own.amplitude, 'loops': len(own.loops)} for own in found.ramps],
+        'ramps': [
+            {
+                'amplitude': own.amplitude,
+                'loops': len(own.loops),
+                'hysteresis': _with_unit(width, 'rad'),
+            }
+            for own, width in zip(found.ramps, found.widths, strict=True)
+        ],
         'hysteresis': _with_unit(found.hysteresis, 'rad'),
         'lost_motion': _with_unit(found.lost_motion, 'rad'),
         'friction': _with_unit(found.friction, 'N·m'),

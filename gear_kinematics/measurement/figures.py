@@ -42,13 +42,18 @@ class GearFigures:
 
     rated_torque: float
     ramps: tuple[Ramps, ...]  #: ascending; hysteresis and friction are of the first, others last
-    hysteresis: Estimate  #: the width of the curve at zero torque
+    widths: tuple[Estimate, ...]  #: of the curve at zero torque, after each of the ramps
     friction: Estimate | None  #: half the width in torque, N·m; None without a complete loop
     middle_line: MiddleLine  #: the mean of the largest ramps
     backlash: Backlash  #: by all ramps together
     lost_motion: Estimate | None  #: at ± `LOST_MOTION_SHARE` of the rated torque, if reached
     stiffness: tuple[MeasuredStiffness, ...]  #: in the ranges covered, as the torque increases
     overall: Estimate | None  #: N·m/rad: slope of a line through each whole side of the loop
+
+    @property
+    def hysteresis(self) -> Estimate:
+        """The width of the curve at zero torque."""
+        return self.widths[0]
 
     @property
     def below_friction(self) -> bool:
@@ -94,7 +99,7 @@ def gear_figures(ramps: Sequence[Ramps], rated_torque: float | None = None) -> G
     return GearFigures(
         rated,
         tuple(ramps),
-        widths[0],
+        tuple(widths),
         _friction(small),
         mean_line(large),
         reconciled(bounds),

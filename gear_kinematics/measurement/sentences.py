@@ -17,7 +17,7 @@ NAMED = 3  # moments of a kind that are named
 # Parts of several sentences
 _ROWS = '{rows:%d row was|%d rows were} left out: '
 _THINNED = ', to save memory: rates and speeds are those of what is left'
-_RESTS = 'At zero torque the output rests anywhere within {hysteresis:arcmin}′'
+_RESTS = 'At zero torque the output rests anywhere within {hysteresis:arcmin}′ after ±{end:si} N·m'
 _PLAY = _RESTS + '; backlash: {low:arcmin.2} to {high:arcmin.2}′; the rest is friction'
 _DEVIATES = 'In one direction the output deviates by {error:arcmin}′ peak to peak'
 _VALUE, _LIMIT = 'the {figure} of {value} ', 'the limit of {limit}'

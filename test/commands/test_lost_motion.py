@@ -40,8 +40,8 @@ def test_a_report_in_a_pipe_is_its_answer_and_with_v_the_figures(recording, caps
     arcmin = math.degrees(GEAR.play + 2 * GEAR.friction / GEAR.stiffness) * 60.0
     (line,) = capsys.readouterr().out.splitlines()
     said = re.fullmatch(
-        r'gear\.csv: At zero torque the output rests anywhere within ([\d.]+) ± [\d.]+′\. '
-        r'Of it, ([\d.]+) ± [\d.]+′ is play; the rest is friction\.',
+        r'gear\.csv: At zero torque the output rests anywhere within ([\d.]+) ± [\d.]+′ '
+        r'after ±(?:3\.\d+|4) N·m\. Of it, ([\d.]+) ± [\d.]+′ is play; the rest is friction\.',
         line,
     )
     assert float(said[1]) == pytest.approx(arcmin, abs=0.1)
@@ -71,6 +71,9 @@ def test_json_has_each_figure_with_unit_value_and_uncertainty(recording, capsys)
         assert found[name]['value'] == pytest.approx(value, rel=0.05)
         assert found[name]['expanded_uncertainty'] > 0.0
     assert found['backlash']['low'] < GEAR.play < found['backlash']['high']
+    for ramps in found['ramps']:
+        value = ramps['hysteresis']['value']
+        assert value == pytest.approx(expected['hysteresis'][1], rel=0.05), ramps['amplitude']
     assert found['lost_motion']['unit'] == 'rad'
     top = found['stiffness'][-1]
     assert (round(top['low']), round(top['high']), top['unit']) == (20, 40, 'N·m/rad')
