@@ -4,7 +4,7 @@
 import re
 import shlex
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import takewhile
 from typing import NamedTuple
 
@@ -56,6 +56,7 @@ class Sources:
     output_time: str | None = None  # of the output's encoder, if it has times of its own
     unit: str | None = None  # of all angles, one of GIVEN_UNITS; None: by their names, or rad
     on_rotor: bool = False  # whether angle and torque are the rotor's, unless named otherwise
+    of_rotor: bool = False  # the same where nothing says that the angle is the output's
     rotor_counts: int | None = None  # per turn of the encoder of the rotor, or of the angle column
     output_counts: int | None = None  # per turn of the output's encoder
     as_recorded: bool = False  # whether to keep wraps, unknown counts and rotor messages
@@ -155,6 +156,8 @@ def find_columns(
     if repeated := [name for name in found.values() if list(header).count(name) > 1]:
         raise ValueError(f'more than one column {repeated[0]!r}')
     angles = [found[role] for role in ANGULAR if role in found]
+    if given.of_rotor and not (side == 'output' or meaning(found.get('angle', '')).on_output):
+        given = replace(given, on_rotor=True)
     for name in filter(_REVOLUTIONS.search, angles):
         units[name] = units[name] or 'rev'
     moteus = {name.lower() for name in header} >= _MOTEUS

@@ -85,7 +85,7 @@ def read_table(
 
 
 def read_rotor(path: Path, sources: Sources, ratio: Fraction) -> tuple[Array, Array, Array, str]:
-    """Read the motion of a gear's rotor under torque; columns that name no side are the rotor's.
+    """Read the motion of a gear's rotor under torque, by default from columns of the rotor.
 
     Returns:
         Stamps, ns, angles of the rotor, rad, and its torque, N·m, (n,) each; the columns read.
@@ -95,7 +95,7 @@ def read_rotor(path: Path, sources: Sources, ratio: Fraction) -> tuple[Array, Ar
     """
 
     def motion(table: TableFile, sources: Sources) -> tuple[Array, Array, Array, str]:
-        read = _Samples(table, replace(sources, on_rotor=True), ratio, both=False)
+        read = _Samples(table, replace(sources, of_rotor=True), ratio, both=False)
         if 'torque' not in read.found or not read.timed:
             raise ColumnsError('no times or no torque: give --time-column and --torque-column')
         read.steps()

@@ -70,7 +70,16 @@ def table(folder: Path) -> Path:
     return path
 
 
-@pytest.mark.parametrize('write', [record, table])
+def bench(folder: Path) -> Path:
+    """Write what `record` does as a bench measures it, which has a torque sensor at the output."""
+    path = table(folder)
+    time, degrees, torque = np.loadtxt(path, delimiter=';', skiprows=1).T
+    rows = np.column_stack([time, degrees / -19.0, -19.0 * torque])
+    np.savetxt(path, rows, '%.9f', ';', header='ms;output_deg;torque [mNm]', comments='')
+    return path
+
+
+@pytest.mark.parametrize('write', [record, table, bench])
 def test_overloads_are_found_to_the_sample(tmp_path, config, capsys, write):
     code, found = report(capsys, write(tmp_path), '--config', config)
     assert code == 1
