@@ -71,9 +71,9 @@ def test_json_has_each_figure_with_unit_value_and_uncertainty(recording, capsys)
         assert found[name]['value'] == pytest.approx(value, rel=0.05)
         assert found[name]['expanded_uncertainty'] > 0.0
     assert found['backlash']['low'] < GEAR.play < found['backlash']['high']
-    for ramps in found['ramps']:
-        value = ramps['hysteresis']['value']
-        assert value == pytest.approx(expected['hysteresis'][1], rel=0.05), ramps['amplitude']
+    for group in found['ramps']:
+        value = group['hysteresis']['value']
+        assert value == pytest.approx(expected['hysteresis'][1], rel=0.05), group['amplitude']
     assert found['lost_motion']['unit'] == 'rad'
     top = found['stiffness'][-1]
     assert (round(top['low']), round(top['high']), top['unit']) == (20, 40, 'N·m/rad')
