@@ -63,8 +63,8 @@ class VelocityField:
         self._late = 0  # 1 if the velocities may be late, -1 if the positions may
         self._past: Fact | None = None  # the last contradiction that ended
         self.decided: int | None = None  # ns, the stamp of the reading that decided first
-        self._candidate: tuple[VelocityMeaning, bool] | None = None
-        """What the last comparison found, and whether repeated readings could explain it."""
+        self._candidate = VelocityMeaning.UNDECIDED  # what the last comparison found
+        self._may_repeat = False  # whether repeated readings of the encoder could explain it
         self._moved = False  # whether there was a velocity other than 0
         self.restart()
 
@@ -312,8 +312,8 @@ class VelocityField:
             abs((q - p) / (t - s) * 1e9 - slope) > _STEADY * abs(slope)
             for (s, p, _), (t, q, _) in pairwise(readings[::stride])
         ):
-            if self._candidate == (VelocityMeaning.UNKNOWN, True):
-                self._candidate = None
+            if self._may_repeat:
+                self._candidate = VelocityMeaning.UNDECIDED
             return True
         most = (_STEADY if slope else _STANDS) * max(abs(mean), abs(slope))
         fall = not slope and abs(velocities[-1]) < (1.0 - _STEADY) * abs(velocities[0])
@@ -327,15 +327,15 @@ class VelocityField:
     def _decide(self, factor: float, certain: VelocityMeaning | None = None) -> None:
         """Change the finding if it is certain, or two comparisons in a row find the same."""
         found, stamp = certain or self._meaning_of(factor), self._readings[-1][0]
-        candidate = found, 1.0 < factor < _REPEATED
-        if certain or candidate == self._candidate:
+        if certain or found is self._candidate:
             self.decided = stamp if self.decided is None else self.decided
             if self.contradicts and found is VelocityMeaning.RIGHT:
                 self._past = Condition.VELOCITIES_WERE(time=stamp / SECOND, doubt=self.meaning)
             self.finding, self.factor = found, factor
             self.contradicts = found is not VelocityMeaning.RIGHT
             self.confirmed = self.confirmed if self.contradicts else stamp
-        self._candidate = candidate
+        self._candidate = found
+        self._may_repeat = found is VelocityMeaning.UNKNOWN and 1.0 < factor < _REPEATED
 
     def _meaning_of(self, factor: float) -> VelocityMeaning:
         """Return what velocities are that are a multiple of the right ones."""

@@ -109,6 +109,18 @@ def test_right_velocities_beside_readings_that_are_repeated_are_no_unknown_quant
     assert all(sample.velocity == 100.0 for sample in samples)
 
 
+@pytest.mark.parametrize('factor', [1.0, 1.4])
+def test_two_comparisons_decide_on_whichever_side_of_a_bound_their_factors_are(factor):
+    """Each takes 0.2 s, and between them the factor changes from 0.5 % below to 0.5 % above."""
+
+    def motion(time):
+        return 100.0 * time, 100.0 * factor + math.copysign(0.5, time - 0.21)
+
+    rotor, _ = heard(motion, 500, 1.0)
+    assert rotor.velocity_field.decided == pytest.approx(1.4 * SECOND)
+    assert bool(rotor.velocity_field.meaning) == (factor > 1.0)
+
+
 @pytest.mark.parametrize('bits', [16, 32])
 def test_negative_velocities_that_are_sent_as_unsigned_are_found_at_once(bits):
     """As from the register of a servo, in steps of 0.229 rpm."""
