@@ -8,6 +8,7 @@ from contextlib import closing
 from functools import partial
 from itertools import pairwise
 
+import numpy as np
 import pytest
 from gear_recordings import old_recording
 from made_bags import (
@@ -194,6 +195,15 @@ def test_runs_stay_in_their_order_where_time_begins_anew(recorded, tmp_path, kin
     path = RECORDERS[kind](tmp_path / 'b.mcap', runs)
     assert read(path) == runs
     assert read(path, ['/rotor_state']) == [m for m in runs if m[0] == '/rotor_state']
+
+
+@pytest.mark.parametrize('first', [1.5, 2.0, 2.75])
+def test_a_short_first_run_stays_apart_from_a_long_one(recorded, tmp_path, first):
+    """As where a simulation is reset at once, and recorded for 50 minutes."""
+    data = next(data for topic, _, data in recorded if topic == '/rotor_state')
+    times = [*np.arange(0.0, first, 0.25), *np.arange(0.003, 3000.0, 0.25)]
+    runs = [('/rotor_state', 1 + round(time * 1e9), data) for time in times]
+    assert read(folder(tmp_path / 'bag', runs, 'sqlite3')) == runs
 
 
 def test_runs_are_found_beside_many_topics_of_few_messages():
