@@ -100,7 +100,7 @@ class Mcap(Storage):
         with suppress(Exception):  # reading the messages raises it again
             for piece in self._unsorted():
                 times += [message[:2] for message in piece]
-        return starts_of_runs(times)
+        return starts_of_runs(times, after=self.after)
 
     def _parts(self, starts: list[int] | None) -> Iterator[list[Message]]:
         """Yield sorted pieces of the file, and an empty one before each run but the first."""
@@ -111,7 +111,7 @@ class Mcap(Storage):
             if starts is None and (ordered != piece or (before and piece[0][1] < before[-1][1])):
                 # Messages outside of chunks are written one by one, in the order of reception.
                 rows = [message[:2] for message in (*before, *piece)]
-                found = starts_of_runs(rows, mixed=self._chunked)
+                found = starts_of_runs(rows, mixed=self._chunked, after=self.after)
                 begin = [start - len(before) for start in found if start >= len(before)]
             for first, end in pairwise([0, *begin, len(piece)]):
                 if first in begin:

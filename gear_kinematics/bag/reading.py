@@ -203,14 +203,15 @@ class Bag:
     def _read(
         self, topics: frozenset[str], options: Mapping[str, bool]
     ) -> Generator[list[Message], None, None]:
-        read, limits = 0, self._limits()
+        read, after, limits = 0, 0, self._limits()
         for file in self._files:
             with _opened(file, limits, read) as storage:
-                storage.found = self._found[file]
+                storage.found, storage.after = self._found[file], after
                 storage.any_encoding = options.get('any_encoding', False)
                 storage.publish_times = options.get('publish_times', False)
                 for piece in _plain(storage.pieces(topics), limits):
                     storage.read += len(piece)
+                    after = piece[-1][1] if piece else after
                     yield piece
             read += storage.read
             self.unclosed |= storage.unclosed

@@ -17,11 +17,14 @@ Array = NDArray[np.int64]
 _MIXED = 10  # times that another run begins, for a topic: by more, times of runs are the same
 
 
-def starts_of_runs(messages: Iterable[tuple[Hashable, int]], *, mixed: bool = True) -> list[int]:
+def starts_of_runs(
+    messages: Iterable[tuple[Hashable, int]], *, mixed: bool = True, after: int = 0
+) -> list[int]:
     """Return the numbers of messages, as recorded, that begin another run; mostly none.
 
     Messages are given by topic and time of reception, ns. The times of a topic fall there by more
-    than a second, and those before and after are `mixed`. Otherwise messages, or chunks of them,
+    than a second. Those before and after are `mixed`, or some are earlier by as much than `after`,
+    the time, ns, at which the file before this one ends. Otherwise messages, or chunks of them,
     are only out of order, and belong together.
     """
     numbers = dict[Hashable, int]()
@@ -33,7 +36,7 @@ def starts_of_runs(messages: Iterable[tuple[Hashable, int]], *, mixed: bool = Tr
     for at, before in sorted(zip(by_topic[1:][fell], by_topic[:-1][fell], strict=True)):
         if not starts or before >= starts[-1]:  # otherwise another topic begins the same run
             starts.append(int(at))
-    if not (starts and mixed):
+    if not (starts and mixed) or times.min() < after - CLOCK_RESET:
         return starts
     run = np.searchsorted(starts, np.arange(len(times)), side='right')
     by_time = np.lexsort((times, topic))

@@ -100,7 +100,7 @@ class Sqlite(Storage):
             if all(map(le, sampled, sampled[1:])):
                 return []
             rows = self._database.execute('SELECT topic_id, timestamp FROM messages ORDER BY id')
-            starts = starts_of_runs(rows)
+            starts = starts_of_runs(rows, after=self.after)
             at = 'SELECT id FROM messages ORDER BY id LIMIT 1 OFFSET ?'
             return [row for k in starts for (row,) in self._database.execute(at, [k])]
         except Exception:  # noqa: BLE001, reading the messages raises it again

@@ -79,6 +79,7 @@ class Storage:
         """Start with the limits on the files of the bag."""
         self.limits = limits
         self.found: dict[int, Topic] = {}  # channels that only reading the whole file shows
+        self.after = 0  # ns, the time of reception at which the file before this one ends
         self.read = 0  # number of messages that the caller has taken from `pieces`
         self.unclosed = False  # whether it ended, when it was read, as if more could follow
         self.any_encoding = False  # whether messages are read that are not CDR, too

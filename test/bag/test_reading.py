@@ -206,6 +206,18 @@ def test_a_short_first_run_stays_apart_from_a_long_one(recorded, tmp_path, first
     assert read(folder(tmp_path / 'bag', runs, 'sqlite3')) == runs
 
 
+@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
+def test_runs_stay_in_their_order_where_one_file_begins_with_the_end_of_another_run(
+    recorded, tmp_path, storage
+):
+    """The last 0.7 s of the first run are in the second file, in which both runs share no time."""
+    first = [(topic, 10 * received - 10**19, data) for topic, received, data in recorded]
+    again = [(topic, received - 2 * 10**9, data) for topic, received, data in first[:700]]
+    runs = first + again
+    assert max(received for _, received, _ in again) < first[800][1]
+    assert read(split(tmp_path / 'bag', runs, storage, parts=2)) == runs
+
+
 def test_runs_are_found_beside_many_topics_of_few_messages():
     """Both runs have the times of 0.3 s at 100 Hz; of 200 latched topics they have one each."""
     times = [*range(2 * 10**9, 4 * 10**9, 10**7), *range(2 * 10**9, 23 * 10**8, 10**7)]
