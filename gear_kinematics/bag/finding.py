@@ -4,7 +4,6 @@
 import glob
 import re
 from collections.abc import Iterable, Iterator
-from itertools import pairwise
 from pathlib import Path, PurePath
 from typing import Any, NamedTuple
 
@@ -12,7 +11,6 @@ from gear_kinematics.bag.codecs import CODECS
 from gear_kinematics.bag.errors import BagError, bag_errors, cause
 from gear_kinematics.bag.storage import Topic
 from gear_kinematics.parameters.yaml_file import Loader, load_yaml, read_yaml
-from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
 BAG_NAME = re.compile(r'\.(mcap|db3|bag)(\.(zstd|zst|lz4))?$')
 _STORAGE_NAME = re.compile(
@@ -193,13 +191,11 @@ def _listed_contents(path: Path, metadata: Any) -> Contents:
         raise ValueError('no files are listed')
     listed = information.get('files') or ()
     starts = {file['path']: file['starting_time']['nanoseconds_since_epoch'] for file in listed}
-    if known := starts.keys() >= set(names):  # tools list files by name: _10 before _2
+    if starts.keys() >= set(names):  # from version 5 on
         names = sorted(names, key=starts.__getitem__)
-        ends = {f['path']: starts[f['path']] + f['duration']['nanoseconds'] for f in listed}
-        known = all(ends[a] - starts[b] <= CLOCK_RESET for a, b in pairwise(names))
     files = [_listed_file(path, name) for name in names]
-    if not known:  # before version 5, and where the clock of the recorder was reset
-        files = _in_order(files) or files
+    # Tools list files by name: _10 before _2. Starts are no order where a clock was reset.
+    files = _in_order(files) or files
     if len(set(files)) < len(files):
         raise ValueError('a file is listed more than once')
     message_count = int(information['message_count'])

@@ -97,15 +97,18 @@ def test_metadata_stands_for_its_folder():
         assert given.topics == expected.topics
 
 
-@pytest.mark.parametrize('version', [4, 5])
-def test_files_that_are_listed_by_name_are_read_in_their_order(recorded, tmp_path, version):
-    """Since version 5, the metadata give their starts."""
+@pytest.mark.parametrize('renamed', [False, True])
+def test_files_that_are_listed_by_name_are_read_in_their_order(recorded, tmp_path, renamed):
+    """By their numbers, or without them by their starts, which metadata give since version 5."""
     path = split(tmp_path / 'bag', recorded, 'sqlite3')
     names = [f'bag_{number}.db3' for number in range(11)]
+    if renamed:
+        names = [
+            (path / name).rename(path / f'{10 - k:02}.db3').name for k, name in enumerate(names)
+        ]
     starts = [recorded[number * 82][1] for number in range(11)]  # split: 900 messages in 11 files
-    files = _files_of_metadata(names, starts, [start - 1 for start in starts[1:]])
     assert sorted(names) != names
-    files = files[::-1] if version > 4 else None
+    files = _files_of_metadata(names, starts)[::-1] if renamed else None
     change_metadata(path, relative_file_paths=sorted(names), files=files)
     assert read(path) == recorded
 
@@ -132,31 +135,24 @@ def test_damaged_metadata_are_refused_with_what_to_do(recorded, tmp_path):
         read(path)
 
 
-def _files_of_metadata(names, starts, ends) -> list[dict]:
+def _files_of_metadata(names, starts) -> list[dict]:
     return [
-        {
-            'path': name,
-            'starting_time': {'nanoseconds_since_epoch': start},
-            'duration': {'nanoseconds': end - start},
-        }
-        for name, start, end in zip(names, starts, [*ends, starts[-1] + 1], strict=True)
+        {'path': name, 'starting_time': {'nanoseconds_since_epoch': start}}
+        for name, start in zip(names, starts, strict=True)
     ]
 
 
-def test_files_whose_times_begin_anew_are_read_by_their_numbers(recorded, tmp_path):
+@pytest.mark.parametrize('back', [4 * 10**9, 400 * 10**9])
+def test_files_whose_times_begin_anew_are_read_by_their_numbers(recorded, tmp_path, back):
     """As where a simulation is reset while its time is recorded, in the last file of three."""
-    first = [(topic, 10 * received - 10**19, data) for topic, received, data in recorded[:600]]
-    again = [
-        (topic, 10 * received - 10**19 - 4 * 10**9, data) for topic, received, data in recorded
+    first = [(topic, 10 * received - 10**19, data) for topic, received, data in recorded]
+    messages = first[:600] + [
+        (topic, received - back, data) for topic, received, data in first[600:]
     ]
-    messages = first + again[600:]
     path = split(tmp_path / 'bag', messages, 'mcap', parts=3)
     starts = [messages[k][1] for k in (0, 300, 600)]
     assert sorted(starts) != starts
-    names = [f'bag_{number}.mcap' for number in range(3)]
-    ends = [messages[k - 1][1] for k in (300, 600)]
-    files = _files_of_metadata(names, starts, ends)
-    files[-1]['duration']['nanoseconds'] = messages[-1][1] - starts[-1]
+    files = _files_of_metadata([f'bag_{number}.mcap' for number in range(3)], starts)
     change_metadata(path, files=files)
     assert read(path) == messages
 
