@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 pytest.importorskip('mujoco', reason='MuJoCo is not installed')
-pytest.importorskip('scipy', reason='scipy is not installed')
 from measured_twins import STEP
 from proved_twins import GEARS, all_proved, filled, proved
 from twins import drawn

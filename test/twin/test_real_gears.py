@@ -8,11 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from blocked_bags import gearkin_here
+from real_twins import PRINTED, READ_PRINTED, loops, real_gear
 
 from gear_kinematics.twin.parameters import default_config
-
-pytest.importorskip('scipy', reason='scipy is not installed')
-from real_twins import PRINTED, READ_PRINTED, loops, real_gear
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE, SHARED = ROOT / 'docs/twin.md', ROOT.parent / 'shared/data'
