@@ -171,7 +171,8 @@ class Mcap(Storage):
         for place, length in places:
             self._stream.seek(place)
             index = self._stream.read(length)
-            yield index[:2], np.frombuffer(index, '<i8', 2 * (length // 16), _INDEX_START)[::2]
+            count = (length - _INDEX_START) // 16  # further bytes are of a later version
+            yield index[:2], np.frombuffer(index, '<i8', 2 * count, _INDEX_START)[::2]
 
     def _merged(self, chunks: list[tuple[int, int, int, int]]) -> Iterator[list[Message]]:
         """Merge chunks by time; messages of the same time stay in the order of the file."""

@@ -20,6 +20,7 @@ from made_bags import (
     lz4_messages,
     mcap_file,
     read,
+    record_ends,
     renamed_folder,
     ros1_bag,
     single_file,
@@ -234,6 +235,17 @@ def test_recordings_in_chunks_that_follow_each_other_are_sorted_by_time(recorded
     later = [(topic, received + 10**10, data) for topic, received, data in recorded]
     path = RECORDERS[kind](tmp_path / 'b.mcap', later + recorded)
     assert read(path) == recorded + later
+
+
+def test_an_index_with_further_bytes_is_read(recorded, tmp_path):
+    """The specification of mcap lets later versions append fields to a record."""
+    by_topic = sorted(recorded, key=lambda message: message[0])
+    path = mcap_file(tmp_path / 'b.mcap', by_topic)
+    data = path.read_bytes()
+    start, end = next(ends for ends in pairwise(record_ends(path)) if data[ends[0]] == 7)
+    length = (end - start - 9 + 10).to_bytes(8, 'little')
+    path.write_bytes(data[: start + 1] + length + data[start + 9 : end] + bytes(10) + data[end:])
+    assert read(path) == sorted(by_topic, key=lambda message: message[1])
 
 
 def test_chunks_of_a_rewritten_file_are_merged_as_mcap_does(shared_path):
