@@ -85,7 +85,9 @@ class Mcap(Storage):
         self._wanted = topics
         for channel, topic in self._channels.items():
             self._want(channel, topic)
-        starts = None if not chunks else self._starts_of_runs() if may_restart else []
+        starts = None if not chunks else []
+        if may_restart:
+            starts = starts_of_runs(self._times(), after=self.after)
         last = 0
         for piece in self._nearly_sorted(starts) if starts or not chunks else self._merged(chunks):
             if piece and piece[0][1] < last:
@@ -94,13 +96,12 @@ class Mcap(Storage):
             if piece:
                 yield piece
 
-    def _starts_of_runs(self) -> list[int]:
-        """Find the wanted messages that begin another run, by reading up to any damage."""
-        times: list[tuple[str, int]] = []
+    def _times(self) -> Iterator[tuple[str, int]]:
+        """Yield topic and time of each wanted message, in the order of the file, up to damage."""
         with suppress(Exception):  # reading the messages raises it again
             for piece in self._unsorted():
-                times += [message[:2] for message in piece]
-        return starts_of_runs(times, after=self.after)
+                for topic, received, _ in piece:
+                    yield topic, received
 
     def _parts(self, starts: list[int] | None) -> Iterator[list[Message]]:
         """Yield sorted pieces of the file, and an empty one before each run but the first."""
