@@ -85,7 +85,7 @@ class Mcap(Storage):
         self._wanted = topics
         for channel, topic in self._channels.items():
             self._want(channel, topic)
-        starts = None if not chunks else []
+        starts: list[int] | None = [] if chunks else None
         if may_restart:
             starts = starts_of_runs(self._times(), after=self.after)
         last = 0
