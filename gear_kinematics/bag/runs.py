@@ -14,7 +14,7 @@ from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
 Array = NDArray[np.int64]
 
-_MIXED = 10  # times that another run begins, for a topic: by more, times of runs are the same
+_MIXED = 10  # changes of run in the order of time, for each start and topic, that are not mixed
 
 
 def starts_of_runs(

@@ -55,7 +55,7 @@ class TopicSummary(NamedTuple):
 class Summary(NamedTuple):
     """The contents of a recording."""
 
-    duration: float  # time from the first to the last message, s; where time began anew, of all
+    duration: float  # time from the first to the last message, s; a sum where time began anew
     topics: tuple[TopicSummary, ...]  # all topics; those with a part come first
     unclear: str  # why the rotor's topic is not known, or empty
     damage: str  # where reading ended, if the recording is damaged
