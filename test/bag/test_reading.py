@@ -219,6 +219,14 @@ def test_runs_stay_in_their_order_where_one_file_begins_with_the_end_of_another_
     assert read(split(tmp_path / 'bag', runs, storage, parts=2)) == runs
 
 
+def test_a_run_that_begins_where_a_piece_of_the_file_does_stays_apart(recorded, tmp_path):
+    """Messages outside of chunks are read 4096 at once: eight runs, and then the ninth."""
+    first = [(topic, 10 * received - 10**19, data) for topic, received, data in recorded[:512]]
+    assert first[-1][1] - first[0][1] > 2 * 10**9
+    runs = [(topic, at - 7 * k, data) for k in range(9) for topic, at, data in first]
+    assert read(RECORDERS['no chunks'](tmp_path / 'b.mcap', runs)) == runs
+
+
 def test_runs_are_found_beside_many_topics_of_few_messages():
     """Both runs have the times of 0.3 s at 100 Hz; of 200 latched topics they have one each."""
     times = [*range(2 * 10**9, 4 * 10**9, 10**7), *range(2 * 10**9, 23 * 10**8, 10**7)]
