@@ -4,7 +4,6 @@
 import re
 import shlex
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping
-from contextlib import suppress
 from dataclasses import replace
 from itertools import chain, filterfalse, islice, permutations, product
 from pathlib import Path
@@ -98,28 +97,29 @@ def _without(options: Container[str], command: str) -> Iterator[str]:
 
 def rising(table: TableFile) -> dict[str, str]:
     """Return the first of the columns whose numbers only rise, as those of times do, if any."""
-    names = filter(None, table.names[:_FIRST])
-    return next(({'time': name} for name in names if _rises(table, name)), {})
+    return next(({'time': name} for name, _ in _rising(table, table.names[:_FIRST])), {})
 
 
 def no_times(table: TableFile, found: Mapping[str, Column]) -> str:
     """Say that no times were found, and which other column may have them, as its numbers rise."""
     used = {column.name for column in found.values()}
-    with suppress(ValueError):  # of columns that are not read
-        name = rising(table._replace(names=[n for n in table.names if n not in used])).get('time')
-        values = np.asarray(table.load([name])[0][name] if name else ()).astype(float)
-        if np.any(np.diff(values) != 1.0):  # no numbers of rows
-            return f'no times (perhaps --time-column={shlex.quote(str(name))})'
+    names = [name for name in table.names if name not in used]
+    for name, values in islice(_rising(table, names[:_FIRST]), 1):
+        if np.any(np.diff(values.astype(float)) != 1.0):  # no numbers of rows
+            return f'no times (perhaps --time-column={shlex.quote(name)})'
     return 'no times'
 
 
-def _rises(table: TableFile, name: str) -> bool:
-    try:
-        values = np.asarray(table.load([name])[0][name])
-    except ValueError:  # of a column that need not be read
-        return False
-    several = values.dtype.kind in 'iufM' and len(values) > 1
-    return several and bool(np.all(values[1:] >= values[:-1]) and values[-1] > values[0])
+def _rising(table: TableFile, names: Iterable[str]) -> Iterator[tuple[str, Any]]:
+    """Yield those of some columns whose numbers only rise, with the numbers, (n,)."""
+    for name in filter(None, names):
+        try:
+            values = np.asarray(table.load([name])[0][name])
+        except ValueError:  # of a column that need not be read
+            continue
+        several = values.dtype.kind in 'iufM' and len(values) > 1
+        if several and np.all(values[1:] >= values[:-1]) and values[-1] > values[0]:
+            yield name, values
 
 
 def _completed(
@@ -168,7 +168,7 @@ def _examples(table: TableFile) -> Iterator[Mapping[str, str]]:
     nameless = {*filter(_NO_NAME.fullmatch, angles)}
     if nameless and (rises := rising(table).get('time')) in nameless:
         left = [name for name in angles if name != rises]
-        if left[1:] or not all(_rises(table, k) for k in left):
+        if left[1:] or len([*_rising(table, left)]) < len(left):
             angles = left
     likely = [name for name in angles if units[name] in ANGLE_UNITS or _LIKELY.search(name)]
     raw, _ = table.load((likely if len(likely) > 1 else angles)[:_TRIED])
