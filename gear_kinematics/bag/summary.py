@@ -108,7 +108,7 @@ def summarise(
                 others[topic] += int(np.count_nonzero(~own))
                 malformed[topic] += int(np.count_nonzero(~good))
                 times[topic].append(np.stack([stamp, received])[:, own & good])
-            clock = np.array([received for _, received, _ in batch], np.int64)
+            clock = np.fromiter(map(itemgetter(1), batch), np.int64, len(batch))
             duration += int(np.maximum(np.diff(clock, prepend=last or clock[0]), 0).sum())
             last = int(clock[-1])
     except DamagedBagError as error:

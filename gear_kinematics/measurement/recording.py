@@ -149,12 +149,12 @@ class Encoders:
 
     def wound_up(self, ratio: Fraction) -> bool:
         """Return whether the output only winds up under torque, as the rotor is locked or held."""
-        if self.torque(ratio) is None:
-            return False
         turned, output = np.ptp(self.at_measured(self.rotor.turned)), np.ptp(self.measured)
+        if max(turned, output) > _MOST_TWIST or self.torque(ratio) is None:
+            return False
         stepped = len(np.unique(self.rotor.turned)) <= _READINGS
         moved = turned / abs(float(ratio)) if stepped else turned
-        return bool(moved < _YIELDS * output and max(turned, output) <= _MOST_TWIST)
+        return bool(moved < _YIELDS * output)
 
     def at_measured(self, values: Array) -> Array:
         """Interpolate a quantity of the rotor to the measured angles."""

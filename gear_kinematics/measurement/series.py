@@ -121,9 +121,10 @@ def _footer(table: Array, every: int) -> int:
     are 0. They are not all at the place of the first row, to which a motion may return at its end.
     """
     steps = np.abs(np.diff(table))
+    jump = _STEP_BELOW * steps[:, :-_FOOTER].max(axis=1, initial=0.0)
     for count in range(min(_FOOTER, table.shape[1] - _FEWEST), 0, -1):
         above, below = table[:, :-count], table[:, -count:]
-        jumps = np.any(steps[:, -count] > _STEP_BELOW * steps[:, :-_FOOTER].max(axis=1))
+        jumps = np.any(steps[:, -count] > jump)
         if count > 1 and not jumps:
             continue
         mean, deviation, span = above.mean(axis=1), above.std(axis=1), np.ptp(above, axis=1)

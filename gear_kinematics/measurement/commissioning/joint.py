@@ -55,8 +55,10 @@ class Joint:
         turns, angle = split_turns(rotor)
         motion = motion._replace(turns=turns, angle=angle)
         unwrapped = replace(encoders, rotor=motion, measured=measured)
-        slope = output_by_rotor(unwrapped.at_measured(motion.turned), measured)
-        if output_wraps and slope:  # by the rotor, as a fast output may turn by half a turn a row
+        # By the rotor, as a fast output may turn by half a turn from row to row.
+        if output_wraps and (
+            slope := output_by_rotor(unwrapped.at_measured(motion.turned), measured)
+        ):
             ratio = Fraction(1.0 / slope)
             measured = unwrapped.at_measured(unwrapped.ideal(ratio)) + unwrapped.error(ratio)
             unwrapped = replace(unwrapped, measured=measured)
