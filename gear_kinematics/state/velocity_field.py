@@ -24,8 +24,7 @@ _READINGS = 4
 _STRIDES = 1, 4, 16  # noted readings between compared ones: more while the rotor is slow
 _MOST = 1 + (_READINGS - 1) * _STRIDES[-1]  # noted readings
 _FAR = 3.0  # times or less than a third of the slope: no rounding, where the rotor is slow
-_STEADY = 0.1  # of the speed: what it may vary by in a comparison
-_STANDS = 0.4  # the same where the positions stand
+_STEADY, _STANDS = 0.1, 0.4  # of the speed: what it may vary by; where the positions stand
 _AGREES = 0.25  # of the slope: delays of filters and the rest of the acceleration
 _ALIKE = 0.1  # of a factor that has a name
 _REPEATED = 1.4
@@ -188,15 +187,20 @@ class VelocityField:
         mean, turn = self._total / max(1, self._count), position - before
         expected = mean * (stamp - since) * 1e-9
         self._ways = [] if turn else [*self._ways[1 - _LONGEST :], expected]
+        impossible = abs(expected) > _IMPOSSIBLE * (abs(turn) + _TRAVEL)
+        if impossible or (not turn and self._lead_away(mean, velocity)):
+            factor = expected / turn if turn else math.inf
+            self._decide(factor, self._meaning_of(factor))
+
+    def _lead_away(self, mean: float, velocity: float | None) -> bool:
+        """Return whether velocities go on while the position stands, or lead away and back."""
         places = [*accumulate(self._ways, initial=0.0)]
         last, now = (math.copysign(v or 0.0, (v or 0.0) * mean) for v in (self._last, velocity))
         # Behind a stop, the velocities of a filter fall, and lead to no place and back.
         goes_on = min(last, now) >= 0.5 * abs(mean) and now >= (1.0 - _STEADY) * last
-        stuck = goes_on and abs(places[-1]) >= _TRAVEL and self.finding is VelocityMeaning.RIGHT
-        stuck |= max(places) - min(places) - abs(places[-1]) >= _TRAVEL and not self.contradicts
-        if stuck or abs(expected) > _IMPOSSIBLE * (abs(turn) + _TRAVEL):
-            factor = expected / turn if turn else math.inf
-            self._decide(factor, self._meaning_of(factor))
+        goes_on &= abs(places[-1]) >= _TRAVEL and self.finding is VelocityMeaning.RIGHT
+        back = max(places) - min(places) - abs(places[-1])
+        return goes_on or (back >= _TRAVEL and not self.contradicts)
 
     def _follow(self, travel: float, noise: float) -> None:
         """Decide on a motion of more than `travel`, rad, however unsteady, of the latest readings.
