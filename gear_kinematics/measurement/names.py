@@ -17,7 +17,7 @@ _VOCABULARY = {
     'angle': 'position positions pos angle ang encoder enc theta phi θ φ ϕ deflection twist '
     'rotation winkel drehwinkel verdrehwinkel angolo ángulo angulo posición posizione 位置 '
     '角度 编码器 編碼器 각도 위치 엔코더',
-    'torque': 'torque torques effort efforts trq tq tau τ drehmoment moment couple coppia '
+    'torque': 'torque torques tor effort efforts trq tq tau τ drehmoment moment couple coppia '
     '扭矩 力矩 转矩 轉矩 トルク 토크',
     'current': 'current',
     'time': 'time t stamp timestamp timestamps today datetime elapsed zeit uhrzeit messzeit '

@@ -629,6 +629,8 @@ RAMPS = {
         [q, a / ARCMIN], "Drehmoment [Nm];Verdrehwinkel [']", 2 * ['{:.6f}'], ';'),
     'a row of units in German': lambda t, a, q: in_german(written(
         [t, q, a * DEG], 'Zeit;Drehmoment;Winkel\ns;Nm;Grad', 3 * ['{:.6f}'], ';')),
+    'what is desired and actual, abbreviated': lambda t, a, q: written(
+        [t, 2.0 * q, 2.0 * a, q, a], 't,torDes,posDes,torAct,posAct', 5 * ['{:.6f}']),
     'τ and φ': lambda t, a, q: written([t, a, q], 't,φ,τ', 3 * ['{:.6f}']),
     'units in columns of their own': lambda t, a, q: written(
         [t, a * DEG, q * 1e3], 'Time,Angle,Units,Torque,Units',
