@@ -26,13 +26,14 @@ from gear_kinematics.measurement.recording import (
 )
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.series import held_readings
-from gear_kinematics.measurement.stamps import RestoredClock, in_order
+from gear_kinematics.measurement.stamps import RestoredClock
 from gear_kinematics.measurement.tables import read_table
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.output_encoder import measured_angle
 from gear_kinematics.wire.batches import JointStates, decode_joint_states
 from gear_kinematics.wire.cdr import SECOND
+from gear_kinematics.wire.joint_reader import CLOCK_RESET
 from gear_kinematics.wire.topics import OUTPUT_ENCODER
 
 _MOST_REPEATED = 0.75  # share of the stamps; a recording that was merged with itself has half
@@ -231,11 +232,16 @@ class _Columns:
 
 
 def _in_order(columns: Sequence[Array], topic: str, remarks: list[Observed]) -> list[Array]:
-    """Keep the rows whose stamps, the first column, are in order; remark on those left out."""
-    kept, disordered = in_order(columns[0])
-    if disordered:
+    """Keep the rows whose stamps, ns, the first column, are in order; remark on those left out.
+
+    As in the node, stamps that go back by more than a second are those of another clock.
+    """
+    late = np.maximum.accumulate(columns[0]) - columns[0]
+    late = late[~np.logical_or.accumulate(late > CLOCK_RESET)]
+    kept = np.flatnonzero(late == 0)
+    if disordered := len(late) - len(kept):
         remarks.append(Observation.STATES_OUT_OF_ORDER(topic=topic, count=disordered))
-    if rest := len(columns[0]) - len(kept) - disordered:
+    if rest := len(columns[0]) - len(late):
         remarks.append(Observation.SET_BACK_FAR(topic=topic, count=rest))
     return [column[kept] for column in columns]
 

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Stamps of recorded topics from a clock that was set back, or out of order."""
+"""Stamps of recorded topics from a clock that was set back."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -9,7 +9,6 @@ import numpy as np
 from gear_kinematics.bag import TopicMessages
 from gear_kinematics.measurement.recording import Array
 from gear_kinematics.wire.cdr import SECOND, header_stamp, with_stamp
-from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
 _CLOCK_STEP = 20_000_000  # ns by which a clock is set back at least; it is slewed by less
 _STEADY = 25  # messages before and after a step whose age is steady
@@ -64,15 +63,3 @@ class RestoredClock:
                 at = int(received[k + 1])
                 near = (own.size for own in self._of_rotor if abs(own.received - at) < SECOND)
                 self.steps.append(ClockStep(at, next(near, size), int(stamp[k])))
-
-
-def in_order(stamps: Array) -> tuple[Array, int]:
-    """Choose stamps, ns, as the node does: those up to a second out of order are left out.
-
-    Returns the indices that are kept, and how many are left out. Stamps that go back further end
-    the selection.
-    """
-    late = np.maximum.accumulate(stamps) - stamps
-    late = late[~np.logical_or.accumulate(late > CLOCK_RESET)]
-    kept = np.flatnonzero(late == 0)
-    return kept, len(late) - len(kept)
