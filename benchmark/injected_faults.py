@@ -552,7 +552,7 @@ def recorded(recording: Recording, messages: Sequence[Sent], node: Node) -> set[
     outputs = [('/output_state', time + 1, data) for time, _, _, data in node.outputs]
     validator = Validator(Task(Path('faulty'), recording.parameters))
     messages = sorted(rotor + outputs, key=lambda each: each[1])
-    validator.feed([MessagesByTopic(validator.topics, messages)])
+    validator.take(MessagesByTopic(validator.topics, messages))
     report = validator.report()
     health = report.rotor
     texts = {sentence(finding, report) for finding in report.findings}

@@ -8,7 +8,7 @@ belong together in a message, and which fields of it are empty.
 
 import math
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -150,26 +150,24 @@ class ArmValidator:
             if of
         }
 
-    def feed(self, batches: Iterable[MessagesByTopic]) -> None:
-        """Process messages, up to an exception of the iterable, if any; see `Validator.feed`."""
-        for messages in batches:
-            self._messages += sum(len(of.data) for of in messages.values())
-            states = {
-                topic: JointStateBatch(messages[topic].data)
-                for topic in (self._rotor, *self._joined)
-            }
-            for topic, data in states.items():
-                received: Any = np.array(messages[topic].received, np.int64)  # once for all
-                messages[topic] = TopicMessages(data, received)
-            stamps = np.zeros(len(messages[self._rotor].data), np.int64)
-            valid = np.zeros((len(stamps), len(self._validators)), bool)
-            for rows, _, stamp, _ in states[self._rotor].contents():
-                stamps[rows] = stamp
-            for k, validator in enumerate(self._validators):
-                validator.take(messages)
-                valid[validator.samples.row, k] = True
-            for topic, joined in self._joined.items():
-                joined.take(states[topic], stamps, valid)
+    def take(self, messages: MessagesByTopic) -> None:
+        """Process messages; see `Validator.take`."""
+        self._messages += sum(len(of.data) for of in messages.values())
+        states = {
+            topic: JointStateBatch(messages[topic].data) for topic in (self._rotor, *self._joined)
+        }
+        for topic, data in states.items():
+            received: Any = np.array(messages[topic].received, np.int64)  # once for all
+            messages[topic] = TopicMessages(data, received)
+        stamps = np.zeros(len(messages[self._rotor].data), np.int64)
+        valid = np.zeros((len(stamps), len(self._validators)), bool)
+        for rows, _, stamp, _ in states[self._rotor].contents():
+            stamps[rows] = stamp
+        for k, validator in enumerate(self._validators):
+            validator.take(messages)
+            valid[validator.samples.row, k] = True
+        for topic, joined in self._joined.items():
+            joined.take(states[topic], stamps, valid)
 
     def reports(self, error: str | None, lost: Mapping[str, int]) -> list[BagReport]:
         """Return the report on each actuator; see `Validator.report`."""

@@ -57,11 +57,6 @@ class Missing:
         self._judged = 0  # inputs
         self._last_answered: int | None = None  # when it was received, ns
 
-    def leave_out(self, answered: Flags, cause: str) -> None:
-        """Count the inputs, (n,), without an output as not judged, by the cause of that."""
-        if count := int(np.count_nonzero(~answered)):
-            self.left_out[cause] += count
-
     def update(self, received: Array, stamp: Array, answered: Flags) -> None:
         """Judge inputs, (n,), by whether they have their output."""
         self._judged += len(received)
@@ -128,25 +123,17 @@ class Completeness:
         periods = np.diff(received, prepend=self._last or received[:1])
         if self._pause == _NEVER and len(periods) > _PERIODS and not self._strict:
             self._pause = max(_PAUSE, _PERIODS * float(np.median(periods)))
+        names = {self._rotor, *self.topics}
+        if self._start == _NEVER and begun.keys() >= names:
+            self._start = self._settled = max(begun[name] for name in names)
         restarts = np.flatnonzero(periods > self._pause).tolist()
         for first, end in pairwise([0, *restarts, len(received)]):
             if first < end:
                 given = received[first:end], stamp[first:end], answered[:, first:end]
-                self._update(*given, begun, back=first in restarts)
+                self._update(*given, back=first in restarts)
 
-    def _update(
-        self,
-        received: Array,
-        stamp: Array,
-        answered: Flags,
-        begun: Mapping[str, int],
-        *,
-        back: bool,
-    ) -> None:
+    def _update(self, received: Array, stamp: Array, answered: Flags, *, back: bool) -> None:
         self._last = int(received[-1])
-        names = {self._rotor, *self.topics}
-        if self._start == _NEVER and begun.keys() >= names:
-            self._start = self._settled = max(begun[name] for name in names)
         self._settle(received[~answered.all(axis=0)])
         on_any = np.asarray(answered.any(axis=0))
         rows = [*zip(self.topics.values(), answered, strict=True), (self._on_all, on_any)]
@@ -161,7 +148,7 @@ class Completeness:
             soon = int(received[heard]) - self._back <= _SETTLING_TIME
             self._back = None
         for missing, has_output in rows:
-            missing.leave_out(has_output[:judged], BEFORE)
+            missing.left_out[BEFORE] += int(np.count_nonzero(~has_output[:judged]))
             if soon:
                 before = slice(judged, heard)
                 missing.update(received[before], stamp[before], has_output[before])

@@ -139,7 +139,8 @@ def _judged(task: Task, bag: Bag, progress: ReportProgress | None) -> BagReport:
     actuators = [each.parameters.actuator for each in tasks]
     left_out = _not_compared(bag, topics, known, actuators)
     unclosed = [Finding(FindingCause.NOT_CLOSED)] if bag.unclosed else []
-    return report.adding(*unclosed, *twice, *_losses(lost, judged), *left_out)
+    losses = (Finding(FindingCause.RECORDER_LOST, of, count=lost[of]) for of in judged if lost[of])
+    return report.adding(*unclosed, *twice, *losses, *left_out)
 
 
 def _validator(task: Task, bag: Bag, topics: Topics) -> Validator:
@@ -168,7 +169,8 @@ def _validator(task: Task, bag: Bag, topics: Topics) -> Validator:
 def _feed(validator: Validator | ArmValidator, batches: Iterable[MessagesByTopic]) -> str | None:
     """Feed messages, up to any damage, which is returned."""
     try:
-        validator.feed(batches)
+        for batch in batches:
+            validator.take(batch)
     except BagError as error:
         return str(error)
     return None
@@ -231,7 +233,7 @@ def _explained(report: BagReport, task: Task, bag: Bag, topics: Topics) -> BagRe
 def _agrees(task: Task, topics: Topics, batches: Iterable[MessagesByTopic]) -> bool:
     """Return whether the outputs in batches agree with a task."""
     validator = Validator(task, topics)
-    validator.feed(batches)
+    _feed(validator, batches)
     judged = validator.report().topics
     return bool(judged) and judged[0].compared > 0 and not judged[0].wrong
 
@@ -270,13 +272,6 @@ def _differs(before: tuple[int, bytes], messages: TopicMessages) -> list[bool]:
         return []
     rows = zip([last, *received], received, [content, *data], data, strict=False)
     return [a < b or c != d or not any(d[STAMP_BYTES]) for a, b, c, d in rows]
-
-
-def _losses(lost: Counter[str], topics: Iterable[str]) -> Iterator[Finding]:
-    """Yield what the recorder says that it lost of topics."""
-    for topic in topics:
-        if lost[topic]:
-            yield Finding(FindingCause.RECORDER_LOST, topic, count=lost[topic])
 
 
 def _not_compared(

@@ -1,7 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Compares the outputs of a node with recomputed ones, in one pass over a recording."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
@@ -121,11 +121,6 @@ class Validator:
         """The latest samples."""
         self._prefix_open = not (parameters.frame_prefix or parameters.actuator)
         self._findings: list[Finding] = []
-
-    def feed(self, batches: Iterable[MessagesByTopic]) -> None:
-        """Process batches of messages, up to an exception of the iterable, if any."""
-        for batch in batches:
-            self.take(batch)
 
     @np.errstate(all='ignore')  # recorded numbers are arbitrary; overflows fail
     def report(

@@ -31,8 +31,8 @@ def validate(
 def feed(validator: Validator | ArmValidator, messages: Iterable[Message], size: int) -> None:
     """Feed messages to a validator in batches of a size."""
     every = [*messages]
-    batches = (every[begin : begin + size] for begin in range(0, len(every), size))
-    validator.feed(MessagesByTopic(validator.topics, batch) for batch in batches)
+    for begin in range(0, len(every), size):
+        validator.take(MessagesByTopic(validator.topics, every[begin : begin + size]))
 
 
 def texts(report: BagReport) -> list[str]:

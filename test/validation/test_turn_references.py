@@ -268,8 +268,8 @@ def test_a_pose_recorded_before_its_output_is_not_judged_by_the_zero_before(conf
     assert (messages[first][0], messages[first + 1][0]) == (OUTPUT, POSES)
     swapped = [*messages[:first], messages[first + 1], messages[first], *messages[first + 2 :]]
     validator = Validator(Task(Path('bag'), config), encoder=ENCODER)
-    parts = swapped[: first + 1], swapped[first + 1 :]
-    validator.feed(MessagesByTopic(validator.topics, part) for part in parts)
+    for part in (swapped[: first + 1], swapped[first + 1 :]):
+        validator.take(MessagesByTopic(validator.topics, part))
     report = validator.report()
     assert (report.verdict, texts(report)) == (Verdict.PASS, [AGREES])
 
