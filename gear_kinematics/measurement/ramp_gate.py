@@ -39,27 +39,25 @@ def gated_ramps(ramps: Loading) -> tuple[Loading, tuple[Observed, ...]]:
     ramps that remain are returned with what was left out.
     """
     timed = ramps.timed
-    strays = saturated = np.zeros(0)
+    strays, saturated = list[float](), list[float]()
+    searches = (_stray, _MOST_STRAY, strays), (_saturated, _MOST_SATURATED, saturated)
     jumps: list[tuple[float, float]] = []
     before = len(ramps.moment) + 1
     while _FEWEST <= len(ramps.moment) < before:
         before = len(ramps.moment)
-        stray = _stray(ramps)
-        if np.mean(stray) <= _MOST_STRAY:
-            strays = np.append(strays, ramps.moment[stray])
-            ramps = ramps.chosen(~stray)
-        cut = _saturated(ramps)
-        if np.mean(cut) <= _MOST_SATURATED:
-            saturated = np.append(saturated, ramps.moment[cut])
-            ramps = ramps.chosen(~cut)
+        for find, most, moments in searches:
+            found = find(ramps)
+            if np.mean(found) <= most:
+                moments.extend(ramps.moment[found].tolist())
+                ramps = ramps.chosen(~found)
         if slips := _slips(ramps):
             jumps += [(float(ramps.moment[row]), size) for size, row in slips]
             edges = [0, *(row for _, row in slips), len(ramps.moment)]
             part = max(pairwise(edges), key=lambda part: part[1] - part[0])
             ramps = ramps.chosen(slice(*part))
-    faults = [left_out(np.sort(strays), timed=timed)] if len(strays) else []
-    if len(saturated):
-        first, count = float(np.min(saturated)), len(saturated)
+    faults = [left_out(np.sort(strays), timed=timed)] if strays else []
+    if saturated:
+        first, count = min(saturated), len(saturated)
         faults.append(Observation.SATURATED(timed=timed, moment=first, count=count))
     faults += jumped(sorted(jumps), timed=timed)
     if jumps:

@@ -112,14 +112,9 @@ class Samples:
             for motion in self._motions:
                 plays[:, motion] = play_bounds(self._points[motion], radius)
             low, high = self._travel - radius, self._travel + radius
-            least = np.clip(plays[0][self._last_point], low, high)
-            middle, same = least.copy(), np.ones(len(least), bool)
-            # From some point of a motion on, both are the same.
-            (rest,) = np.nonzero((plays[0] != plays[1])[self._last_point])
-            most = np.clip(plays[1][self._last_point[rest]], low[rest], high[rest])
-            middle[rest] = 0.5 * (least[rest] + most)
-            same[rest] = most - least[rest] <= _SAME * radius
-            self._stops[radius] = self._travel - middle, same
+            least, most = np.clip(plays[:, self._last_point], low, high)
+            middle = 0.5 * (least + most)
+            self._stops[radius] = self._travel - middle, most - least <= _SAME * radius
         return self._stops[radius]
 
     def own_values(self, at: Array) -> Array:
