@@ -71,12 +71,6 @@ class CountChanges:
         """
         before, angle_before, error_before = self._latest
         numbers, error, angle = samples['number'], position.error, position.recorded
-        if len(error) and (numbers[1:] > numbers[:-1]).all():
-            least, greatest = min(error.min(), error_before), max(error.max(), error_before)
-            if greatest - least <= self._tolerance:  # NaN compares false
-                self._last_alone = False
-                self._latest = int(samples['segment'][-1]), float(angle[-1]), float(error[-1])
-                return False
         rows = np.argsort(numbers, kind='stable')
         rows = rows[np.isfinite(error[rows])]
         if not len(rows):

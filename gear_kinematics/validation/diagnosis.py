@@ -159,10 +159,8 @@ class FactorFit:
 
     def update(self, recorded: Array, expected: Array) -> None:
         """Add values (n,); those that are not finite are left out."""
-        x, y = expected, recorded
-        usable = np.isfinite(x) & np.isfinite(y)
-        if not usable.all():
-            x, y = x[usable], y[usable]
+        usable = np.isfinite(expected) & np.isfinite(recorded)
+        x, y = expected[usable], recorded[usable]
         with np.errstate(over='ignore'):
             self._sums += (product(x, x), product(x, y), product(y, y))
 

@@ -39,9 +39,7 @@ class Window:
         return Window({name: values[rows] for name, values in self.columns.items()})
 
     def extended(self, new: 'Window') -> 'Window':
-        """Return these samples, if any, with other ones behind them."""
-        if not len(self):
-            return new
+        """Return these samples with other ones behind them."""
         return Window({
             name: np.concatenate([values, new[name]]) for name, values in self.columns.items()
         })  # fmt: skip

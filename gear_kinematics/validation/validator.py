@@ -4,7 +4,6 @@
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
-from functools import cached_property
 from types import MappingProxyType
 from typing import Any
 
@@ -91,6 +90,8 @@ class Validator:
         errors = further.get(TRANSMISSION_ERROR)
         self.errors = EncoderErrors(errors, parameters, angle) if encoder and errors else None
         """Judge of transmission errors, if they and the encoder are recorded."""
+        self._references = TurnReferences(self._state) if parameters.absolute else None
+        """Judge of the turns by the encoder at the output, if that determines them."""
         self._unbroken, self._corrector, self._loads = Unbroken(), None, None
         columns: list[Any] = list(SAMPLES)
         if self._corrected and not self._why_unjudged:
@@ -180,11 +181,6 @@ class Validator:
             module=self._parameters.module,
         )
 
-    @cached_property
-    def _references(self) -> TurnReferences | None:
-        """Judge of the turns by the encoder at the output, if that determines them."""
-        return TurnReferences(self._state) if self._parameters.absolute else None
-
     @property
     def outputs(self) -> list[OutputTopic]:
         """The output topics that are compared."""
@@ -225,13 +221,10 @@ class Validator:
         columns['number'] += np.arange(len(samples.stamp))
         columns['turns_known'] = np.full(len(samples.stamp), not self._unseen)
         decided = self._state.input.velocity_field.decided
-        columns['velocity_open'] = np.full(len(samples.stamp), decided is None)
-        if decided is not None:
-            columns['velocity_open'] = samples.stamp <= decided
-        columns['effort_open'] = np.full(len(samples.stamp), field.zeros and not was_real)
-        if field.zeros and not was_real:
-            real = (samples.effort != 0.0) & ~np.isnan(samples.effort)
-            columns['effort_open'] = ~np.logical_or.accumulate(real)
+        columns['velocity_open'] = samples.stamp <= (np.inf if decided is None else decided)
+        real = (samples.effort != 0.0) & ~np.isnan(samples.effort)
+        zeros = field.zeros and not was_real
+        columns['effort_open'] = zeros & ~np.logical_or.accumulate(real)
         self._samples += len(samples.stamp)
         segments = samples.segment
         if self._loads or self._corrector:
