@@ -45,14 +45,6 @@ class Window:
         })  # fmt: skip
 
 
-def as_slice(rows: Array) -> Array | slice:
-    """Return the rows as a slice, which is faster, if they follow each other."""
-    if not len(rows):
-        return slice(0)
-    first = int(rows[0])
-    return slice(first, first + len(rows)) if (np.diff(rows) == 1).all() else rows
-
-
 class Occurrences:
     """Number of messages to which something happened, and the stamp of the first."""
 
@@ -157,8 +149,6 @@ class SeriesRecorder:
         if not len(stamp):
             return
         self._start = int(stamp[0]) if self._start is None else self._start
-        while not self._kept.size and len(stamp) > _MAX_SAMPLES * self._interval:
-            self._interval *= 2
         moment, errors = self._worst([field.error for field in fields], self._interval)
         time = (stamp[moment] - self._start) / SECOND
         new = np.stack([time, rotor_angle[moment], *errors])
@@ -196,8 +186,6 @@ class SeriesRecorder:
 
 def _greatest(size: Array, interval: int) -> Array:
     """Find the indices of the greatest sizes, (n,), of each interval."""
-    if not size.any():
-        return np.arange(0, len(size), interval)
     whole = len(size) - len(size) % interval
     within = size[:whole].reshape(-1, interval).argmax(axis=1)
     found = np.arange(0, whole, interval) + within

@@ -22,7 +22,6 @@ from gear_kinematics.validation.fields import (
     Occurrences,
     SeriesRecorder,
     Window,
-    as_slice,
 )
 from gear_kinematics.validation.recorder import NO_INPUT, Missing, RecordedInputs
 from gear_kinematics.validation.report import Finding, TopicReport
@@ -261,7 +260,7 @@ class OutputTopic:
             lacking = inputs.lack(times[given_up], stamps[given_up])
             self._unrecorded += int(np.count_nonzero(lacking))
             self.matcher.extra.add(stamps[given_up[~lacking]])
-            rows, at = as_slice(usable[found]), as_slice(index[found])
+            rows, at = usable[found], index[found]
         self._adopt_fields(rows, at, window)
         samples = window.take(at)
         self._changes.move(samples)

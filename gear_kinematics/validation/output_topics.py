@@ -11,7 +11,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.diagnosis import AngleFit, FactorFit, diagnose
-from gear_kinematics.validation.fields import Array, FieldSamples, Occurrences, Window, as_slice
+from gear_kinematics.validation.fields import Array, FieldSamples, Occurrences, Window
 from gear_kinematics.validation.matching import Expectation, OutputTopic, rotor_angle
 from gear_kinematics.validation.report import Finding
 from gear_kinematics.wire.batches import (
@@ -176,7 +176,7 @@ class OutputState(JointStateTopic):
             position = position._replace(expected=expected, error=error)
         for factor, field in zip(self._factors.values(), others, strict=True):
             factor.update(field.recorded, field.expected)
-        usable = as_slice(np.flatnonzero(np.isfinite(position.error)))
+        usable = np.isfinite(position.error)
         angles = rotor_angle(samples)[usable], position.recorded[usable]
         self.fit.update(*angles, position.error[usable])
         return position, *others
