@@ -27,7 +27,6 @@ from gear_kinematics.validation.validator import Validator
 from gear_kinematics.wire.batches import FIELDS, JointStateBatch
 from gear_kinematics.wire.cdr import SECOND
 
-_BITS = 63  # number of bits of a positive int64
 _Fault = tuple[int | None, FindingCause, str, str]
 """An actuator or none, what is wrong, and with which field and joints."""
 
@@ -45,12 +44,10 @@ class JoinedMessages:
         whenever their rotor is valid. Nothing is known of joints of `others`, if there are any.
         """
         self._actuators, self._order, self._others = joints, list(joints), others
-        # A set of actuators is a number, with a bit for each.
-        self._bits = np.array(
-            [1 << k for k in range(count)], np.int64 if count <= _BITS else object
-        )
-        self._needed = self._set_of(needed)
-        self._inputs = np.zeros((2, 0), self._bits.dtype)  # stamps and sets of the latest inputs
+        self._all = np.arange(count)
+        self._needed = np.isin(self._all, [*needed])
+        self._inputs = np.zeros(0, np.int64), np.zeros((0, count), bool)
+        """Stamps of the latest inputs, ns, and which actuators need a joint then, (n, count)."""
         self._waiting = self._inputs  # those of messages whose inputs may be in the next batch
         self._faults: defaultdict[_Fault, Occurrences] = defaultdict(Occurrences)
 
@@ -59,16 +56,16 @@ class JoinedMessages:
 
         The next inputs have stamps, ns, (n,), and may be valid for an actuator, (n, actuators).
         """
-        sets = valid.astype(self._bits.dtype) @ self._bits
-        inputs = np.stack([stamps, sets & self._needed])
-        self._inputs = np.hstack([self._inputs[:, -WINDOW:], inputs])
-        outputs = [self._waiting]
+        before, sets = (each[-WINDOW:] for each in self._inputs)
+        self._inputs = np.append(before, stamps), np.vstack([sets, valid & self._needed])
+        at, having = ([each] for each in self._waiting)
         for _, names, stamp, fields in messages.contents():
             if not self._others:
                 self._judge(names, stamp, fields)
-            there = self._set_of({self._actuators.get(name, -1) for name in names} - {-1})
-            outputs.append(np.stack([stamp, np.full_like(stamp, there & self._needed)]))
-        self._compare(np.hstack(outputs), waited=self._waiting.shape[1])
+            there = np.isin(self._all, [self._actuators.get(name, -1) for name in names])
+            at.append(stamp)
+            having.append(np.tile(there & self._needed, (len(stamp), 1)))
+        self._compare(np.concatenate(at), np.concatenate(having), waited=len(at[0]))
 
     def findings(self, topic: str, actuator: int | None = None) -> Iterator[Finding]:
         """Yield what is wrong with the messages as a whole, or with the joints of an actuator."""
@@ -76,9 +73,6 @@ class JoinedMessages:
             if found.count and of == actuator:
                 values = {'field': field, 'joints': joints}
                 yield Finding(cause, topic, found.first, found.count, values, fails=True)
-
-    def _set_of(self, actuators: Collection[int]) -> int:
-        return sum(1 << k for k in actuators)
 
     def _judge(self, names: Sequence[bytes], stamp: Array, fields: Sequence[Array]) -> None:
         """Judge messages with the same names."""
@@ -96,24 +90,20 @@ class JoinedMessages:
                 empty = empty[np.isnan(values[empty]).all(axis=1)]
                 self._faults[None, FindingCause.NAN_FOR_ALL, field, joints].add(stamp[empty])
 
-    def _compare(self, outputs: Array, waited: int) -> None:
+    def _compare(self, stamps: Array, having: Array, waited: int) -> None:
         """Find messages that lack joints of their input and answer no other input."""
-        stamps, sets = outputs
-        self._waiting = outputs[:, :0]
-        if not len(stamps):
-            return
         order = np.argsort(self._inputs[0], kind='stable')
-        in_stamps, in_sets = self._inputs[:, order]
-        first = np.searchsorted(in_stamps, stamps)
-        last = np.searchsorted(in_stamps, stamps, 'right')
-        rows = np.flatnonzero((last - first != 1) | (in_sets.take(first, mode='clip') != sets))
-        self._waiting = outputs[:, rows[(first == last)[rows] & (rows >= waited)]]
+        in_stamps, needed = (each[order] for each in self._inputs)
+        first, last = (np.searchsorted(in_stamps, stamps, side) for side in ('left', 'right'))
+        known = np.vstack([needed, self._needed])[first]  # one more, for those behind all inputs
+        rows = np.flatnonzero((last - first != 1) | (known != having).any(axis=1))
+        waiting = rows[(first == last)[rows] & (rows >= waited)]
+        self._waiting = stamps[waiting], having[waiting]
         for row in rows.tolist():
-            there, wanted = int(sets[row]), [*map(int, in_sets[first[row] : last[row]])]
-            more = [each & ~there for each in wanted if not there & ~each]
-            lacking = 0 if there in wanted else next(iter(more), 0)
-            for k in range(len(self._bits)):
-                if lacking >> k & 1:
+            wanted = needed[first[row] : last[row]]
+            more = wanted[(wanted >= having[row]).all(axis=1)]
+            if len(more) and (more != having[row]).any(axis=1).all():
+                for k in np.flatnonzero(more[0] > having[row]).tolist():
                     fault = k, FindingCause.JOINT_LEFT_OUT, '', ''
                     self._faults[fault].add(stamps[row : row + 1])
 

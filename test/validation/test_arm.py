@@ -61,6 +61,11 @@ def test_messages_of_all_joints_and_of_several_drivers_pass_in_batches_of_any_si
         assert judged(tmp_path, recording(), size).passed
 
 
+def test_a_recording_may_begin_with_outputs_of_an_input_that_was_not_recorded(tmp_path):
+    rest = judged(tmp_path, recording()[1:], 1)
+    assert rest.passed, explain(rest)
+
+
 @pytest.mark.parametrize(('name', 'absolute'), [('elbow', False), ('wrist', True)])
 def test_turns_of_an_encoder_that_wraps_are_counted_for_its_actuator_alone(
     name, absolute, tmp_path
