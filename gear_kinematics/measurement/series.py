@@ -152,19 +152,18 @@ def held_readings(
         remarks: those on the series are added.
     """
     found = {role: held for role, values in series.items() if (held := _held(values))}
-    several = len(found) > 1
-    for role, (every, rows) in [*found.items()]:
+    used = {}
+    for role, (every, rows) in found.items():
         at, values = np.flatnonzero(rows), beside[role]
         middle, last = np.minimum((at[:-1] + at[1:]) // 2, at[1:] - 2), at[1:] - 1
         whole, late = np.diff(values[at]), values[last] - values[middle]
         usual = np.abs(whole) <= _EVEN * np.quantile(np.abs(whole), 0.9)  # no wraps
         expected = np.mean((last - middle) / np.diff(at))
         along = late[usual] @ whole[usual] / max(whole[usual] @ whole[usual], _TINY)
-        if several or along >= _LATE * expected:
+        if len(found) > 1 or along >= _LATE * expected:
             remarks.append(Observation.READINGS_HELD(role=role, every=every))
-        else:
-            del found[role]
-    return {role: rows for role, (_, rows) in found.items()}
+            used[role] = rows
+    return used
 
 
 def _held(values: Array) -> tuple[int, Array] | None:

@@ -7,7 +7,7 @@ The columns of a term are in the units of the calibration file, which contains t
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import count, islice, pairwise
+from itertools import count, islice
 from typing import NamedTuple
 
 import numpy as np
@@ -89,9 +89,7 @@ class Samples:
         changing = np.flatnonzero(steps)
         back = changing[1:][np.diff(np.sign(steps[changing])) != 0.0]
         points = np.union1d(starts, back)
-        self._points = ideal[points]
-        edges = np.append(np.searchsorted(points, starts), len(points)).tolist()
-        self._motions = [slice(*ends) for ends in pairwise(edges) if ends[1] - ends[0] > 1]
+        self._motions = np.split(ideal[points], np.searchsorted(points, starts[1:]))
         self._last_point = np.searchsorted(points, encoders.before, side='right') - 1
         self._stops: dict[float, tuple[Array, Array]] = {}
         moving = self.speed[np.abs(self.speed) > _MOVING * np.max(np.abs(self.speed))]
@@ -108,9 +106,7 @@ class Samples:
         are the same.
         """
         if radius not in self._stops:
-            plays = np.array([self._points - radius, self._points + radius])  # of one point alone
-            for motion in self._motions:
-                plays[:, motion] = play_bounds(self._points[motion], radius)
+            plays = np.hstack([play_bounds(motion, radius) for motion in self._motions])
             low, high = self._travel - radius, self._travel + radius
             least, most = np.clip(plays[:, self._last_point], low, high)
             middle = 0.5 * (least + most)
