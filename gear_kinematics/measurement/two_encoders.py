@@ -270,7 +270,7 @@ def play_bounds(x: Array, radius: float) -> Array:
     """
     bounds, step = np.stack([x - radius, x + radius]), 1
     while step < len(x):
-        bounds[:, step:] = np.clip(bounds[:, :-step], *bounds[:, step:].copy())
+        bounds[:, step:] = np.clip(bounds[:, :-step], *bounds[:, step:])
         step *= 2
     return bounds
 
