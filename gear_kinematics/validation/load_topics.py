@@ -41,7 +41,7 @@ class LoadTopic(OutputTopic):
         stamp, malformed, self._numbers = decode_numbers(messages, self._template, self.label)
         return stamp, malformed
 
-    def _compare(self, rows: Array | slice, samples: Window) -> Sequence[FieldSamples]:
+    def _compare(self, rows: Array, samples: Window) -> Sequence[FieldSamples]:
         motion = samples['velocity'], samples['acceleration']
         loads = self._loads.at(samples['turns'], samples['angle'], samples['effort'], motion)
         expected = np.broadcast_arrays(samples['turns'], *NUMBERS[self._topic](loads))[1:]

@@ -91,11 +91,8 @@ class Matcher:
         self.out_of_order.add(out_of_order)
         self._last_stamp = int(stamps[-1])
 
-    def match(self, stamps: Array, received: Array, window: Window) -> Array | slice:
-        """Find the sample of each message, (n,), as its index in the window or -1, and mark it.
-
-        The indices are a slice if each message has its sample, in the order of both.
-        """
+    def match(self, stamps: Array, received: Array, window: Window) -> Array:
+        """Find the sample of each message, (n,), as its index in the window or -1, and mark it."""
         index = np.full(len(stamps), -1, np.intp)
         resets = np.flatnonzero(np.diff(window['stamp']) < -CLOCK_RESET) + 1
         k = 0
@@ -108,11 +105,8 @@ class Matcher:
             if run and _of_later_clock(stamps[k], received[k], self._next, window, resets):
                 run = 0
             self.matched[self._next : self._next + run] = True
+            index[k : k + run] = np.arange(self._next, self._next + run)
             self._next += run
-            if run == len(stamps):
-                self.compared += run
-                return slice(self._next - run, self._next)
-            index[k : k + run] = np.arange(self._next - run, self._next)
             k += run
             if k < len(stamps):
                 index[k] = self._look_up(stamps[k], received[k], window, resets)
@@ -242,25 +236,20 @@ class OutputTopic:
         stamps, malformed = self._decode(messages)
         self.matcher.see(stamps[late:] if late else stamps)
         usable = np.flatnonzero(~malformed)
-        whole = len(usable) == len(stamps)
         if self.unstamped:
             self._adopt_stamps(stamps, usable, window)
-        given = (stamps, times) if whole else (stamps[usable], times[usable])
-        at, rows = self.matcher.match(*given, window), slice(None) if whole else usable
-        self.late = []
-        if not (whole and isinstance(at, slice)):
-            self._malformed.add(times[malformed])
-            index = np.arange(len(window))[at] if isinstance(at, slice) else at
-            found = index >= 0
-            # A message can be recorded before its input: it waits for one batch.
-            unmatched = usable[~found]
-            given_up, waiting = unmatched[unmatched < late], unmatched[unmatched >= late]
-            self.late = [messages[row] for row in waiting.tolist()]
-            self._late_received = times[waiting]
-            lacking = inputs.lack(times[given_up], stamps[given_up])
-            self._unrecorded += int(np.count_nonzero(lacking))
-            self.matcher.extra.add(stamps[given_up[~lacking]])
-            rows, at = usable[found], index[found]
+        index = self.matcher.match(stamps[usable], times[usable], window)
+        self._malformed.add(times[malformed])
+        found = index >= 0
+        # A message can be recorded before its input: it waits for one batch.
+        unmatched = usable[~found]
+        given_up, waiting = unmatched[unmatched < late], unmatched[unmatched >= late]
+        self.late = [messages[row] for row in waiting.tolist()]
+        self._late_received = times[waiting]
+        lacking = inputs.lack(times[given_up], stamps[given_up])
+        self._unrecorded += int(np.count_nonzero(lacking))
+        self.matcher.extra.add(stamps[given_up[~lacking]])
+        rows, at = usable[found], index[found]
         self._adopt_fields(rows, at, window)
         samples = window.take(at)
         self._changes.move(samples)
@@ -284,7 +273,7 @@ class OutputTopic:
     def _adopt_stamps(self, stamps: Array, usable: Array, window: Window) -> None:
         """Give samples without a stamp the stamp of their output, if it can be found."""
 
-    def _adopt_fields(self, rows: Array | slice, at: Array | slice, window: Window) -> None:
+    def _adopt_fields(self, rows: Array, at: Array, window: Window) -> None:
         """Decide by messages, (n,), whether open fields of their samples count."""
 
     def answered(self, samples: Window) -> Array:
@@ -295,7 +284,7 @@ class OutputTopic:
         """Decode messages for `_compare`; return their stamps and which ones are malformed."""
         raise NotImplementedError
 
-    def _compare(self, rows: Array | slice, samples: Window) -> Sequence[FieldSamples]:
+    def _compare(self, rows: Array, samples: Window) -> Sequence[FieldSamples]:
         """Compare decoded messages with their samples; return the fields of `errors`."""
         raise NotImplementedError
 

@@ -50,11 +50,11 @@ class JointStateTopic(OutputTopic):
         self._messages, self._states = messages, decode_joint_states(messages, self.label)
         return self._states.stamp, self._states.malformed
 
-    def _compare(self, rows: Array | slice, samples: Window) -> Sequence[FieldSamples]:
+    def _compare(self, rows: Array, samples: Window) -> Sequence[FieldSamples]:
         states = self._states
         without = ~states.joint_found[rows]
         if without.any():
-            first = np.arange(len(states.stamp))[rows][without][0]
+            first = rows[without][0]
             self._there = self._there or listed(joints_of(self._messages[first]))
             self._faults[FindingCause.NO_JOINT, self._there].add(samples['stamp'][without])
         found = list[FieldSamples]()
@@ -136,11 +136,10 @@ class OutputState(JointStateTopic):
         window['stamp'][waiting[found]] = stamps[rows[answers]]
         self._adopted = int(samples['number'][found].max(initial=self._adopted))
 
-    def _adopt_fields(self, rows: Array | slice, at: Array | slice, window: Window) -> None:
+    def _adopt_fields(self, rows: Array, at: Array, window: Window) -> None:
         self._without_velocity = False
         if not (window['velocity_open'].any() or window['effort_open'].any()):
             return
-        at = np.arange(len(window))[at]
         states, still_open = self._states, window['effort_open'][at]
         none = ~states.present[rows].T
         if self.shared:
@@ -167,7 +166,7 @@ class OutputState(JointStateTopic):
             self.errors[1].absent.add_all(self._absent_velocities)
             self._wrong += self._wrong_without_velocity
 
-    def _compare(self, rows: Array | slice, samples: Window) -> Sequence[FieldSamples]:
+    def _compare(self, rows: Array, samples: Window) -> Sequence[FieldSamples]:
         position, *others = super()._compare(rows, samples)
         if self._changes.learn(samples, position):
             expected = self._ideal_angle(samples)
@@ -218,7 +217,7 @@ class BodyPoses(OutputTopic):
         self._arrays: PoseArrays = decode_pose_arrays(messages, len(self._axial))
         return self._arrays.stamp, self._arrays.malformed
 
-    def _compare(self, rows: Array | slice, samples: Window) -> Sequence[FieldSamples]:
+    def _compare(self, rows: Array, samples: Window) -> Sequence[FieldSamples]:
         arrays, stamp = self._arrays, samples['stamp']
         for k, frame_id in enumerate(arrays.frame_ids):
             if frame_id != self.label.encode():
@@ -267,7 +266,7 @@ class MechanismStates(OutputTopic):
                 self._moving[rows] = ~absent if self.shared else sizes[1] > 0
         return stamp, malformed
 
-    def _compare(self, rows: Array | slice, samples: Window) -> Sequence[FieldSamples]:
+    def _compare(self, rows: Array, samples: Window) -> Sequence[FieldSamples]:
         rotor, velocity = rotor_angle(samples), samples['velocity']
         state = solve(self._mechanism, samples['angle'], velocity, rotor_turns=samples['turns'])
         wanted, there = ~np.isnan(velocity), self._moving[rows]
