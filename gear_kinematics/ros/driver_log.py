@@ -16,9 +16,12 @@ from gear_kinematics.wire.nearest import among, listed
 from gear_kinematics.wire.topics import ROTOR_STATE
 
 _ELSEWHERE = 0.1  # rad, of a rotor that was turned by hand, or counted from another zero
+_AT_ONCE = 100_000_000  # ns, in which no driver ends and another one starts
 _CALM = 2  # updates without a change between drivers, after which a change is that of a restart
 _SEARCH = 3  # s, in which all publishers are found: they announce themselves as often
-_HOME = 'check whether the drive restarted; then home it (gearkin home or ~/home)'
+_HOME = 'home it (gearkin home or ~/home)'
+_RESTARTED = f'check whether the drive restarted; then {_HOME}'
+_ANOTHER = f'if both run, stop one; if the drive restarted, {_HOME}'
 
 
 class DriverLog:
@@ -96,11 +99,16 @@ class DriverLog:
             if fact
         }
 
-    def update(self, publishers: int, silence: float) -> None:
-        """Take, once a second, the number of publishers and the time since the last message, s."""
+    def update(self, publishers: int, silence: float, several: Collection[str] = ()) -> None:
+        """Take, once a second, the number of publishers and the time since the last message, s.
+
+        The joints of some actuators are sent by several of the publishers.
+        """
         self._calm += 1
         self._forget_others()
         faults, said = self._faults(), self._said
+        mixed = Condition.SEVERAL_DRIVERS()
+        faults |= {(name, mixed.condition, 0.0): mixed for name in several if publishers > 1}
         for key in faults.keys() - said.keys():
             self._log.warning(labelled(key[0], f'{faults[key]}. {faults[key].advice}'))
         self._said = faults | {key: fact for key, fact in said.items() if not key[2]}
@@ -126,6 +134,9 @@ class DriverLog:
         """Take samples by actuator while some are awaited; their first are compared."""
         silent, self._silent = self._silent, False
         self._forget_others()
+        for name in samples.keys() & self._before.keys():
+            if (last := self._before[name]) and 0 <= samples[name].stamp - last.stamp < _AT_ONCE:
+                del self._before[name]  # no driver starts so soon: two send in turn
         returned = [name for name in samples if name in self._before]
         elsewhere = []
         for name, sample in samples.items():
@@ -137,8 +148,10 @@ class DriverLog:
         if elsewhere:
             self._said |= self._faults()
             at = '; '.join(elsewhere)
-            how = 'is heard again' if self._calm else 'comes from another driver'
-            self._log.warning(f'{self._topic} {how}, but {at}: {_HOME}')
+            how, advice = 'comes from another driver', _ANOTHER
+            if self._calm:
+                how, advice = 'is heard again', _RESTARTED
+            self._log.warning(f'{self._topic} {how}, but {at}: {advice}')
         elif silent or returned:
             which = '' if silent else ', '.join(returned)
             self._log.info(labelled(which, f'{self._topic} is heard now'))

@@ -69,7 +69,8 @@ class DriverInput:
     def _take(self, message: Any, about: Any = None) -> None:
         """Take a message, with its number where the middleware and this rclpy count."""
         message, about = with_info(message, about)
-        if self._losses.note(about and about['publication_sequence_number']):
+        self._facts.number = number = about and about['publication_sequence_number']
+        if self._losses.note(number):
             self._on_replaced()
         self._on_message(message)
 

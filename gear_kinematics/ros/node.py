@@ -5,7 +5,7 @@ import time
 import traceback
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
-from itertools import cycle
+from itertools import chain, cycle
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +32,7 @@ from gear_kinematics.ros.node_parameters import declared_actuators, fault_of
 from gear_kinematics.ros.other_gears import OtherGears
 from gear_kinematics.ros.outputs import PublishingNode, latched
 from gear_kinematics.state.arm_state import ArmState
-from gear_kinematics.state.monitors import Connections
+from gear_kinematics.state.monitors import Connections, DriverFacts
 from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.joint_reader import RejectedInputError, Rejection
@@ -199,6 +199,7 @@ class GearStatePublisher(PublishingNode):
         answered, rejections = self._arm.rotor(data, self._now)
         for name, rejection in rejections:
             self._warn_of(topics.ROTOR_STATE, name, rejection)
+        self._note_publisher(self._connections.rotor, answered, rejections)
         if not answered:
             return
         now = time.monotonic()
@@ -243,13 +244,25 @@ class GearStatePublisher(PublishingNode):
     def _on_output_encoder(self, data: bytes) -> None:
         errors, rejections = self._arm.encoder(data, self._now)
         now = time.monotonic()
-        for name, _ in (*errors, *rejections):
+        for name, _ in errors:
             self._actuators[name].state.encoder_monitor.last_input = now
         for name, rejection in rejections:
             self._warn_of(topics.OUTPUT_ENCODER, name, rejection)
+        self._note_publisher(self._connections.encoder, errors, rejections)
         self.send(self._arm.encode_errors(errors))
         if found := self._found_turns(errors):
             self._publish_referenced(found)
+
+    def _note_publisher(self, driver: DriverFacts, *heard: Iterable[tuple[str, object]]) -> None:
+        """Note who sent the joints of a message, if a topic has several publishers."""
+        if driver.publishers <= 1:
+            return
+        for name, what in chain(*heard):
+            if not (isinstance(what, RejectedInputError) and str(what) == Rejection.JOINT_MISSING):
+                state = self._actuators[name].state
+                of_rotor = driver is self._connections.rotor
+                monitor = state.monitor if of_rotor else state.encoder_monitor
+                monitor.publishers.note(driver.number)
 
     def note_unsent(self, publisher: Publisher, error: Exception) -> None:
         """Count a message that was not sent, as with keep_all and a blocked subscriber."""
@@ -260,15 +273,15 @@ class GearStatePublisher(PublishingNode):
         return int(self.get_clock().now().nanoseconds)
 
     def _warn_of(self, topic: str, name: str, rejection: RejectedInputError) -> None:
-        if topic == topics.ROTOR_STATE:
-            actuator = self._actuators[name]
-            if str(rejection) == Rejection.JOINT_MISSING not in actuator.state.input.rejected:
-                return  # a message of another driver on a shared topic, and no input
-            actuator.state.monitor.last_input = time.monotonic()
+        state, of_rotor = self._actuators[name].state, topic == topics.ROTOR_STATE
+        source = state.input if of_rotor else state.output_encoder
+        if str(rejection) == Rejection.JOINT_MISSING not in source.rejected:
+            return  # a message of another driver on a shared topic, and no input
+        monitor = state.monitor if of_rotor else state.encoder_monitor
+        monitor.last_input = time.monotonic()
         of, detail = f' of {name}' if name else '', rejection.detail
         if str(rejection) == Rejection.JOINT_MISSING:
-            of_rotor = topic == topics.ROTOR_STATE
-            detail += f'; set {"rotor_joint" if of_rotor else "output_encoder_joint"}'
+            detail += f'; set {monitor.joint}'
         # Not one for each actuator: all of an arm can lack the same.
         subject = f'{topic} rejected: {rejection}'
         self._warn(f'{topic}{of} rejected: {rejection}{detail and f": {detail}"}', subject)
@@ -278,7 +291,9 @@ class GearStatePublisher(PublishingNode):
             driver.count_losses()
         inputs = [each.state.monitor.last_input for each in self._actuators.values()]
         now, last = time.monotonic(), max(each or 0.0 for each in inputs)
-        self._driver_log.update(self._connections.rotor.publishers, now - (last or now))
+        rotor = self._connections.rotor
+        several = [n for n, a in self._actuators.items() if a.state.monitor.publishers.several]
+        self._driver_log.update(rotor.publishers, now - (last or now), several)
         self._publish_diagnostics()
 
     def _publish_diagnostics(self) -> None:

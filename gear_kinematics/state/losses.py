@@ -1,5 +1,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Messages that were lost, by the numbers that publishers give them."""
+"""Which messages were lost, and who sends them, by the numbers that publishers give them."""
+
+from collections import deque
+
+_UPDATES = 5  # in which two publishers of a joint take turns twice, unless one is very slow
 
 
 class Losses:
@@ -20,3 +24,26 @@ class Losses:
             self.missing += number - self.next
         last, self._last, self.next = self._last, number, number + 1
         return number < last
+
+
+class Publishers:
+    """Finds whether several publishers send a joint: their numbers do not rise when they mix."""
+
+    def __init__(self) -> None:
+        self._last = -1  # number of the last message
+        self._changes = deque([0], maxlen=_UPDATES)  # of publishers, between updates
+
+    def note(self, number: int | None) -> None:
+        """Take the number of the next message, if it has one."""
+        if number is not None:
+            self._changes[-1] += number <= self._last
+            self._last = number
+
+    def update(self) -> None:
+        """Forget what happened before the last updates."""
+        self._changes.append(0)
+
+    @property
+    def several(self) -> bool:
+        """Whether the publisher changed more than once: one that restarts does so once."""
+        return sum(self._changes) > 1

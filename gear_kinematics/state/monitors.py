@@ -11,6 +11,7 @@ from gear_kinematics.correction.error_window import ErrorStatistics
 from gear_kinematics.correction.transmission_error import SAMPLES
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.state.disorder import ALTERNATING, FASTEST
+from gear_kinematics.state.losses import Publishers
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition, Fact, GearReport
@@ -34,6 +35,7 @@ class DriverFacts:
     publishers: int = 0
     lost: int = 0  # messages that are missing between those that came
     losses_known: bool = True  # whether they could be counted since the last report
+    number: int | None = 0  # that of the latest message; None if the middleware gives none
 
 
 @dataclass(slots=True)
@@ -49,8 +51,11 @@ class Connections:
 class DriverMonitor:
     """Monitors a driver of an actuator."""
 
+    joint = 'rotor_joint'  # parameter that chooses the joint
+
     def __init__(self) -> None:
         self.last_input: float | None = None  # time of the last message, valid or not
+        self.publishers = Publishers()  # of the joint, noted where the topic has several
         self._counted = Counter[str]()  # counts at the last report
 
     def _growth(self, counts: Mapping[str, int]) -> Counter[str]:
@@ -58,14 +63,21 @@ class DriverMonitor:
         grown, self._counted = Counter(counts) - self._counted, Counter(counts)
         return grown  # another input counts from 0
 
-    @staticmethod
+    def _several(self, driver: DriverFacts, others: int = 0) -> Iterator[Fact]:
+        """Yield that several drivers send the joint, or can where messages have no numbers."""
+        mixed = not others if driver.number is None else self.publishers.several
+        if driver.publishers > 1 and mixed:
+            yield Condition.SEVERAL_DRIVERS()
+
     def _losses(
-        grown: Counter[str], rejected: Mapping[str, int], driver: DriverFacts
+        self, grown: Counter[str], rejected: Mapping[str, int], driver: DriverFacts
     ) -> Iterator[Fact]:
         """Yield what has grown of the messages that were rejected or lost."""
         if counts := {cause: grown[cause] for cause in rejected if grown[cause]}:
-            missing = Rejection.JOINT_MISSING in counts
-            yield (Condition.JOINT_MISSING if missing else Condition.REJECTED)(counts=counts)
+            if Rejection.JOINT_MISSING in counts:
+                yield Condition.JOINT_MISSING(counts=counts, parameter=self.joint)
+            else:
+                yield Condition.REJECTED(counts=counts)
         if lost := grown['lost']:
             yield Condition.LOST(count=lost)
         if not driver.losses_known:
@@ -93,6 +105,7 @@ class InputMonitor(DriverMonitor):
         count = rotor_input.received - rotor_input.of_others
         received = max(0, count - self._received)  # at first, others may count as rejected
         if elapsed > _SOON:
+            self.publishers.update()
             self._rate = received / elapsed
             self._reported, self._received = now, count
             stamp = rotor_input.last.stamp if rotor_input.last else 0
@@ -170,8 +183,7 @@ class InputMonitor(DriverMonitor):
             yield Condition.UNSENT(count=grown['unsent'])
         if grown['unreferenced'] and rotor_input.referenced:
             yield Condition.WERE_UNKNOWN(count=grown['unreferenced'])
-        if driver.publishers > 1 and not grown['of others']:  # of other joints on a shared topic
-            yield Condition.SEVERAL_DRIVERS(count=driver.publishers)
+        yield from self._several(driver, grown['of others'])
         yield from connections.graph
         if (
             rotor_input.referenced
@@ -184,6 +196,8 @@ class InputMonitor(DriverMonitor):
 
 class EncoderMonitor(DriverMonitor):
     """Monitors the encoder at the output, and the transmission error."""
+
+    joint = 'output_encoder_joint'
 
     def __init__(self, rotor: RotorInput, encoder: OutputEncoder) -> None:
         super().__init__()
@@ -201,8 +215,9 @@ class EncoderMonitor(DriverMonitor):
         compared, silent = soon or matched != self._compared, age > parameters.input_timeout
         if not soon:
             self._reported, self._compared = now, matched
+            self.publishers.update()
 
-        facts = []
+        facts = list(self._several(driver))
         if silent:
             facts.append(Condition.NO_ENCODER(age=age))
         elif not compared:
@@ -220,6 +235,7 @@ class EncoderMonitor(DriverMonitor):
             facts.append(Condition.SLIPPED(angle_deg=moved, time=when))
         values = {
             'received': encoder.received,
+            'of others': encoder.of_others,
             'compared': matched,
             'direction checked': encoder.direction_checked,
             **_by_cause('rejected', encoder.rejected),

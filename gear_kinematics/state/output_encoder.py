@@ -21,6 +21,7 @@ from gear_kinematics.wire.joint_reader import (
     JointMessage,
     JointReader,
     RejectedInputError,
+    Rejection,
 )
 
 _APART = SECOND // 10  # ns, between the newest stamps of both encoders: few transports take longer
@@ -37,6 +38,7 @@ class OutputEncoder:
     def __init__(self, parameters: NodeParameters, reference: TurnReference | None = None) -> None:
         self.received = 0
         self.rejected: Counter[str] = Counter()
+        self.of_others = 0  # messages of other joints only, as of a shared /joint_states
         self.comparison = TransmissionError()
         """Counts the measured angles that were compared and, by cause, those that were not."""
         self._turn_reference = reference
@@ -53,7 +55,7 @@ class OutputEncoder:
             self.direction_checked = False
         self._first: ErrorSample | None = None
         self.parameters = parameters
-        self._reader = JointReader(parameters.output_encoder_joint)
+        self._reader, self._found = JointReader(parameters.output_encoder_joint), False
         self._ratio = parameters.gear.gear_ratio
         longest = parameters.longest_delay_ns
         self._farthest = CLOCK_RESET + longest  # ns, between the latest stamps of both encoders
@@ -86,7 +88,12 @@ class OutputEncoder:
             stamp, _, position, *_ = self._reader.read(data)
         except RejectedInputError as rejection:
             self.rejected[str(rejection)] += 1
+            if self._found:
+                self._leave_others()
             raise
+        if not self._found:
+            self._found = True
+            self._leave_others()
         stamp = stamp or now()
         apart = abs(stamp - latest[0]) if latest else 0  # its stamp, by the fastest way
         if latest and latest is not self._latest:  # the old stamp of a silent rotor tells nothing
@@ -97,6 +104,10 @@ class OutputEncoder:
             return ()
         angle = measured_angle(self.parameters, position)
         return self._note(self.comparison.add_measured(stamp, angle))
+
+    def _leave_others(self) -> None:
+        """Count messages without the joint, which is in others, as no fault."""
+        self.of_others += self.rejected.pop(Rejection.JOINT_MISSING, 0)
 
     def follow(
         self, sample: RotorSample, correction: Correction | None = None

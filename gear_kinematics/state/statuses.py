@@ -75,7 +75,7 @@ class Condition(Enum):
     JOINT_MISSING = (
         WARN,
         'rejected: {counts}',
-        'Set rotor_joint to one of the joints of the driver.',
+        'Set {parameter} to one of the joints of the driver.',
     )
     LOST = WARN, 'lost {count}', 'Check the network, and whether the computer is too busy.'
     LOSSES_UNKNOWN = OK, 'losses unknown', ''
@@ -136,7 +136,11 @@ class Condition(Enum):
         'the stamps run {factor:.0f} times as fast as the clock',
         'Let the driver stamp in s and ns: until then, speeds, gaps and jumps are misjudged.',
     )
-    SEVERAL_DRIVERS = WARN, '{count} drivers', 'Stop all but one. Killed ones count for 20 s.'
+    SEVERAL_DRIVERS = (
+        WARN,
+        'several drivers send this joint',
+        'Stop all but one, such as a joint_state_publisher, or give them different topics.',
+    )
     # The rotor's turns, and the encoder at the output that can tell them
     NOT_REFERENCED = ERROR, 'not referenced', _HOME
     NOT_FOUND = ERROR, 'not referenced: {why}', '{why.advice} Or: ' + _HOME

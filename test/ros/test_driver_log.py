@@ -20,6 +20,7 @@ MISSING = (
 )
 STOPPED = '/rotor_state has stopped: no input for 1.5 s'
 NOW = '/rotor_state is heard now'
+BOTH = 'if both run, stop one; if the drive restarted, home it (gearkin home or ~/home)'
 CHECK = 'check whether the drive restarted; then home it (gearkin home or ~/home)'
 AWAY = f'/rotor_state is heard again, but the rotor is {{}}° from where it was: {CHECK}'
 GEARS = {'/output_state', '/transmission_error', '/left/angle', '/left/transmission_error'}
@@ -106,7 +107,11 @@ def test_a_new_driver_is_compared_with_the_last_unless_two_take_turns():
         for stamp, position in [(0.3, 0.0), (0.31, 5.0)]:
             graph.driver_log.replaced()
             graph.hear(second + stamp, position)
-    said = AWAY.format(-286).replace('is heard again', 'comes from another driver')
+    said = (
+        AWAY.format(-286)
+        .replace(CHECK, BOTH)
+        .replace('is heard again', 'comes from another driver')
+    )
     assert graph.logged == [('W', said)]
 
 
@@ -120,6 +125,24 @@ def test_a_new_driver_of_other_joints_says_nothing_of_the_rotor():
                 graph.hear(1.025, 5.0, names='wheel')
         graph.hear(1.0 + 0.01 * number, 0.3 * number)
     assert not graph.logged
+
+
+def test_drivers_of_two_joints_that_send_in_turn_are_no_other_drivers():
+    """The rotor turns by 0.6 rad between two messages of its driver, as at 30 rad/s and 50 Hz."""
+    graph = Graph()
+    for number in range(5):
+        graph.hear(1.0 + 0.02 * number, 0.6 * number)
+        graph.driver_log.replaced()  # the other driver, whose first message was the node's first
+    assert not graph.logged
+
+
+def test_several_drivers_of_a_joint_are_one_warning():
+    graph = Graph()
+    graph.hear(1.0, 5.0)
+    for publishers, several in ((1, ['']), (2, []), (2, ['']), (2, ['']), (2, [])):
+        graph.driver_log.update(publishers, 0.1, several)
+    said = 'several drivers send this joint. Stop all but one, such as a joint_state_publisher, '
+    assert graph.logged == [('W', f'{said}or give them different topics.')]
 
 
 def test_jump_of_the_encoder_is_one_warning():

@@ -36,6 +36,7 @@ from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.ros.node import GearStatePublisher
 from gear_kinematics.ros.workarounds.executor import make_executor
 from gear_kinematics.state.output_encoder import OutputEncoder
+from gear_kinematics.state.statuses import Condition
 from gear_kinematics.wire.topics import DIAGNOSTICS
 
 pytestmark = pytest.mark.live
@@ -360,6 +361,33 @@ def test_losses_are_counted_by_the_numbers_of_one_driver(make, monkeypatch):
     assert lost(304, 6) == (5, False)  # the other may have ended just now
     assert lost(8, 9) == (5, True)
     assert lost(11, None) == (6, False)  # other middlewares do not number the messages
+
+
+def test_only_the_joint_that_two_drivers_send_has_several_drivers(make, monkeypatch):
+    """One driver sends both joints, one the elbow alone, and one a joint of no actuator."""
+    node = make('mixed', actuators=['shoulder', 'elbow'])
+    monkeypatch.setattr(Subscription, 'get_publisher_count', lambda _: 3)
+    for each in node._drivers:
+        each.count_losses()
+    stamp = 0
+    for number in range(1, 9):
+        for joints, ahead in ((['shoulder', 'elbow'], 0), (['elbow'], 100), (['wheel'], 200)):
+            stamp += SECOND // 1000
+            data = rotor_bytes(stamp, joints, [1.0] * len(joints))
+            for each in node._drivers:
+                each._take(data, {'publication_sequence_number': number + ahead})
+    for monitor in ('monitor', 'encoder_monitor'):
+        found = {n: getattr(a.state, monitor).publishers for n, a in node._actuators.items()}
+        assert {name: each.several for name, each in found.items()} == {
+            'shoulder': False,
+            'elbow': True,
+        }
+    reports = node._arm.report(time.monotonic(), node._connections)
+    mixed = Condition.SEVERAL_DRIVERS()
+    assert [name for name, report in reports.items() if mixed in report.facts] == [
+        'elbow: rotor input',
+        'elbow: transmission error',
+    ]
 
 
 def test_unexpected_error_in_a_change_refuses_it_and_is_logged(node, monkeypatch, capfd):

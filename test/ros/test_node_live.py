@@ -241,8 +241,15 @@ def test_best_effort_driver_is_heard_and_so_is_a_reliable_one_beside_it(start):
 
     assert_outputs(peer.wait_until(outputs, 'outputs'), 1.5)
     peer.connect()
-    said = '2 drivers; losses unknown'
-    assert peer.status(lambda s: s.message == said, said)[0] == WARN
+    said = 'losses unknown'  # as the other has sent only what the last one sent before it
+    assert peer.status(lambda s: s.message == said, said)[0] == OK
+
+    def both():
+        peer.send(rotor_state(peer.stamp(), position=[1.5]))
+        outputs()
+
+    said = 'several drivers send this joint; losses unknown'
+    assert peer.status(lambda s: s.message == said, said, both)[0] == WARN
 
 
 # The end, and starts that fail.

@@ -106,16 +106,42 @@ def test_a_jump_from_before_the_reference_is_not_why_turns_are_unknown():
 
 def test_drivers_of_other_joints_are_no_fault(bench):
     bench.feed(START + 0.5, NO_JOINT)
-    assert bench.facts(START + 0.6) == [Condition.JOINT_MISSING(counts={'joint missing': 1})]
+    lacking = Condition.JOINT_MISSING(counts={'joint missing': 1}, parameter='rotor_joint')
+    assert bench.facts(START + 0.6) == [lacking]
     bench.feed(START + 0.7, good(1), NO_JOINT, good(2))
     bench.connections.rotor.publishers = 3
     report = bench.report(START + 1.6)
     assert (report.facts, report.values['of others']) == ([], 2)
-    bench.feed(START + 1.7, good(3))  # the others are silent, and one of them sends the joint
-    assert bench.facts(START + 2.0) == [Condition.SEVERAL_DRIVERS(count=3)]
+    bench.feed(START + 1.7, good(3))
+    bench.connections.rotor.number = None  # where the others are silent, all may send the joint
+    assert bench.facts(START + 2.0) == [Condition.SEVERAL_DRIVERS()]
     bench.feed(START + 1.7, NO_JOINT, NO_JOINT)  # as later ones, which are no input
     [lacking] = bench.facts(START + 3.7)
     assert lacking == Condition.OTHERS_ALONE(age=pytest.approx(2.0), count=2, joint='rotor')
+
+
+@pytest.mark.parametrize(
+    ('numbers', 'several'),
+    [
+        ([1, 2, 3, 4, 5], False),
+        ([900, 901, 1, 2, 3], False),  # a driver that was started again
+        ([900, 1, 901, 902, 2, 903], True),
+        ([1, 1, 2, 2, 3, 3], True),  # both began at the same time
+        ([1, 900, 2, 901, 3], True),
+    ],
+)
+def test_drivers_that_send_the_same_joint_are_known_by_their_numbers(bench, numbers, several):
+    bench.connections.rotor.publishers = 2
+    for stamp, number in enumerate(numbers):
+        bench.monitor.publishers.note(number)
+        bench.feed(START + 0.5, NO_JOINT, good(stamp + 1))  # others share the topic
+    [*facts] = bench.facts(START + 1.0)
+    assert facts == several * [Condition.SEVERAL_DRIVERS()]
+    for second in (2, 3, 4):
+        bench.feed(START + second, good(10 * second))
+        assert bench.facts(START + second) == facts  # also where one sends every few seconds
+    bench.feed(START + 5, good(60))
+    assert bench.facts(START + 5) == []
 
 
 def test_silence_beyond_the_timeout_is_an_error(bench):

@@ -96,7 +96,10 @@ def test_joint_is_looked_up_by_its_name():
     [sample] = bench.measure(START, 0.25) or bench.turn(START + MS, 0.0)
     assert sample.error == pytest.approx(0.25)
     assert bench.encoder.received == 2
-    assert bench.encoder.rejected == {'joint missing': 1}
+    assert bench.encoder.rejected == {}  # the other joint was that of another driver
+    with pytest.raises(RejectedInputError, match='joint missing'):
+        bench.measure(START + MS, 0.0, joint='wheel')
+    assert (bench.encoder.rejected, bench.encoder.of_others) == ({}, 2)
 
 
 # Diagnostics.
@@ -126,6 +129,7 @@ def test_report_has_the_figures_of_the_window():
         assert 0.0 <= estimate.uncertainty < 1e-6
     assert values == {
         'received': 400,
+        'of others': 0,
         'compared': 400,
         'direction checked': True,
         'lost messages': 0,
