@@ -123,7 +123,7 @@ def _impossible_steps(rotor: RotorInput, *, limited: bool) -> Iterator[Observed 
         known.add(Rejection.IMPLAUSIBLE)
     if counts := {cause: count for cause, count in rotor.rejected.items() if cause not in known}:
         yield Condition.REJECTED(counts=counts)
-    if fault := rotor.disorder.clock_fault:
+    if fault := rotor.disorder.fault:
         yield fault
 
 

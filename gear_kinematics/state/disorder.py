@@ -1,10 +1,16 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Distinguishes a clock that was set back from late messages, and judges the pace of stamps."""
+"""Finds what is wrong with the order of readings: set-back clocks, late ones, two in turn."""
 
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
 
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.state.reach import FLOOR
+from gear_kinematics.state.rotor_samples import RotorSamples
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.wire.batches import Array, once_for_joints
 from gear_kinematics.wire.cdr import SECOND
@@ -16,13 +22,59 @@ FASTEST = 100.0  # times the clock: faster than any playback
 _FEWEST, _LEAST = 10, 100_000_000  # stamps, and ns, that tell their pace; no burst takes as long
 _EVEN = 1.5  # times the usual one: time until a reading that directly follows
 
+_ROUNDING = 1e-9  # rad
+_FEWEST_TURNABOUTS, _MOST_OF = 20, 0.1
+"""Turnabouts that show two motions, and their least share of the readings that they are among."""
+
 Late = tuple[int, float, float | None, float | None]  # ns, rad, rad/s, N·m or other units
+
+
+@dataclass
+class Alternation:
+    """Finds two motions in turn, as of two drivers: each goes on, and the other is far away."""
+
+    _former: float = math.nan  # the last two doubted readings, rad
+    _latest: float = math.nan
+    _doubted: int = 0
+    _going_on: int = 0  # doubted readings that are near one of the two before
+    _seen: bool = field(default=False, repr=False)  # among believed ones, of batches only
+
+    def doubt(self, position: float, last: float, wrapped: Callable[[float], float]) -> None:
+        """Note a doubted reading and the one before it; `wrapped` takes turns from differences."""
+        near, nearer, away = (
+            abs(wrapped(position - other)) for other in (self._former, self._latest, last)
+        )
+        self._doubted += 1
+        self._going_on += 4.0 * near < away or 4.0 * nearer < away
+        self._former, self._latest = self._latest, position
+
+    def note(self, stamps: Array, positions: Array, acceleration: float) -> None:
+        """Note believed readings (n,), ns and rad, with the limit of the rotor, rad/s²."""
+        if len(stamps) <= _FEWEST_TURNABOUTS:
+            return
+        steps = np.diff(positions)
+        out, back = np.minimum(abs(steps[1:]), abs(steps[:-1])), steps[1:] + steps[:-1]
+        time = np.ptp(stamps) / SECOND / len(steps)
+        # A rotor can turn about within a quarter of the last angle, and an encoder by a step.
+        step = np.min(abs(back), initial=math.inf, where=abs(back) > _ROUNDING)
+        far = out > max(3.0 * step, 3.0 * FLOOR, 2.0 * acceleration * time * time)
+        rows = np.flatnonzero(far & (4.0 * abs(back) < out))
+        if len(rows) > _FEWEST_TURNABOUTS and len(rows) > _MOST_OF * np.ptp(rows):
+            self._seen = True
+
+    @property
+    def fact(self) -> Fact | None:
+        """That there are two motions in turn; None if none is seen."""
+        rejected = self._going_on > max(_FEWEST_TURNABOUTS, 0.5 * self._doubted)
+        return Condition.TWO_MOTIONS() if self._seen or rejected else None
 
 
 class Disorder:
     """Collects the readings that are older than the last sample, the first of each stamp."""
 
-    def __init__(self) -> None:
+    def __init__(self, alternation: Alternation) -> None:
+        """Take what finds two motions in turn."""
+        self._alternation = alternation
         self.readings: list[Late] = []
         self.close_resets = 0  # resets of the clock that directly follow another one
         self._reset = -_CLOSE  # number of the message of the last one
@@ -30,11 +82,13 @@ class Disorder:
         self._too_fast: Fact | None = None
 
     @property
-    def clock_fault(self) -> Fact | None:
-        """Stamps of two clocks, or of another unit, or else the clock's last step back.
+    def fault(self) -> Fact | None:
+        """Two motions, stamps of two clocks, or of another unit, or the clock's last step back.
 
         The unit is known of batches only.
         """
+        if two := self._alternation.fact:
+            return two
         if self.close_resets < ALTERNATING:
             return self._too_fast or self.step
         return Condition.CLOCKS_ALTERNATE(count=self.close_resets)
@@ -44,8 +98,14 @@ class Disorder:
         if not self.readings or reading[0] != self.readings[-1][0]:
             self.readings.append(reading)
 
-    def compare(self, stamps: Array, received: Array) -> None:
-        """See whether stamps rise faster than times of reception, (n,), ns, bursts apart."""
+    def compare(self, samples: RotorSamples, acceleration: float) -> None:
+        """Look for stamps that rise faster than times of reception, bursts apart, and turnabouts.
+
+        The limit of the rotor's acceleration is in rad/s².
+        """
+        stamps, received = samples.stamp, samples.received
+        positions = TURN * samples.turns + samples.angle
+        self._alternation.note(stamps, positions, acceleration)
         time = np.ptp(received) if len(received) >= _FEWEST else 0
         if time >= _LEAST and (pace := np.ptp(stamps) / time) > FASTEST:
             usual, clock = (float(np.median(np.diff(each))) for each in (stamps, received))

@@ -197,7 +197,7 @@ class GearState:
                     corrections += [self.correction] if self.correction else []
                     errors += self.errors
             samples = RotorSamples.of(rows)
-            self.input.disorder.compare(samples.stamp, samples.received)
+            self.input.disorder.compare(samples, self.input.turns.max_acceleration)
             self.input.effort_field.note(samples.effort)
             if self.corrector:
                 columns = np.array(corrections, float).reshape(-1, len(Correction._fields)).T

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.state.belief import BELIEVED, Belief
+from gear_kinematics.state.disorder import Alternation
 from gear_kinematics.state.motion import (
     COARSEST,
     EQUAL,
@@ -55,7 +56,7 @@ class Plausibility:
 
         The limits are in rad/s and rad/s².
         """
-        self.jumps = 0
+        self.jumps, self.alternation = 0, Alternation()
         self.jump: Fact | None = None  # the latest; of an encoder that repeats, in its range
         self.restrict(max_speed, max_acceleration, period)
         self.reset()
@@ -110,8 +111,8 @@ class Plausibility:
     def judge_reset(self, position: float, last: int, stamp: int) -> Belief:
         """Forget the readings, as the clock went back from a stamp to another, ns.
 
-        It is a jump if a drive restarted elsewhere than near the last position, rad, and no longer
-        stamps by the date but by the time since its start, which does not show how long that took.
+        It is a jump if a drive restarted elsewhere than near the last position, rad, and stamps by
+        the time since its start, no longer by the date.
         """
         before, _, step, _ = self._last
         moved, near = position - before, _FEW_STEPS * abs(step) + self.noise
@@ -148,10 +149,8 @@ class Plausibility:
         fresh = math.isnan(self._last[0])
         if fresh:
             self._restart(float(positions[0]), int(stamps[0]))
-        found = None
-        if not self._doubted:
-            known = self._last, self._former, self._moving, self._stamp, self.noise, self._held_up
-            found = all_in_reach(Motion(*known), self.limits, stamps, positions)
+        now = self._last, self._former, self._moving, self._stamp, self.noise, self._held_up
+        found = not self._doubted and all_in_reach(Motion(*now), self.limits, stamps, positions)
         if found:
             self._last, self._former, self._moving, self._stamp, self.noise, self._held_up = found
             self._look_always()
@@ -292,6 +291,8 @@ class Plausibility:
 
     def _doubt(self, position: float, stamp: int) -> Belief:
         """Note a reading that is out of reach, and see whether it agrees with those before."""
+        previous = self._doubted[-1][1] if self._doubted else self._last[0]
+        self.alternation.doubt(position, previous, self._wrapped)
         self._doubted = [*self._doubted[1 - _AGREEING :], (stamp, position)]
         self._look_always()  # so that a reading in reach ends the row
         if len(self._doubted) < _AGREEING:
@@ -299,8 +300,7 @@ class Plausibility:
         times, positions = zip(*self._doubted, strict=True)
         spans = [(b - a) * 1e-9 for a, b in pairwise(times)]
         steps = [self._wrapped(b - a) for a, b in pairwise(positions)]
-        stale = min(STALEST, max(spans))
-        noise, total = self.noise, sum(spans)
+        stale, noise, total = min(STALEST, max(spans)), self.noise, sum(spans)
         speed = sum(steps) / total if total else 0.0
         slack = noise + self.limits.acceleration * total * total
         ways = list(zip(steps, spans, strict=True))

@@ -52,9 +52,9 @@ class RotorInput:
         self.origin: Fact | None = None  # source of the turn count: homing or the output's encoder
         self._restarts = 0  # by homing, references and changed parameters of encoders
         self.rezeroed = 0  # number of these that gave the same motion another zero
-        self.disorder = Disorder()
         (speed, acceleration), period = parameters.rotor_limits, parameters.rotor_period
         self.plausibility = Plausibility(speed, acceleration, period)
+        self.disorder = Disorder(self.plausibility.alternation)
         self.turns = RotorTurns(period=period, max_speed=speed, max_acceleration=acceleration)
         self._configure(parameters)
         self._start()
@@ -209,7 +209,7 @@ class RotorInput:
         take = self._all_at_once if in_order else self._one_by_one
         samples = take(rows, stamps, values, clock, rejected)
         self.received = before + len(messages)
-        self.disorder.compare(samples.stamp, samples.received)
+        self.disorder.compare(samples, self.turns.max_acceleration)
         self.effort_field.note(samples.effort)
         return samples
 

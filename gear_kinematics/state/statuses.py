@@ -32,6 +32,10 @@ _EFFORT = (
     'efforts of up to {effort:.4g} N·m at the rotor are more than {whose} ({bearable:.3g} N·m): '
     'set rotor_effort_factor (N·m per unit) if the messages have another unit, such as mA'
 )
+_TWO_MOTIONS = (
+    'the positions alternate between two motions, as if two drivers sent this joint, or 0 for '
+    'failed readings'
+)
 _TOO_SELDOM = (
     '{rate:g} Hz is too slow to count turns at a max_rotor_speed of {limit:.4g} rad/s: lower it '
     'to {speed:.3g} rad/s or less, or let the driver read and send at {least:.0f} Hz or '
@@ -108,6 +112,7 @@ class Condition(Enum):
         '',
     )
     # The following are said of recordings only.
+    TWO_MOTIONS = OK, _TWO_MOTIONS, ''
     VELOCITIES_WERE = OK, 'until {time:.3f} s, {doubt}', ''
     EFFORT_TOO_LARGE = OK, _EFFORT, ''
     EFFORT_IS_ZERO = OK, 'the effort is 0 throughout the motion, and is taken as absent', ''

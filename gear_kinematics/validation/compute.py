@@ -188,7 +188,7 @@ def _doubts(rotor: RotorInput, outside: Fact | None) -> list[Fact]:
     doubts = (
         rotor.why_lost,
         rotor.plausibility.beyond_limits,
-        rotor.disorder.clock_fault,
+        rotor.disorder.fault,
         unstamped if rotor.zero_stamps else None,
         repeated if rotor.duplicates > MANY_REPEATED * rotor.received else None,
         rotor.velocity_field.in_recording,

@@ -90,7 +90,7 @@ class InputHealth:
             referenced=not (rotor_input.turns.unknown_gaps or rotor_input.plausibility.jumped),
             jumped='' if lost and lost.condition in counted else str(lost or ''),
             velocity_is=str(rotor_input.velocity_field.in_recording or ''),
-            set_back=str(rotor_input.disorder.clock_fault or ''),
+            set_back=str(rotor_input.disorder.fault or ''),
             beyond_limits=str(rotor_input.plausibility.beyond_limits or ''),
             outside=str(self.outside or ''),
             effort_is=str(rotor_input.effort_field.doubt or ''),

@@ -147,7 +147,7 @@ def test_a_clock_that_is_set_back_hides_no_jump_and_loses_no_turn(settings, back
         if not k:
             rotor_input.home(1.0)
     assert set(rotor_input.rejected) == {'out of order'}
-    assert bool(rotor_input.disorder.clock_fault) is (back > 20)
+    assert bool(rotor_input.disorder.fault) is (back > 20)
     assert rotor_input.plausibility.beyond_limits is None
     assert bool(rotor_input.plausibility.jumped) == (not rotor_input.referenced) == bool(jump)
     if not jump:
@@ -187,7 +187,7 @@ def test_a_batch_of_messages_that_came_in_one_burst_shows_no_fast_clock(count):
     received = [taken[-1] + 5000 * k for k in range(count)]
     rotor_input = RotorInput(SETTINGS)
     rotor_input.accept_batch([rotor_bytes(t, position=[1e-9 * t]) for t in taken], received)
-    assert rotor_input.disorder.clock_fault is None
+    assert rotor_input.disorder.fault is None
 
 
 numbers = st.lists(st.floats(width=64), max_size=2)

@@ -1,0 +1,69 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Recordings in which two motions are in turn, as of two drivers, and others that look alike."""
+
+import math
+from random import Random
+
+import pytest
+from live import SECOND, rotor_bytes
+
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.statuses import Condition
+
+SETTINGS = NodeParameters.load()
+
+
+def turning(time) -> float:
+    return 40.0 * math.sin(0.75 * time)
+
+
+def sent(rate, angle, *, begin=0.0) -> list[tuple[float, float]]:
+    """Return times, s, and readings, rad, of a driver."""
+    return [(begin + k / rate, angle(begin + k / rate)) for k in range(round(6.0 * rate))]
+
+
+def fault_of(*drivers):
+    """Return what is found in a recording of drivers, batch by batch."""
+    readings = sorted(reading for driver in drivers for reading in driver)
+    rotor_input = RotorInput(SETTINGS)
+    for first in range(0, len(readings), 500):
+        times = [100 * SECOND + round(t * SECOND) for t, _ in readings[first : first + 500]]
+        angles = [angle for _, angle in readings[first : first + 500]]
+        messages = [
+            rotor_bytes(t, position=[angle]) for t, angle in zip(times, angles, strict=True)
+        ]
+        rotor_input.accept_batch(messages, times)
+    return rotor_input.disorder.fault
+
+
+@pytest.mark.parametrize('second', [
+    pytest.param(sent(200, lambda t: turning(t) + 0.3, begin=0.0003), id='near'),
+    pytest.param(sent(200, lambda t: turning(t) + 7.0, begin=0.0003), id='far'),
+    pytest.param(sent(200, lambda t: turning(t - 0.1), begin=0.0003), id='late'),
+    pytest.param(sent(200, lambda t: 25.0 + 30.0 * math.sin(0.9 * t), begin=0.0003), id='robot'),
+    pytest.param(sent(10, lambda _: 0.0, begin=0.0003), id='zeros'),
+    pytest.param(sent(200, lambda _: 9.0, begin=0.0003), id='stuck'),
+])  # fmt: skip
+def test_readings_of_two_drivers_are_said_to_alternate(second):
+    assert fault_of(sent(200, turning), second) == Condition.TWO_MOTIONS()
+
+
+def test_one_driver_is_not_said_to_alternate():
+    random = Random(5)  # noqa: S311
+    assert fault_of(sent(200, turning)) is None
+    corrupt = sent(200, lambda t: turning(t) + (random.random() < 0.02) * random.uniform(-99, 99))
+    assert fault_of(corrupt) is None
+    jump = sent(200, lambda t: turning(t) + 100.0 * (t > 3.0))
+    assert fault_of(jump) is None
+
+
+@pytest.mark.parametrize('steps', [64, 4096])
+def test_a_rotor_that_trembles_is_not_said_to_alternate(steps):
+    """It changes by one step of its encoder with each message, or vibrates within its limits."""
+    step = math.tau / steps
+    dithering = sent(1000, lambda t: step * (round(t * 1000) % 2 + round(turning(t) / step)))
+    assert fault_of(dithering) is None
+    limit = SETTINGS.max_rotor_acceleration
+    vibrating = sent(200, lambda t: limit / (math.tau * 90.0) ** 2 * math.sin(math.tau * 90.0 * t))
+    assert fault_of(vibrating) is None
