@@ -130,24 +130,29 @@ class DriverLog:
         else:
             self._warn_of_missing()
 
-    def heard(self, samples: Mapping[str, RotorSample]) -> None:
-        """Take samples by actuator while some are awaited; their first are compared."""
+    def heard(self, samples: Mapping[str, RotorSample]) -> Mapping[str, float]:
+        """Take samples by actuator while some are awaited; their first are compared.
+
+        Returns how far rotors are from where they were, rad, if that is far.
+        """
         silent, self._silent = self._silent, False
         self._forget_others()
         for name in samples.keys() & self._before.keys():
             if (last := self._before[name]) and 0 <= samples[name].stamp - last.stamp < _AT_ONCE:
                 del self._before[name]  # no driver starts so soon: two send in turn
         returned = [name for name in samples if name in self._before]
-        elsewhere = []
+        elsewhere = dict[str, float]()
         for name, sample in samples.items():
             before = self._before.pop(name, None) or sample
             moved = sample.position.since(before.position)
             if abs(moved) > _ELSEWHERE:
-                turned = f'the rotor is {math.degrees(moved):.0f}° from where it was'
-                elsewhere.append(labelled(name, turned))
+                elsewhere[name] = moved
         if elsewhere:
             self._said |= self._faults()
-            at = '; '.join(elsewhere)
+            turned = 'the rotor is {:.0f}° from where it was'
+            at = '; '.join(
+                labelled(n, turned.format(math.degrees(a))) for n, a in elsewhere.items()
+            )
             how, advice = 'comes from another driver', _ANOTHER
             if self._calm:
                 how, advice = 'is heard again', _RESTARTED
@@ -155,3 +160,4 @@ class DriverLog:
         elif silent or returned:
             which = '' if silent else ', '.join(returned)
             self._log.info(labelled(which, f'{self._topic} is heard now'))
+        return elsewhere

@@ -210,7 +210,9 @@ class GearStatePublisher(PublishingNode):
             if state.referenced is not actuator.referenced:
                 changed[name] = state.referenced
         if self._driver_log.awaited:
-            self._driver_log.heard({name: state.sample for name, state in answered})
+            moved = self._driver_log.heard({name: state.sample for name, state in answered})
+            for name, angle in moved.items():
+                self._actuators[name].state.monitor.moved = angle
         if changed:
             self._publish_referenced(changed)
         self.send(self._arm.encode(answered))

@@ -93,6 +93,7 @@ class InputMonitor(DriverMonitor):
         self._input, self._encoder = rotor_input, encoder
         self.unreferenced = 0  # valid inputs while the turns were not known
         self.withheld = 0  # those of them without outputs
+        self.moved = 0.0  # rad, from where the rotor was when its driver was heard last
         self.zero_kept: Fact | None = None  # where `rotor_zero` is kept, or why it is not
         self._reported, self._rate, self._received = 0.0, 0.0, 0
         self._stamp = 0  # ns, the last one at the last report
@@ -166,6 +167,9 @@ class InputMonitor(DriverMonitor):
             yield wrong
             if reference and (apart := self._encoder.clocks_apart):
                 yield apart
+        if self.moved:  # said once
+            yield Condition.ELSEWHERE(angle_deg=math.degrees(self.moved))
+            self.moved = 0.0
         yield from self._losses(grown, rotor_input.rejected, driver)
         for doubt in (rotor_input.velocity_field.meaning, plausibility.beyond_limits):
             if doubt:

@@ -71,6 +71,11 @@ class Condition(Enum):
         'the rotor turned by more than max_rotor_speed allows within {gap:.3f} s',
         "Check whether the drive restarted and how it stamps, or raise that limit to the motor's.",
     )
+    ELSEWHERE = (
+        WARN,
+        'a driver came, and the rotor is {angle_deg:.0f}° from where it was',
+        f'Check whether the drive restarted; {_HOME_IT}.',
+    )
     REJECTED = (
         WARN,
         'rejected: {counts}',

@@ -30,7 +30,7 @@ class Graph:
     """Stands in for the node, and the topics around it, two of which drivers publish."""
 
     def __init__(self, *topics) -> None:
-        self._topics, self.logged = topics, []
+        self._topics, self.logged, self.moved = topics, [], {}
         self.get_logger = lambda: SimpleNamespace(warning=self.log('W'), info=self.log('I'))
         self.input = RotorInput(NodeParameters.load())
         self.driver_log = DriverLog(self, {'': self.input})
@@ -59,7 +59,7 @@ class Graph:
         data = rotor_bytes(round(stamp * SECOND), position=[position], **fields)
         sample = self.input.accept(data, lambda: SECOND)
         if self.driver_log.awaited:
-            self.driver_log.heard({'': sample})
+            self.moved |= self.driver_log.heard({'': sample})
 
 
 def test_topics_of_drivers_are_named_once_until_one_is_heard():
@@ -96,6 +96,7 @@ def test_driver_that_stops_and_its_return_are_a_line_each(publishers, position, 
         graph.hear(5.0 + 0.001 * number, position)
     graph.driver_log.update(1, 0.0)
     assert graph.logged[1:] == [said]
+    assert graph.moved == ({'': position - 5.0} if said[0] == 'W' else {})
 
 
 def test_a_new_driver_is_compared_with_the_last_unless_two_take_turns():

@@ -120,6 +120,13 @@ def test_drivers_of_other_joints_are_no_fault(bench):
     assert lacking == Condition.OTHERS_ALONE(age=pytest.approx(2.0), count=2, joint='rotor')
 
 
+def test_a_rotor_that_is_elsewhere_when_a_driver_comes_is_said_once(bench):
+    bench.feed(START + 0.5, good())
+    bench.monitor.moved = -math.pi
+    assert bench.facts(START + 0.6) == [Condition.ELSEWHERE(angle_deg=-180.0)]
+    assert bench.facts(START + 0.7) == []
+
+
 @pytest.mark.parametrize(
     ('numbers', 'several'),
     [
