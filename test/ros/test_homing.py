@@ -118,6 +118,21 @@ def test_shaft_that_turns_is_not_homed_where_each_gap_could_hide_a_turn(homing, 
     assert answer.message.startswith(f'the shaft turns at {refused} rad/s') == bool(refused)
 
 
+def test_a_shaft_that_several_drivers_report_on_is_not_homed(homing):
+    """The second one counts from another zero, and either may have sent the last message."""
+    node = homing()
+    publishers = node._actuators[''].state.monitor.publishers
+    drive(node, [1.0] * 200)
+    for number in (201, 1, 202, 2):
+        publishers.note(number)
+    answer = home(node)
+    said = 'several drivers send its joint; stop all but one'
+    assert (answer.success, said in answer.message) == (False, True), answer.message
+    for _ in range(5):  # reports, in which one driver is left
+        publishers.update()
+    assert home(node).success
+
+
 def test_a_shaft_at_rest_is_homed_after_its_driver_was_silent(homing):
     node = homing(output_encoder_reference='absolute', input_timeout=0.5)
     drive(node, [1.0, 1.0], SECOND)
