@@ -50,9 +50,9 @@ class Alternation:
 
     def note(self, stamps: Array, positions: Array, acceleration: float) -> None:
         """Note believed readings (n,), ns and rad, with the limit of the rotor, rad/s²."""
-        if len(stamps) <= _FEWEST_TURNABOUTS:
-            return
         steps = np.diff(positions)
+        if np.count_nonzero(steps[1:] * steps[:-1] < 0.0) <= _FEWEST_TURNABOUTS:
+            return
         out, back = np.minimum(abs(steps[1:]), abs(steps[:-1])), steps[1:] + steps[:-1]
         time = np.ptp(stamps) / SECOND / len(steps)
         # A rotor can turn about within a quarter of the last angle, and an encoder by a step.
