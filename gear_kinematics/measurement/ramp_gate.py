@@ -27,6 +27,7 @@ _TURNED, _BIN = 0.05, 0.05  # shares of the greatest torque: change that is a re
 _CAME_BACK, _MOST_SATURATED = 0.02, 0.5
 """Share of the range of the angle by which it comes back, unlike creep; greatest share of samples
 that are saturated."""
+_FEWEST_LEVELS = 10  # of a torque, of which the greatest is no saturation
 _LOOP = 3  # reversals of the torque between which it takes each value in both directions
 _MOST_KEPT = 2.0  # times a slip: greatest change of the angle behind it, in either direction
 _LOADED = 0.5  # share of the torque beyond which no play is crossed; share of the angle's range
@@ -78,6 +79,8 @@ def _stray(ramps: Loading) -> NDArray[np.bool_]:
 def _saturated(ramps: Loading) -> NDArray[np.bool_]:
     """Find rows at the greatest torque of either sign in which the angle moves there and back."""
     found = np.zeros(len(ramps.torque), bool)
+    if len(np.unique(ramps.torque)) < _FEWEST_LEVELS:
+        return found
     least = _CAME_BACK * float(np.ptp(ramps.angle))
     for sign, greatest in ((1.0, np.max(ramps.torque)), (-1.0, np.min(ramps.torque))):
         edges = np.flatnonzero(np.diff(ramps.torque == greatest, prepend=False, append=False))

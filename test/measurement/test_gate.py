@@ -567,3 +567,10 @@ def test_a_saturated_torque_sensor_is_named(config, tmp_path):
     ramps, faults = gated_ramps(read(path, config).locked)
     assert faults == (Observation.SATURATED(timed=False, moment=54.0, count=135),)
     assert np.max(ramps.torque) < 7.0
+
+
+def test_the_greatest_of_three_levels_of_a_torque_is_no_saturation(config, tmp_path):
+    """As of a drive that sends ±40 N·m in 12 bits, and bears much less."""
+    coarse = 13.0 * np.round(TORQUE / 13.0)
+    path = write_csv(tmp_path / 'r.csv', torque_nm=coarse, angle_rad=TWIST)
+    assert not gated_ramps(read(path, config).locked)[1]
