@@ -5,7 +5,7 @@ import time
 import traceback
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
-from itertools import chain, cycle
+from itertools import cycle
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +32,7 @@ from gear_kinematics.ros.node_parameters import declared_actuators, fault_of
 from gear_kinematics.ros.other_gears import OtherGears
 from gear_kinematics.ros.outputs import PublishingNode, latched
 from gear_kinematics.state.arm_state import ArmState
-from gear_kinematics.state.monitors import Connections, DriverFacts
+from gear_kinematics.state.monitors import Connections
 from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.joint_reader import RejectedInputError, Rejection
@@ -199,7 +199,6 @@ class GearStatePublisher(PublishingNode):
         answered, rejections = self._arm.rotor(data, self._now)
         for name, rejection in rejections:
             self._warn_of(topics.ROTOR_STATE, name, rejection)
-        self._note_publisher(self._connections.rotor, answered, rejections)
         if not answered:
             return
         now = time.monotonic()
@@ -207,6 +206,7 @@ class GearStatePublisher(PublishingNode):
         for name, state in answered:
             actuator = self._actuators[name]
             actuator.note(now)
+            state.monitor.note_publisher(self._connections.rotor)
             if state.referenced is not actuator.referenced:
                 changed[name] = state.referenced
         if self._driver_log.awaited:
@@ -247,24 +247,14 @@ class GearStatePublisher(PublishingNode):
         errors, rejections = self._arm.encoder(data, self._now)
         now = time.monotonic()
         for name, _ in errors:
-            self._actuators[name].state.encoder_monitor.last_input = now
+            monitor = self._actuators[name].state.encoder_monitor
+            monitor.last_input = now
+            monitor.note_publisher(self._connections.encoder)
         for name, rejection in rejections:
             self._warn_of(topics.OUTPUT_ENCODER, name, rejection)
-        self._note_publisher(self._connections.encoder, errors, rejections)
         self.send(self._arm.encode_errors(errors))
         if found := self._found_turns(errors):
             self._publish_referenced(found)
-
-    def _note_publisher(self, driver: DriverFacts, *heard: Iterable[tuple[str, object]]) -> None:
-        """Note who sent the joints of a message, if a topic has several publishers."""
-        if driver.publishers <= 1:
-            return
-        for name, what in chain(*heard):
-            if not (isinstance(what, RejectedInputError) and str(what) == Rejection.JOINT_MISSING):
-                state = self._actuators[name].state
-                of_rotor = driver is self._connections.rotor
-                monitor = state.monitor if of_rotor else state.encoder_monitor
-                monitor.publishers.note(driver.number)
 
     def note_unsent(self, publisher: Publisher, error: Exception) -> None:
         """Count a message that was not sent, as with keep_all and a blocked subscriber."""
@@ -281,6 +271,7 @@ class GearStatePublisher(PublishingNode):
             return  # a message of another driver on a shared topic, and no input
         monitor = state.monitor if of_rotor else state.encoder_monitor
         monitor.last_input = time.monotonic()
+        monitor.note_publisher(self._connections.rotor if of_rotor else self._connections.encoder)
         of, detail = f' of {name}' if name else '', rejection.detail
         if str(rejection) == Rejection.JOINT_MISSING:
             detail += f'; set {monitor.joint}'

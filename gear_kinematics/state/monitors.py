@@ -63,6 +63,11 @@ class DriverMonitor:
         grown, self._counted = Counter(counts) - self._counted, Counter(counts)
         return grown  # another input counts from 0
 
+    def note_publisher(self, driver: DriverFacts) -> None:
+        """Note who sent the latest message with the joint, if its topic has several publishers."""
+        if driver.publishers > 1:
+            self.publishers.note(driver.number)
+
     def _several(self, driver: DriverFacts, others: int = 0) -> Iterator[Fact]:
         """Yield that several drivers send the joint, or can where messages have no numbers."""
         mixed = not others if driver.number is None else self.publishers.several
