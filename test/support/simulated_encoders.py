@@ -48,8 +48,10 @@ def ramped_strokes(stroke: float, seconds: float, ramp: float) -> Profile:
 def with_play(angle: np.ndarray, play: float) -> np.ndarray:
     """Return output angles that stay until the play is crossed, starting in its middle."""
     out, at = [], angle[0]
-    for driven in angle.tolist():
-        at = min(max(at, driven - 0.5 * play), driven + 0.5 * play)
+    ends = (angle - 0.5 * play).tolist(), (angle + 0.5 * play).tolist()
+    for least, most in zip(*ends, strict=True):
+        if not least <= at <= most:
+            at = least if at < least else most
         out.append(at)
     return np.array(out)
 

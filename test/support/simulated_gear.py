@@ -196,15 +196,17 @@ def _lost_motion(
     lost = np.zeros(ideal.shape)
     for number in range(seeds):
         gap = bristle = 0.0  # gap: input less output, in ±half
-        steps = np.diff(ideal[:, number]).tolist()
-        for k, (step, top) in enumerate(zip(steps, tops[1:, number].tolist(), strict=True), 1):
-            pushing = gap + step
-            gap = min(max(pushing, -half), half)
-            if moved := pushing - gap:  # the flank takes the output along
+        steps, column = np.diff(ideal[:, number]).tolist(), []
+        for step, top in zip(steps, tops[1:, number].tolist(), strict=True):
+            gap += step
+            if not -half <= gap <= half:  # the flank takes the output along
+                pushing, gap = gap, half if gap > 0.0 else -half
+                moved = pushing - gap
                 # d bristle/d travel = (top · direction - bristle)/length, solved over the step
                 share = -math.expm1(-abs(moved) / travel)
-                bristle += (math.copysign(top, moved) - bristle) * share
-            lost[k, number] = -gap - bristle
+                bristle += ((top if moved > 0.0 else -top) - bristle) * share
+            column.append(-gap - bristle)
+        lost[1:, number] = column
     lost.flags.writeable = False
     return lost
 
