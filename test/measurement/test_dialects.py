@@ -1690,15 +1690,12 @@ def test_the_first_column_without_a_name_that_rises_is_no_encoder(
         assert (followed(told.value).rotor, followed(told.value).output) == ('2', '3')
 
 
-@pytest.mark.parametrize('names', ['t,pressure_2,pressure_1', 't,Range,Exchange'])
-def test_only_columns_that_may_be_angles_are_proposed(tmp_path, gear, reference, names):
-    with pytest.raises(RecordingError, match='by --angle-column, --torque-column'):
-        read(saved(tmp_path, written(reference('encoders'), names)), gear)
-
-
-@pytest.mark.parametrize('pair', ['actual_q_0,momentum_0', 'Efficiency (kgf/W),Torque (N·m)'])
-def test_a_momentum_is_no_torque_and_an_efficiency_no_angle(tmp_path, gear, reference, pair):
-    path = saved(tmp_path, written(reference('ramps'), f'time,{pair}', '{:.6f}'))
+@pytest.mark.parametrize(('kind', 'names'), [
+    ('encoders', 't,pressure_2,pressure_1'), ('encoders', 't,Range,Exchange'),
+    ('ramps', 'time,actual_q_0,momentum_0'), ('ramps', 'time,Efficiency (kgf/W),Torque (N·m)'),
+])  # fmt: skip
+def test_only_angles_and_torques_are_proposed(tmp_path, gear, reference, kind, names):
+    path = saved(tmp_path, written(reference(kind), names, '{:.6f}'))
     with pytest.raises(RecordingError, match='by --angle-column, --torque-column'):
         read(path, gear)
 
