@@ -9,14 +9,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from gear_recordings import Gear, creep, ramps, write_csv
-from simulated_encoders import (
-    ARC_MINUTE,
-    TURN,
-    Drive,
-    even_strokes,
-    ramped_strokes,
-    with_play,
-)
+from simulated_encoders import ARC_MINUTE, TURN, Drive, even_strokes, ramped_strokes, with_play
 
 from gear_kinematics.measurement.answer import Limits, answer
 from gear_kinematics.measurement.calibration import fit

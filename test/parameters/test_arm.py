@@ -103,12 +103,7 @@ FAULTS = [
         'give `home_file` without',
     ),
     (
-        {
-            'shoulder.ring_teeth': 1,
-            'elbow.a.cam_phase': 7.0,
-            'elbow.bad': 1,
-            'rotor_joint': 'm',
-        },
+        {'shoulder.ring_teeth': 1, 'elbow.a.cam_phase': 7.0, 'elbow.bad': 1, 'rotor_joint': 'm'},
         "rotor_joint 'm' belongs to shoulder and elbow",
         'shoulder.ring_teeth must be between',
         'elbow.a.cam_phase must be',

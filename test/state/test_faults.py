@@ -240,11 +240,7 @@ ROWS = {
         FindingCause.VELOCITY_IS,
     ),
     'outside of the range': Row(
-        part({}),
-        {},
-        (OUTSIDE,),
-        FindingCause.OUTSIDE,
-        replace(MULTI, output_range=(0.0, 1.0)),
+        part({}), {}, (OUTSIDE,), FindingCause.OUTSIDE, replace(MULTI, output_range=(0.0, 1.0))
     ),
 }
 

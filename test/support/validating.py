@@ -13,12 +13,7 @@ from gear_kinematics.validation.validator import Validator
 
 
 def validate(
-    messages: list[Message],
-    config: dict,
-    *topics,
-    further=None,
-    encoder='',
-    **options,
+    messages: list[Message], config: dict, *topics, further=None, encoder='', **options
 ) -> BagReport:
     """Validate messages with the options of a `Task`."""
     task = Task(Path('bag'), config, **options)
