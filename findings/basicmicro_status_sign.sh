@@ -2,12 +2,13 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # basicmicro 2.0.10: a motor that turns back at 100 counts/s is read at 4294967196 counts/s, with 49152 as its PWM.
 #
-# The motor of a RoboClaw turns back at -100 counts/s, with a PWM of -16384, which is -50 %, and a current of -150, which
-# is -1.5 A. Expected of GetStatus(): these numbers, as ReadPWMs() and ReadCurrents() give them of the same motor. What
-# happens: GetStatus() gives 49152 and 65386 for PWM and current, 4294967196 for the speed and its setpoint, and 65531
-# for errors of the speed and the position of -5; GetISpeeds() gives 4294967196 as well. All of these are read as words
-# without a sign, while the types of words with a sign are there, and while goals are sent with their signs. Nothing in
-# the answers tells a direction otherwise. A terminal that answers as the controller does takes its place here.
+# The motor of a RoboClaw turns back at -100 counts/s, with a PWM of -16384, which is -50 %, and a current of -150,
+# which is -1.5 A. Expected of GetStatus(): these numbers, as ReadPWMs() and ReadCurrents() give them of the same motor,
+# and as the maker's library for Arduino reads PWM and current of this status, as int16. What happens: GetStatus() gives
+# 49152 and 65386 for PWM and current, and 4294967196 for the speed and its setpoint; GetISpeeds() gives 4294967196 as
+# well. All of these are read as words without a sign, while the types of words with a sign are there, and while goals
+# are sent with their signs. No other value of these two tells the direction. A terminal that answers with these words,
+# as two's complements, takes the place of the controller here.
 # For us: take off 2^16 or 2^32 from values from 2^15 or 2^31 on.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
@@ -26,11 +27,11 @@ import tty
 
 from basicmicro import Basicmicro
 
-PWM, CURRENT, SPEED, ERROR = -16384, -150, -100, -5
+PWM, CURRENT, SPEED = -16384, -150, -100
 ANSWERS = {
     48: struct.pack('>2h', PWM, 0), 49: struct.pack('>2h', CURRENT, 0), 79: struct.pack('>2i', SPEED, 0),
     73: struct.pack('>2I4H4h6i4h', 1, 0, 300, 300, 240, 50, PWM, 0, CURRENT, 0, 1000, 0, SPEED, 0, SPEED, 0,
-                    ERROR, 0, ERROR, 0),
+                    0, 0, 0, 0),
 }
 
 
@@ -50,14 +51,13 @@ assert motor.Open()
 assert motor.ReadPWMs(0x80) == (True, PWM, 0) and motor.ReadCurrents(0x80) == (True, CURRENT, 0)
 done, *status = motor.GetStatus(0x80)
 assert done
-found = dict(zip(('pwm', 'current', 'encoder', 'setpoint', 'speed', 'speed error', 'position error'), status[6::2]))
+found = dict(zip(('pwm', 'current', 'encoder', 'setpoint', 'speed'), status[6::2]))
 speeds = motor.GetISpeeds(0x80)
 print('GetStatus:', found, 'GetISpeeds:', speeds)
 assert found == {
     'pwm': 49152, 'current': 65386, 'encoder': 1000, 'setpoint': 4294967196, 'speed': 4294967196,
-    'speed error': 65531, 'position error': 65531,
 }
 assert list(speeds) == [True, 4294967196, 0]
 os._exit(0)
 PYTHON
-timeout 60 "$folder/venv/bin/python" "$folder/status.py"
+timeout 60 "$folder/venv/bin/python" -u "$folder/status.py"
