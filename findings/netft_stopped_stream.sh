@@ -9,7 +9,7 @@
 # buffer of the socket, and each call takes the oldest reading out of it and requests a new one. No error tells of it,
 # as the numbers of the readings, which the box sends along, are not looked at.
 # A socket takes the place of the box here: it streams after a request of 0 readings, and sends n after a request of n.
-# For us: open a new Sensor after stopStreaming(), or let the stream run and take measurement().
+# For us: open a new Sensor after stopStreaming() and tare it again, or let the stream run and take measurement().
 #
 # Exit code 0: still so. Installs the version into a temporary folder.
 set -euo pipefail
