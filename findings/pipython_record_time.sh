@@ -69,4 +69,4 @@ print('samplefreq 1000 Hz:', cycles[-1], 'cycles')
 assert cycles[-1] == 20
 os._exit(0)
 PYTHON
-timeout 60 "$folder/venv/bin/python" "$folder/record.py"
+timeout 60 "$folder/venv/bin/python" -u "$folder/record.py"
