@@ -8,7 +8,7 @@
 # happens: 0.51, as the squares are divided by 59, one less than the number of readings, instead of by 30, as each of
 # the 30 cells has a mean of its own. With three readings each it is 0.67. And an interaction of 0.31 is found although
 # there is none, as the part that the scatter of the readings has in the means is not taken off.
-# For us: an encoder looks 30 % better than it is; take the mean square within the cells, as Minitab does.
+# For us: the scatter of an encoder looks 30 % smaller than it is; take the mean square within the cells instead.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
 set -euo pipefail
