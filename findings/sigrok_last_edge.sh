@@ -5,7 +5,7 @@
 # An encoder of 400 edges makes one turn at 60 rpm and stands still for 1 s then; the capture begins 0.1 ms before its
 # first edge. Expected of the decoder graycode with edges=400: rates of 60 rpm, a count of 400 and one turn at the end.
 # What happens: each count is given only when the next edge comes, so that the last one is 399, and the turn is never
-# given, however long the shaft stands. And the first rate is 1500 rpm, as the time since the begin of the capture is
+# given, however long the shaft stands. And the first rate is 1500 rpm, as the time since the capture began is
 # taken for the time between two edges.
 # A motor makes five steps, then two steps back, and stands still for 1 s. Expected of the decoder stepper_motor: a last
 # position of 3. What happens: 4, for the same reason; and the steps back have the same speed as those forward.
