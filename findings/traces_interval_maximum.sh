@@ -3,11 +3,11 @@
 # traces 0.7.0: a motor that has 1 N·m from 5 s to 10 s has a maximum of 10 N·m in this interval.
 #
 # A torque is recorded when it changes: 10 N·m at 0 s, 1 N·m at 5 s and 2 N·m at 10 s, and it holds in between. Expected
-# of sample_interval() for each 5 s with the operation "max": 10 and 1 N·m, as by distribution(start, end).max(), whose
-# intervals include their starts, as the class says of its values. What happens: 10 and 10 N·m, as the value before the
-# interval counts in it for no time at all, where a reading is exactly at the start of the interval. So each step that
-# falls onto a full second is also found in the second after it, and a minimum of 5 N·m is 1 N·m after a step upward.
-# The operation "mean" is right, and so are maxima where no reading is at the start.
+# of sample_interval() for each 5 s with the operation "max": 10 and 1 N·m, as by distribution(start, end).max(). At 5 s
+# the value is 1 N·m, as a TimeSeries has the value of its last measurement by its documentation. What happens: 10 and
+# 10 N·m, as the value before the interval counts, too, where a reading is exactly at the start of the interval, though
+# it holds there for no time at all. So a step at the border of two intervals is found in both, and a minimum of 5 N·m
+# is 1 N·m after a step upward. The operation "mean" is right, and so are maxima where no reading is at the start.
 # For us: take distribution(start, end).max() or .min().
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
