@@ -1,13 +1,13 @@
 #!/bin/bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# qualistics 0.1.0: readings that scatter with a variance of 1 have a repeatability of 0.51 in a gauge R&R study.
+# qualistics 0.1.0: readings that scatter with a variance of 1 have a repeatability of about 0.5 in a gauge R&R study.
 #
 # Three persons measure the backlash of ten gears twice. The readings of a person at a gear scatter with a variance of
 # 1, the persons with 4, the gears with 100, and there is no interaction. Expected of gauge_rr(), a table in the style
 # of Minitab: a repeatability of 1 in the mean of 500 such studies, as by the mean square within the cells. What
-# happens: 0.51, as the squares are divided by 59, one less than the number of readings, instead of by 30, as each of
-# the 30 cells has a mean of its own. With three readings each it is 0.67. And an interaction of 0.31 is found although
-# there is none, as the part that the scatter of the readings has in the means is not taken off.
+# happens: about 30/59, as the squares are divided by 59, one less than the number of readings, instead of by 30, as
+# each of the 30 cells has a mean of its own. With three readings each it is about 60/89. And an interaction of 0.31 is
+# found although there is none, as the part that the scatter of the readings has in the means is not taken off.
 # For us: the scatter of an encoder looks 30 % smaller than it is; take the mean square within the cells instead.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
