@@ -1,6 +1,6 @@
 #!/bin/bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# pytransform3d 3.17.0: the output of a gear, a mimic of a URDF, stands still, and a stop at 0 that is left out is none.
+# pytransform3d 3.17.0: the output of a gear, a mimic of a URDF, stands still; a slide without `lower` has no stop at 0.
 #
 # Expected of UrdfTransformManager for a motor at 2 rad whose output mimics it by -0.05, with an offset of 0.3 rad: the
 # output at 0.2 rad, as in yourdfpy. What happens: it stays at 0 rad, without a warning, and takes any other angle by
