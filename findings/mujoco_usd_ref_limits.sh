@@ -5,10 +5,11 @@
 # In an MJCF, a joint has a range from -1 to 2 rad, and its angle is 0.5 rad where the file draws it. Expected: it turns
 # by -1.5 rad to 1.5 rad from there, as in MuJoCo, and as Newton reads the MJCF. What happens: in the USD file, the
 # limits of the joint are -57.3° and 114.6°, while both of its frames are drawn at the same angle, so that it turns by
-# -1 to 2 rad. Newton's add_usd() reads it so, and it goes 0.5 rad beyond its stop. The file also has the attribute
+# -1 to 2 rad. Newton's add_usd() reads it so: it may go 0.5 rad beyond its stop. The file also has the attribute
 # mjc:ref, which moves the limits back where SolverMuJoCo.register_custom_attributes() was called before; but the limits
 # are attributes of USD's own physics, and its readers know no mjc:ref. Without a ref all is right.
-# For us: take ref out of the model and move its ranges and equalities by it, before it is converted to USD.
+# For us: take ref out of the model and move its ranges and equalities by it, before it is converted to USD, or call
+# register_custom_attributes() before add_usd().
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
 set -euo pipefail
