@@ -23,8 +23,8 @@ _FEWEST, _LEAST = 10, 100_000_000  # stamps, and ns, that tell their pace; no bu
 _EVEN = 1.5  # times the usual one: time until a reading that directly follows
 
 _ROUNDING = 1e-9  # rad
-_FEWEST_TURNABOUTS, _MOST_OF = 20, 0.1
-"""Turnabouts that show two motions, and their least share of the readings that they are among."""
+_FEWEST_TURNABOUTS, _AMONG = 20, 100
+"""More turnabouts than these within so many readings show two motions."""
 
 Late = tuple[int, float, float | None, float | None]  # ns, rad, rad/s, N·m or other units
 
@@ -54,12 +54,12 @@ class Alternation:
         if np.count_nonzero(steps[1:] * steps[:-1] < 0.0) <= _FEWEST_TURNABOUTS:
             return
         out, back = np.minimum(abs(steps[1:]), abs(steps[:-1])), steps[1:] + steps[:-1]
-        time = np.ptp(stamps) / SECOND / len(steps)
-        # A rotor can turn about within a quarter of the last angle, and an encoder by a step.
+        time = (stamps[2:] - stamps[:-2]) / (2.0 * SECOND)
+        # A rotor can turn about within a quarter of the last angle, and an encoder by a few steps.
         step = np.min(abs(back), initial=math.inf, where=abs(back) > _ROUNDING)
-        far = out > max(3.0 * step, 3.0 * FLOOR, 2.0 * acceleration * time * time)
+        far = out > np.maximum(max(3.5 * step, 3.0 * FLOOR), 2.0 * acceleration * time * time)
         rows = np.flatnonzero(far & (4.0 * abs(back) < out))
-        if len(rows) > _FEWEST_TURNABOUTS and len(rows) > _MOST_OF * np.ptp(rows):
+        if (rows[_FEWEST_TURNABOUTS:] - rows[:-_FEWEST_TURNABOUTS] < _AMONG).any():
             self._seen = True
 
     @property

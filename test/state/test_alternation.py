@@ -2,6 +2,7 @@
 """Recordings in which two motions are in turn, as of two drivers, and others that look alike."""
 
 import math
+from itertools import accumulate, cycle, islice
 from random import Random
 
 import pytest
@@ -23,13 +24,13 @@ def sent(rate, angle, *, begin=0.0) -> list[tuple[float, float]]:
     return [(begin + k / rate, angle(begin + k / rate)) for k in range(round(6.0 * rate))]
 
 
-def fault_of(*drivers):
-    """Return what is found in a recording of drivers, batch by batch."""
+def fault_of(*drivers, batch=500):
+    """Return what is found in a recording of drivers, in batches of so many messages."""
     readings = sorted(reading for driver in drivers for reading in driver)
     rotor_input = RotorInput(SETTINGS)
-    for first in range(0, len(readings), 500):
-        times = [100 * SECOND + round(t * SECOND) for t, _ in readings[first : first + 500]]
-        angles = [angle for _, angle in readings[first : first + 500]]
+    for first in range(0, len(readings), batch):
+        times = [100 * SECOND + round(t * SECOND) for t, _ in readings[first : first + batch]]
+        angles = [angle for _, angle in readings[first : first + batch]]
         messages = [
             rotor_bytes(t, position=[angle]) for t, angle in zip(times, angles, strict=True)
         ]
@@ -47,6 +48,14 @@ def fault_of(*drivers):
 ])  # fmt: skip
 def test_readings_of_two_drivers_are_said_to_alternate(second):
     assert fault_of(sent(200, turning), second) == Condition.TWO_MOTIONS()
+
+
+@pytest.mark.parametrize('batch', [100, 500, 2000])
+def test_two_drivers_are_found_however_a_recording_is_cut(batch):
+    """The second one sends for 0.1 s, and again for a moment at the end."""
+    second = sent(200, lambda t: turning(t) + 0.4, begin=0.0003)
+    readings = sent(200, turning), second[400:420], second[-4:]
+    assert fault_of(*readings, batch=batch) == Condition.TWO_MOTIONS()
 
 
 def test_one_driver_is_not_said_to_alternate():
@@ -67,3 +76,9 @@ def test_a_rotor_that_trembles_is_not_said_to_alternate(steps):
     limit = SETTINGS.max_rotor_acceleration
     vibrating = sent(200, lambda t: limit / (math.tau * 90.0) ** 2 * math.sin(math.tau * 90.0 * t))
     assert fault_of(vibrating) is None
+
+
+def test_a_rotor_that_trembles_is_not_said_to_alternate_where_the_rate_changes():
+    """It vibrates at 6317 rad/s²; its driver sends at 1000 Hz, and at times at 100 Hz."""
+    times = accumulate(islice(cycle([0.001] * 400 + [0.01] * 100), 3000))
+    assert fault_of([(t, 0.1 * math.sin(math.tau * 40.0 * t)) for t in times]) is None
