@@ -68,7 +68,7 @@ class DriverMonitor:
         if driver.publishers > 1:
             self.publishers.note(driver.number)
 
-    def _several(self, driver: DriverFacts, others: int = 0) -> Iterator[Fact]:
+    def _several(self, driver: DriverFacts, others: int) -> Iterator[Fact]:
         """Yield that several drivers send the joint, or can where messages have no numbers."""
         mixed = not others if driver.number is None else self.publishers.several
         if driver.publishers > 1 and mixed:
@@ -226,7 +226,9 @@ class EncoderMonitor(DriverMonitor):
             self._reported, self._compared = now, matched
             self.publishers.update()
 
-        facts = list(self._several(driver))
+        counts = {'lost': driver.lost, 'of others': encoder.of_others}
+        grown = self._growth({**encoder.rejected, **counts})
+        facts = list(self._several(driver, grown['of others']))
         if silent:
             facts.append(Condition.NO_ENCODER(age=age))
         elif not compared:
@@ -265,7 +267,6 @@ class EncoderMonitor(DriverMonitor):
             values['outside the interval (%)'] = 100.0 * fit.outside
         if facts and (apart := encoder.clocks_apart):
             facts.insert(0, apart)
-        grown = self._growth({**encoder.rejected, 'lost': driver.lost})
         facts += self._losses(grown, encoder.rejected, driver)
         faulty = any(fact.condition.level for fact in facts)
         if compared and not (faulty or encoder.direction_checked):

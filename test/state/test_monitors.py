@@ -120,6 +120,24 @@ def test_drivers_of_other_joints_are_no_fault(bench):
     assert lacking == Condition.OTHERS_ALONE(age=pytest.approx(2.0), count=2, joint='rotor')
 
 
+def test_two_drivers_on_the_topic_of_the_encoder_are_no_fault_if_one_sends_other_joints():
+    """As on /joint_states of a middleware that gives messages no numbers."""
+    gear = GearState(replace(SETTINGS, output_encoder_joint='output'))
+    driver = DriverFacts(publishers=2, number=None)
+    gear.encoder_monitor.last_input = START
+
+    def facts(*messages):
+        for data in messages:
+            with suppress(RejectedInputError):
+                gear.encoder(data, lambda: SECOND)
+        return gear.encoder_monitor.report(START, driver).facts
+
+    other, own = NO_JOINT, rotor_bytes(1, ['output'], [0.0])
+    assert Condition.SEVERAL_DRIVERS() in facts(own)
+    assert Condition.SEVERAL_DRIVERS() not in facts(own, other)
+    assert Condition.SEVERAL_DRIVERS() in facts(own)
+
+
 def test_a_rotor_that_is_elsewhere_when_a_driver_comes_is_said_once(bench):
     bench.feed(START + 0.5, good())
     bench.monitor.moved = -math.pi
