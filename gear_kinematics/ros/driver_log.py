@@ -16,7 +16,7 @@ from gear_kinematics.wire.nearest import among, listed
 from gear_kinematics.wire.topics import ROTOR_STATE
 
 _ELSEWHERE = 0.1  # rad, of a rotor that was turned by hand, or counted from another zero
-_AT_ONCE = 100_000_000  # ns, in which no driver ends and another one starts
+_AT_ONCE = 100_000_000  # ns, in which few drivers end and another one starts
 _CALM = 2  # updates without a change between drivers, after which a change is that of a restart
 _SEARCH = 3  # s, in which all publishers are found: they announce themselves as often
 _HOME = 'home it (gearkin home or ~/home)'
@@ -138,8 +138,9 @@ class DriverLog:
         silent, self._silent = self._silent, False
         self._forget_others()
         for name in samples.keys() & self._before.keys():
-            if (last := self._before[name]) and 0 <= samples[name].stamp - last.stamp < _AT_ONCE:
-                del self._before[name]  # no driver starts so soon: two send in turn
+            last, shared = self._before[name], self._inputs[name].of_others > 0
+            if shared and last and 0 <= samples[name].stamp - last.stamp < _AT_ONCE:
+                del self._before[name]  # the drivers of two joints send in turn
         returned = [name for name in samples if name in self._before]
         elsewhere = dict[str, float]()
         for name, sample in samples.items():

@@ -129,12 +129,31 @@ def test_a_new_driver_of_other_joints_says_nothing_of_the_rotor():
 
 
 def test_drivers_of_two_joints_that_send_in_turn_are_no_other_drivers():
-    """The rotor turns by 0.6 rad between two messages of its driver, as at 30 rad/s and 50 Hz."""
+    """The rotor turns by 0.6 rad between two messages of its driver, as at 30 rad/s and 50 Hz.
+
+    The other driver sends now and then, and its numbers are ahead.
+    """
     graph = Graph()
     for number in range(5):
+        for _ in range(3):
+            graph.driver_log.update(2, 0.01)
+        with pytest.raises(RejectedInputError):
+            graph.hear(0.99 + 0.02 * number, 5.0, names='wheel')
+        graph.driver_log.replaced()
         graph.hear(1.0 + 0.02 * number, 0.6 * number)
-        graph.driver_log.replaced()  # the other driver, whose first message was the node's first
     assert not graph.logged
+
+
+def test_a_driver_that_takes_over_at_once_with_another_zero_is_said():
+    """Its first position is near enough for the rotor to reach it at its greatest speed."""
+    graph = Graph()
+    for number in range(10):
+        if number == 5:
+            graph.driver_log.replaced()
+        graph.hear(1.0 + 0.01 * number, 5.0 if number < 5 else 4.0)
+    [(level, said)] = graph.logged
+    assert (level, 'the rotor is -57° from where it was' in said) == ('W', True)
+    assert graph.moved == {'': pytest.approx(-1.0)}
 
 
 def test_several_drivers_of_a_joint_are_one_warning():
