@@ -109,8 +109,12 @@ class DriverLog:
         faults, said = self._faults(), self._said
         mixed = Condition.SEVERAL_DRIVERS()
         faults |= {(name, mixed.condition, 0.0): mixed for name in several if publishers > 1}
-        for key in faults.keys() - said.keys():
-            self._log.warning(labelled(key[0], f'{faults[key]}. {faults[key].advice}'))
+        names = defaultdict[str, list[str]](list)  # of actuators, by what is new of them
+        for key, fact in faults.items():
+            if key not in said:
+                names[f'{fact}. {fact.advice}'].append(key[0])
+        for text, of in names.items():
+            self._log.warning(labelled(', '.join(of), text))
         self._said = faults | {key: fact for key, fact in said.items() if not key[2]}
         self._missing = 0 if publishers else self._missing + 1
         if self._silent:

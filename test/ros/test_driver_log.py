@@ -165,6 +165,18 @@ def test_several_drivers_of_a_joint_are_one_warning():
     assert graph.logged == [('W', f'{said}or give them different topics.')]
 
 
+def test_several_drivers_of_all_joints_of_an_arm_are_one_warning():
+    """As of an arm's driver that was started twice; later, another joint has two drivers, too."""
+    graph, arm = Graph(), ['shoulder', 'elbow', 'wrist']
+    inputs = {name: RotorInput(NodeParameters.load()) for name in arm}
+    graph.driver_log = DriverLog(graph, inputs)
+    for several in (arm[:2], arm[:2], arm):
+        graph.driver_log.update(2, 0.1, several)
+    said = 'several drivers send this joint. Stop all but one, '
+    begun = [text.partition(said)[0] for _, text in graph.logged]
+    assert begun == ['shoulder, elbow: ', 'wrist: ']
+
+
 def test_jump_of_the_encoder_is_one_warning():
     graph = Graph()
     for number in range(9):
