@@ -58,6 +58,7 @@ class Alternation:
         # A rotor can turn about within a quarter of the last angle, and an encoder by a few steps.
         step = np.min(abs(back), initial=math.inf, where=abs(back) > _ROUNDING)
         far = out > np.maximum(max(3.5 * step, 3.0 * FLOOR), 2.0 * acceleration * time * time)
+        far &= time > 0.0  # repeated stamps show no time
         rows = np.flatnonzero(far & (4.0 * abs(back) < out))
         if (rows[_FEWEST_TURNABOUTS:] - rows[:-_FEWEST_TURNABOUTS] < _AMONG).any():
             self._seen = True

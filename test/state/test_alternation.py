@@ -26,7 +26,7 @@ def sent(rate, angle, *, begin=0.0) -> list[tuple[float, float]]:
 
 def fault_of(*drivers, batch=500):
     """Return what is found in a recording of drivers, in batches of so many messages."""
-    readings = sorted(reading for driver in drivers for reading in driver)
+    readings = sorted((r for driver in drivers for r in driver), key=lambda reading: reading[0])
     rotor_input = RotorInput(SETTINGS)
     for first in range(0, len(readings), batch):
         times = [100 * SECOND + round(t * SECOND) for t, _ in readings[first : first + batch]]
@@ -82,3 +82,12 @@ def test_a_rotor_that_trembles_is_not_said_to_alternate_where_the_rate_changes()
     """It vibrates at 6317 rad/s²; its driver sends at 1000 Hz, and at times at 100 Hz."""
     times = accumulate(islice(cycle([0.001] * 400 + [0.01] * 100), 3000))
     assert fault_of([(t, 0.1 * math.sin(math.tau * 40.0 * t)) for t in times]) is None
+
+
+@pytest.mark.parametrize('rate', [20, 50])
+def test_a_rotor_that_trembles_is_not_said_to_alternate_where_stamps_are_whole_seconds(rate):
+    """It vibrates at 6000 rad/s², or at 600 rad/s, in four tenths of the rate."""
+    turning_rate = math.tau * 0.4 * rate
+    swing = min(6000.0 / turning_rate, 600.0) / turning_rate
+    readings = sent(rate, lambda t: swing * math.sin(turning_rate * t))
+    assert fault_of([(float(int(t)), angle) for t, angle in readings]) is None
