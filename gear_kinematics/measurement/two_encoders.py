@@ -31,6 +31,7 @@ on its springs turns, the more it follows its errors."""
 _BLOCKS = 23  # a prime number, since blocks of whole cycles of an error would be alike
 _MOST = 10_000  # samples that are used; with correlated errors, more would add nothing
 _MEANS = 115  # least number of means of successive samples whose scatter shows correlation
+_CHUNK = 4096  # points whose arrays fit into the processor's cache
 _ORDERS = 48, 4
 """Greatest numbers of cycles per turn of output and rotor. With amplitudes of 1/k they add up to a
 random walk, as pitch errors do. With 24 cycles, 3 of 200 simulated recordings over 340° were
@@ -268,11 +269,19 @@ def play_bounds(x: Array, radius: float) -> Array:
     Before x, the play is unknown. Clipping to one interval and then to another equals clipping to
     a single interval, so that all steps are composed in log2 n passes, without rounding.
     """
-    bounds, step = np.stack([x - radius, x + radius]), 1
-    while step < len(x):
-        bounds[:, step:] = np.clip(bounds[:, :-step], *bounds[:, step:])
-        step *= 2
-    return bounds
+    parts, before = [], np.array([[-np.inf], [np.inf]])
+    for start in range(0, len(x), _CHUNK):
+        part = x[start : start + _CHUNK]
+        low, high = part - radius, part + radius
+        step = 1
+        while step < len(part):
+            least, most = low[step:].copy(), high[step:].copy()
+            for bound in (low, high):  # as np.clip, which takes twice as long
+                bound[step:] = np.minimum(np.maximum(bound[:-step], least), most)
+            step *= 2
+        parts.append(np.clip(before, low, high))
+        before = parts[-1][:, -1:]
+    return np.concatenate(parts, axis=1)
 
 
 def _terms(rotor: Array, slope: float, sign: Array, speed: Array) -> list[Array]:

@@ -7,7 +7,7 @@ The columns of a term are in the units of the calibration file, which contains t
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import count, islice
+from itertools import count, islice, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -89,7 +89,9 @@ class Samples:
         changing = np.flatnonzero(steps)
         back = changing[1:][np.diff(np.sign(steps[changing])) != 0.0]
         points = np.union1d(starts, back)
-        self._motions = np.split(ideal[points], np.searchsorted(points, starts[1:]))
+        self._points = ideal[points]
+        edges = np.append(np.searchsorted(points, starts), len(points)).tolist()
+        self._motions = [slice(*ends) for ends in pairwise(edges) if ends[1] - ends[0] > 1]
         self._last_point = np.searchsorted(points, encoders.before, side='right') - 1
         self._stops: dict[float, tuple[Array, Array]] = {}
         moving = self.speed[np.abs(self.speed) > _MOVING * np.max(np.abs(self.speed))]
@@ -106,11 +108,18 @@ class Samples:
         are the same.
         """
         if radius not in self._stops:
-            plays = np.hstack([play_bounds(motion, radius) for motion in self._motions])
+            plays = np.array([self._points - radius, self._points + radius])  # of one point alone
+            for motion in self._motions:
+                plays[:, motion] = play_bounds(self._points[motion], radius)
             low, high = self._travel - radius, self._travel + radius
-            least, most = np.clip(plays[:, self._last_point], low, high)
-            middle = 0.5 * (least + most)
-            self._stops[radius] = self._travel - middle, most - least <= _SAME * radius
+            least = np.clip(plays[0][self._last_point], low, high)
+            middle, same = least.copy(), np.ones(len(least), bool)
+            # From some point of a motion on, both are the same.
+            (rest,) = np.nonzero((plays[0] != plays[1])[self._last_point])
+            most = np.clip(plays[1][self._last_point[rest]], low[rest], high[rest])
+            middle[rest] = 0.5 * (least[rest] + most)
+            same[rest] = most - least[rest] <= _SAME * radius
+            self._stops[radius] = self._travel - middle, same
         return self._stops[radius]
 
     def own_values(self, at: Array) -> Array:
