@@ -70,10 +70,13 @@ def find_step(readings: Array) -> Step:
     # In an unknown unit, the resolution does not show: try all of them, from coarse to fine.
     finest = max(recorded, _ROUNDING * float(np.max(np.spacing(np.abs(levels)))))
     coarser = math.ceil(math.log2(max(1.0, np.ptp(levels) / finest)))
-    best, nearest = 0.0, _FITS / _BETTER
+    best, nearest, tried = 0.0, _FITS / _BETTER, {0.0}
     for resolution in finest * 2.0 ** np.arange(coarser, -1, -1):
         divisor = common_divisor(levels, resolution)
-        step, distance = _fitted(levels, readings, divisor) if divisor else (0.0, math.inf)
+        if divisor in tried:
+            continue
+        tried.add(divisor)
+        step, distance = _fitted(levels, readings, divisor)
         # Any finer step fits as well; it must fit better.
         if distance < _BETTER * nearest:
             best, nearest = step, distance

@@ -95,17 +95,25 @@ class JoinedMessages:
         order = np.argsort(self._inputs[0], kind='stable')
         in_stamps, needed = (each[order] for each in self._inputs)
         first, last = (np.searchsorted(in_stamps, stamps, side) for side in ('left', 'right'))
-        known = np.vstack([needed, self._needed])[first]  # one more, for those behind all inputs
-        rows = np.flatnonzero((last - first != 1) | (known != having).any(axis=1))
-        waiting = rows[(first == last)[rows] & (rows >= waited)]
+        needed = np.vstack([needed, self._needed])  # one more, for those behind all inputs
+        rows = np.flatnonzero((last - first != 1) | (needed[first] != having).any(axis=1))
+        first, last, stamps, having = (each[rows] for each in (first, last, stamps, having))
+        waiting = (first == last) & (rows >= waited)
         self._waiting = stamps[waiting], having[waiting]
-        for row in rows.tolist():
-            wanted = needed[first[row] : last[row]]
-            more = wanted[(wanted >= having[row]).all(axis=1)]
-            if len(more) and (more != having[row]).any(axis=1).all():
-                for k in np.flatnonzero(more[0] > having[row]).tolist():
-                    fault = k, FindingCause.JOINT_LEFT_OUT, '', ''
-                    self._faults[fault].add(stamps[row : row + 1])
+        own = _first_alike(needed, first, last, having, np.equal)
+        larger = _first_alike(needed, first, last, having, np.greater_equal)
+        lacking = (needed[larger] > having) & ((own == last) & (larger < last))[:, np.newaxis]
+        for k in np.flatnonzero(lacking.any(axis=0)).tolist():
+            fault = k, FindingCause.JOINT_LEFT_OUT, '', ''
+            self._faults[fault].add(stamps[lacking[:, k]])
+
+
+def _first_alike(inputs: Array, first: Array, last: Array, sets: Array, alike: np.ufunc) -> Array:
+    """Find the first of the inputs from `first` to `last`, (n,), whose set is alike, or `last`."""
+    at = first.copy()
+    while (other := (at < last) & ~alike(inputs[at], sets).all(axis=1)).any():
+        at += other
+    return at
 
 
 class ArmValidator:
