@@ -7,6 +7,7 @@ from dataclasses import replace
 from itertools import compress
 
 import jsonschema
+import numpy as np
 import pytest
 from arm_recordings import (
     OUTPUT,
@@ -22,16 +23,18 @@ from arm_recordings import (
 )
 from blocked_bags import BAGS, gearkin_here, refusal
 from calibrations import calibration
+from live import rotor_bytes
 from shipped_bags import JOINT_STATE, write_bag
 from validating import feed
 
 from gear_kinematics.parameters.arm import load_actuators
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation import Task, explain
-from gear_kinematics.validation.arm import ArmValidator
+from gear_kinematics.validation.arm import ArmValidator, JoinedMessages
 from gear_kinematics.validation.causes import FindingCause
 from gear_kinematics.validation.validate_bag import of_arm, validate, validate_bag
 from gear_kinematics.validation.validator import Validator
+from gear_kinematics.wire.batches import JointStateBatch
 
 PAIR, WRIST, ALL = 40, 41, 42
 """Numbers of the messages of two drivers with the same stamp, and of one with all joints."""
@@ -64,6 +67,34 @@ def test_messages_of_all_joints_and_of_several_drivers_pass_in_batches_of_any_si
 def test_a_recording_may_begin_with_outputs_of_an_input_that_was_not_recorded(tmp_path):
     rest = judged(tmp_path, recording()[1:], 1)
     assert rest.passed, explain(rest)
+
+
+@pytest.mark.parametrize(
+    ('batches', 'lacking'),
+    [
+        # Outputs, by stamps and numbers of joints; inputs, by stamps and numbers of valid rotors.
+        ([([(5, 70)], [(5, 70)])], 0),
+        ([([(5, 69)], [(5, 70)])], 1),
+        ([([(5, 69)], [(5, 69)])], 0),
+        ([([(5, 69), (5, 70)], [(5, 70), (5, 69)])], 0),
+        ([([(5, 68), (5, 70)], [(5, 70), (5, 68), (5, 67)])], 0),
+        ([([(5, 69), (6, 69)], []), ([], [(5, 70), (6, 70)])], 2),
+        ([([(5, 69)], []), ([], [(4, 70)]), ([], [(5, 70)])], 0),
+    ],
+)
+def test_a_joint_that_an_arm_of_seventy_leaves_out_is_found_if_no_input_lacks_it(batches, lacking):
+    names = [f'j{k}' for k in range(70)]
+    joints = {name.encode(): k for k, name in enumerate(names)}
+    joined = JoinedMessages(joints, range(70), 70, others=False)
+    for outputs, given in batches:
+        data = [rotor_bytes(t, names[:n], [0.0] * n, [], []) for t, n in outputs]
+        stamps = np.array([t for t, _ in given], np.int64)
+        valid = np.arange(70) < np.array([n for _, n in given]).reshape(-1, 1)
+        joined.take(JointStateBatch(data), stamps, valid)
+    found = [each for k in range(70) for each in joined.findings(OUTPUT, k)]
+    assert [(each.cause, each.count) for each in found] == (
+        [(FindingCause.JOINT_LEFT_OUT, lacking)] * bool(lacking)
+    )
 
 
 @pytest.mark.parametrize(('name', 'absolute'), [('elbow', False), ('wrist', True)])
