@@ -22,6 +22,7 @@ from gear_kinematics.validation.fields import (
     Occurrences,
     SeriesRecorder,
     Window,
+    as_slice,
 )
 from gear_kinematics.validation.recorder import NO_INPUT, Missing, RecordedInputs
 from gear_kinematics.validation.report import Finding, TopicReport
@@ -251,7 +252,7 @@ class OutputTopic:
         self.matcher.extra.add(stamps[given_up[~lacking]])
         rows, at = usable[found], index[found]
         self._adopt_fields(rows, at, window)
-        samples = window.take(at)
+        samples = window.take(as_slice(at))
         self._changes.move(samples)
         fields = self._compare(rows, samples)
         angle = rotor_angle(samples)
