@@ -122,16 +122,14 @@ class Matcher:
 
     def _look_up(self, stamp: int, received: int, window: Window, resets: Array) -> int:
         alike = np.flatnonzero(_alike(stamp, received, window) & ~self.matched)
-        later = [_of_later_clock(stamp, received, row, window, resets) for row in alike.tolist()]
-        found = alike[~np.array(later, bool)]
-        if not len(found):
-            return -1
+        ahead = int(alike.searchsorted(self._next))
         # If a stamp occurs again after a restart, take the next sample that has it.
-        ahead = found[found >= self._next]
-        index = int(ahead[0] if len(ahead) else found[-1])
-        self.matched[index] = True
-        self._next = max(self._next, index + 1)
-        return index
+        for index in (*alike[ahead:].tolist(), *alike[:ahead][::-1].tolist()):
+            if not _of_later_clock(stamp, received, index, window, resets):
+                self.matched[index] = True
+                self._next = max(self._next, index + 1)
+                return int(index)
+        return -1
 
 
 @once_for_joints
