@@ -79,8 +79,6 @@ def _stray(ramps: Loading) -> NDArray[np.bool_]:
 def _saturated(ramps: Loading) -> NDArray[np.bool_]:
     """Find rows at the greatest torque of either sign in which the angle moves there and back."""
     found = np.zeros(len(ramps.torque), bool)
-    if len(np.unique(ramps.torque)) < _FEWEST_LEVELS:
-        return found
     least = _CAME_BACK * float(np.ptp(ramps.angle))
     for sign, greatest in ((1.0, np.max(ramps.torque)), (-1.0, np.min(ramps.torque))):
         edges = np.flatnonzero(np.diff(ramps.torque == greatest, prepend=False, append=False))
@@ -88,7 +86,8 @@ def _saturated(ramps: Loading) -> NDArray[np.bool_]:
             angle = sign * ramps.angle[begin:end]
             if np.max(angle) - max(angle[0], angle[-1]) > least:
                 found[begin:end] = True
-    return found
+    few = found.any() and len(np.unique(ramps.torque)) < _FEWEST_LEVELS
+    return np.zeros_like(found) if few else found
 
 
 def _slips(ramps: Loading) -> list[tuple[float, int]]:
