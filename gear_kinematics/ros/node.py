@@ -265,13 +265,16 @@ class GearStatePublisher(PublishingNode):
         return int(self.get_clock().now().nanoseconds)
 
     def _warn_of(self, topic: str, name: str, rejection: RejectedInputError) -> None:
-        state, of_rotor = self._actuators[name].state, topic == topics.ROTOR_STATE
-        source = state.input if of_rotor else state.output_encoder
+        state, heard = self._actuators[name].state, self._connections
+        source, monitor, driver = (
+            (state.input, state.monitor, heard.rotor)
+            if topic == topics.ROTOR_STATE
+            else (state.output_encoder, state.encoder_monitor, heard.encoder)
+        )
         if str(rejection) == Rejection.JOINT_MISSING not in source.rejected:
             return  # a message of another driver on a shared topic, and no input
-        monitor = state.monitor if of_rotor else state.encoder_monitor
         monitor.last_input = time.monotonic()
-        monitor.note_publisher(self._connections.rotor if of_rotor else self._connections.encoder)
+        monitor.note_publisher(driver)
         of, detail = f' of {name}' if name else '', rejection.detail
         if str(rejection) == Rejection.JOINT_MISSING:
             detail += f'; set {monitor.joint}'
