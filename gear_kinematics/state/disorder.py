@@ -8,7 +8,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.state.reach import FLOOR
 from gear_kinematics.state.rotor_samples import RotorSamples
 from gear_kinematics.state.statuses import Condition, Fact
@@ -105,8 +104,7 @@ class Disorder:
         The limit of the rotor's acceleration is in rad/s².
         """
         stamps, received = samples.stamp, samples.received
-        positions = TURN * samples.turns + samples.angle
-        self._alternation.note(stamps, positions, acceleration)
+        self._alternation.note(stamps, samples.rotor_angle, acceleration)
         time = np.ptp(received) if len(received) >= _FEWEST else 0
         if time >= _LEAST and (pace := np.ptp(stamps) / time) > FASTEST:
             usual, clock = (float(np.median(np.diff(each))) for each in (stamps, received))

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gear_kinematics.kinematics import RotorSample
+from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.wire.batches import Array
 
 _COLUMNS = np.dtype('i8, f8, f8, f8, f8, i8, i8, i8, ?')
@@ -28,6 +29,11 @@ class RotorSamples(NamedTuple):
     segment: Array  # rises where the turn count restarts, is uncertain or is referenced
     referenced: Array  # whether the rotor's turns are known
     rejected: Array  # (m,), ns: the stamps of rejected messages that have one
+
+    @property
+    def rotor_angle(self) -> Array:
+        """The rotor angle φ2, rad."""
+        return TURN * self.turns + self.angle
 
     @classmethod
     def of(cls, rows: Sequence[Row], rejected: ArrayLike = ()) -> Self:

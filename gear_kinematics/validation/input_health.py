@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.rotor_samples import RotorSamples
 from gear_kinematics.state.statuses import Condition, Fact
@@ -40,7 +39,7 @@ class InputHealth:
 
     def update(self, samples: RotorSamples) -> None:
         """Add the next samples."""
-        stamp, rotor_angle = samples.stamp, TURN * samples.turns + samples.angle
+        stamp, rotor_angle = samples.stamp, samples.rotor_angle
         if not len(stamp):
             return
         if self._first_stamp is None:
