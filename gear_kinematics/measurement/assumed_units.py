@@ -10,7 +10,7 @@ from gear_kinematics.measurement.clocks import FASTEST, MOST
 from gear_kinematics.measurement.columns import Column
 from gear_kinematics.measurement.encoder_range import count_wraps, other_unit
 from gear_kinematics.measurement.encoder_step import Step
-from gear_kinematics.measurement.names import meaning, usual_unit
+from gear_kinematics.measurement.names import ANGLE_UNITS, meaning, usual_unit
 from gear_kinematics.measurement.recording import Array
 from gear_kinematics.measurement.two_encoders import output_by_rotor
 from gear_kinematics.wire.cdr import SECOND
@@ -35,7 +35,12 @@ _FEWEST, _ROWS = 10, 10_000  # least number of samples of a part; greatest numbe
 
 
 def against(
-    column: Column, values: Array, stamp: Array | None, step: Step | None, remark: str
+    column: Column,
+    values: Array,
+    stamp: Array | None,
+    step: Step | None,
+    other: str,
+    remark: str,
 ) -> tuple[str, str] | None:
     """Return what shows that numbers without a unit have another, and a likely one.
 
@@ -44,15 +49,16 @@ def against(
         values: (n,), rad or N·m.
         stamp: (n,), ns; None if times were not recorded.
         step: of the encoder; None for a torque.
+        other: unit of the other angle; empty if that is unknown, too.
         remark: titles and comments above the names.
     """
-    if column.unit and not column.borrowed:
+    if column.unit:
         return None
     numbers = np.round(values / column.scale, 6)  # as they are in the table
     moved, whole = np.abs(np.diff(values)), bool(np.all(numbers == np.round(numbers)))
     says = meaning(column.name)
     said = (_ANGLES if step else _TORQUES).search(remark)
-    if said and not column.borrowed and says.role:
+    if said and says.role:
         unit = usual_unit(said[0])
         return f'has no unit, and a line above the names says {unit}', unit
     if not step:
@@ -62,15 +68,13 @@ def against(
         if not (known or _COMPOUND.search(column.name)):
             return 'does not say that it is a torque', 'N·m'
         return ('is raw', 'N·m') if 'raw' in says.words else None
-    if not (says.role or column.unit):
+    if not says.role:
         likely = 'rad' if np.ptp(numbers) < TURN else 'deg'
         return 'does not say that it is an angle', 'counts' if whole else likely
     if whole and np.ptp(values) > TURN:
         return 'has whole numbers, such as counts', 'counts'
     if 'raw' in says.words:
         return 'is raw', 'rev'
-    if column.borrowed and column.unit != 'rad':
-        return None
     if _HALF_TURN < np.max(moved, initial=0.0) <= np.ptp(values) <= 2.0 * _HALF_TURN:
         return 'has turns of 360, such as degrees', 'deg'
     if unit := other_unit(values, step).partition(':')[0]:
@@ -79,6 +83,9 @@ def against(
         seconds = np.maximum(np.diff(stamp)[moving], 1) / SECOND
         if (speed := np.quantile(moved[moving] / seconds, MOST)) > FASTEST:
             return f'has speeds of {speed:.3g} a second, as in degrees', 'deg'
+    if other not in {'', 'rad'}:
+        likely = other if other in ANGLE_UNITS else 'rad'
+        return f'has no unit, and that of the other angle is {other}', likely
     return None
 
 

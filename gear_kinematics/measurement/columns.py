@@ -74,7 +74,6 @@ class Column(NamedTuple):
     unit: str  # empty where nothing is known
     on_rotor: bool
     on_output: bool  # whether its name, or the user, says so
-    borrowed: bool = False  # whether its unit is that of the other angle
 
 
 class ColumnsError(ValueError):
@@ -160,12 +159,10 @@ def find_columns(
         given = replace(given, on_rotor=True)
     for name in filter(_REVOLUTIONS.search, angles):
         units[name] = units[name] or 'rev'
-    moteus = {name.lower() for name in header} >= _MOTEUS
-    common = next(filter(None, map(units.get, angles)), 'rev' if moteus else '')
+    if {name.lower() for name in header} >= _MOTEUS:
+        units |= {name: units[name] or 'rev' for name in angles}
     return {
-        role: _column(
-            side if role == 'angle' else role, found[role], units[found[role]], given, common
-        )
+        role: _column(side if role == 'angle' else role, found[role], units[found[role]], given)
         for role in ROLES
         if role in found
     }
@@ -229,16 +226,15 @@ def likeliest(header: Sequence[str]) -> dict[str, str]:
     return found
 
 
-def _column(role: str, name: str, unit: str, given: Sources, common: str) -> Column:
-    """Return a column with its unit, which is that of the other angle, `common`, if unknown."""
+def _column(role: str, name: str, unit: str, given: Sources) -> Column:
+    """Return a column with its unit, which is empty where nothing is known."""
     says, units = meaning(name), ROLES[role]
-    own = unit = unit or says.unknown
+    unit = unit or says.unknown
     if role in {'time', 'output_time'} and unit == 'counts':  # ticks, whose size sampling shows
         unit = ''
     such = f'{name} [{next(iter(units))}]'
     if role in ANGULAR:
-        own = given.unit or unit
-        unit = own or common
+        unit = given.unit or unit
     if unit and unit not in units:
         known = ', '.join(units)
         letter = role in ANGULAR and unit == says.unknown  # as of pos_a
@@ -259,14 +255,12 @@ def _column(role: str, name: str, unit: str, given: Sources, common: str) -> Col
     # The current of a motor says a torque of either side.
     on_rotor = given.on_rotor or (says.on_rotor and 'current' not in says.words)
     on_rotor = role == 'rotor' or (on_rotor and not on_output)
-    borrowed = role in ANGULAR and bool(unit and not own)
-    return Column(name, scale, unit, on_rotor, on_output, borrowed)
+    return Column(name, scale, unit, on_rotor, on_output)
 
 
 def described(role: str, column: Column) -> str:
     """Describe a column by its unit, and by the side of the gear where it was measured."""
-    unit = column.unit + ', assumed' * column.borrowed
-    unit = unit or {'torque': 'N·m, assumed'}.get(role, 'rad, assumed')
+    unit = column.unit or {'torque': 'N·m, assumed'}.get(role, 'rad, assumed')
     side = ' of the rotor' if column.on_rotor else ' at the output'
     side = side if role in {'angle', 'torque'} else ''
     return f'{role}{side} [{unit}] from {column.name}'

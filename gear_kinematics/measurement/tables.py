@@ -288,7 +288,8 @@ class _Samples:
 
     def steps(self) -> dict[str, Step]:
         """Return the steps of encoders by role; ValueError if an assumed unit is impossible."""
-        steps = {}
+        angles = [column.unit for role, column in self.found.items() if role != 'torque']
+        steps, other = dict[str, Step](), next(filter(None, angles), '')
         for role, column in self.found.items():
             if role != 'torque':
                 of_output = role == 'output'
@@ -296,10 +297,10 @@ class _Samples:
                 steps[role] = Step(TURN / known, seen=False) if known else self._shown[role]
             values, stamp = self.series[role].values[role], self.series[role].stamp
             timed = stamp if self.timed else None
-            if found := against(column, values, timed, steps.get(role), self._remark):
+            if found := against(column, values, timed, steps.get(role), other, self._remark):
                 cause, unit = found
-                of_all = role != 'torque' and not column.borrowed
-                example = {'unit': unit} if of_all else {role: f'{column.name} [{unit}]'}
+                alone = role == 'torque' or other
+                example = {role: f'{column.name} [{unit}]'} if alone else {'unit': unit}
                 raise ColumnsError(f'{column.name} {cause}', 'its unit', **example)
         return steps
 
@@ -338,9 +339,7 @@ class _Samples:
         steps_of_both = steps['rotor'], steps['output']
         both = Encoders(motion, self.timed, before, share, output[inside], *steps_of_both)
         of_output, of_rotor = self.found['output'], self.found['rotor']
-        if of_output.unit == of_rotor.unit == '' or (
-            of_output.borrowed and of_rotor.unit == 'rad'
-        ):
+        if not of_output.unit and of_rotor.unit in {'', 'rad'}:
             turned = self.unwrapped('rotor', period) if self._sources.as_recorded else rotor
             if differ_as_degrees(both.at_measured(turned), both.measured):
                 names = f'{of_output.name} differs from {of_rotor.name}'

@@ -883,6 +883,14 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
           for name in ('load', 'Iq')),
         ('arm_moves_freely', r'the output turns by 100° under torque: .* \(--on-rotor\)'),
         ('degrees_without_unit', 'speeds of .* as in degrees: .* --angle-unit'),
+        *((lambda t, r, o, names=names, scales=scales: written(
+            [t, r * scales[0], o * scales[1]], f'time,{names}', '{:.6f}'),
+           f'{lone} has no unit, and that of the other angle is {unit}: .* .{lone} .{unit}.')
+          for names, lone, unit, scales in (
+              ('rotor_deg,output', 'output', 'deg', (180.0 / math.pi, 1.0)),
+              ('rotor,output_deg', 'rotor', 'deg', (1.0, 180.0 / math.pi)),
+              ('rotor,output_rev', 'rotor', 'rev', (1.0, 1.0 / math.tau)),
+          )),
         ('vesc_tool', 'not say .* an angle: .* --angle-unit'),
     ],
 )  # fmt: skip
