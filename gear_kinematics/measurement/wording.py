@@ -11,7 +11,7 @@ from gear_kinematics.statistics.uncertainty import COVERAGE, Estimate
 ARC_MINUTES = 60.0 * 180.0 / math.pi  # per radian; catalogues give lost motion in arc minutes
 PERCENT = f'{100.0 * COVERAGE:g} %'  # probability with which an interval contains the value
 _UNITS = {'si': 1.0, 'arcmin': ARC_MINUTES, 'deg': math.degrees(1.0), 'ms': 1e3}
-_EXACT = 1e-5  # relative uncertainty below which values are rounded to six digits
+_EXACT = 1e-5  # relative uncertainty below which it is written with an exponent
 _TINY = 1e-9  # uncertainty below which small values are written with an exponent
 
 
@@ -26,7 +26,8 @@ def plus_minus(estimate: Estimate | None, scale: float = 1.0) -> str:
         return f'{number(value, 4)} ± 0'
     spread *= scale
     if spread < max(abs(value) * _EXACT, _TINY):
-        return f'{number(value, 6)} ± {number(spread, 2)}'
+        places = math.floor(math.log10(abs(value) or spread)) - math.floor(math.log10(spread))
+        return f'{number(value, max(6, places + 2))} ± {number(spread, 2)}'
     decimals = max(0, 1 - math.floor(math.log10(spread)))
     # Adding 0.0 takes the sign from a zero.
     return f'{round(value, decimals) + 0.0:.{decimals}f} ± {spread:.{decimals}f}'
