@@ -2,7 +2,7 @@
 """The encoder at the output shaft, and the transmission error during operation."""
 
 import math
-from collections import Counter, deque
+from collections import deque
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -12,6 +12,7 @@ from gear_kinematics.correction.transmission_error import SAMPLES, ErrorSample, 
 from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.joint_counts import JointCounts
 from gear_kinematics.state.slip import SlipWatch
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.state.turn_reference import TurnReference
@@ -21,7 +22,6 @@ from gear_kinematics.wire.joint_reader import (
     JointMessage,
     JointReader,
     RejectedInputError,
-    Rejection,
 )
 
 _APART = SECOND // 10  # ns, between the newest stamps of both encoders: few transports take longer
@@ -32,13 +32,11 @@ def measured_angle(parameters: NodeParameters, position: Any) -> Any:
     return parameters.output_encoder_direction * (position - parameters.output_encoder_zero)
 
 
-class OutputEncoder:
+class OutputEncoder(JointCounts):
     """Compares the angles of the output's encoder with ideal ones, also to reference the turns."""
 
     def __init__(self, parameters: NodeParameters, reference: TurnReference | None = None) -> None:
-        self.received = 0
-        self.rejected: Counter[str] = Counter()
-        self.of_others = 0  # messages of other joints only, as of a shared /joint_states
+        super().__init__()
         self.comparison = TransmissionError()
         """Counts the measured angles that were compared and, by cause, those that were not."""
         self._turn_reference = reference
@@ -87,13 +85,11 @@ class OutputEncoder:
         try:
             stamp, _, position, *_ = self._reader.read(data)
         except RejectedInputError as rejection:
-            self.rejected[str(rejection)] += 1
-            if self._found:
-                self._leave_others()
+            self.reject(rejection, found=self._found)
             raise
         if not self._found:
             self._found = True
-            self._leave_others()
+            self.leave_others()
         stamp = stamp or now()
         apart = abs(stamp - latest[0]) if latest else 0  # its stamp, by the fastest way
         if latest and latest is not self._latest:  # the old stamp of a silent rotor tells nothing
@@ -104,10 +100,6 @@ class OutputEncoder:
             return ()
         angle = measured_angle(self.parameters, position)
         return self._note(self.comparison.add_measured(stamp, angle))
-
-    def _leave_others(self) -> None:
-        """Count messages without the joint, which is in others, as no fault."""
-        self.of_others += self.rejected.pop(Rejection.JOINT_MISSING, 0)
 
     def follow(
         self, sample: RotorSample, correction: Correction | None = None

@@ -2,7 +2,6 @@
 """Reads the rotor's position from serialised rotor_state messages, and rejects bad ones."""
 
 import math
-from collections import Counter
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import partial
@@ -15,6 +14,7 @@ from gear_kinematics.parameters import PARAMETERS, NodeParameters
 from gear_kinematics.state.belief import BELIEVED, Belief
 from gear_kinematics.state.disorder import Disorder, Late, order
 from gear_kinematics.state.effort_field import EffortField
+from gear_kinematics.state.joint_counts import JointCounts
 from gear_kinematics.state.plausibility import Plausibility
 from gear_kinematics.state.rotor_samples import RotorSamples, Row
 from gear_kinematics.state.statuses import Condition, Fact
@@ -37,16 +37,13 @@ _ENCODERS -= {'rotor_effort_factor'}
 """Parameters on which the turns depend that an absolute encoder at the output has found."""
 
 
-class RotorInput:
+class RotorInput(JointCounts):
     """Processes rotor_state messages and counts what is wrong with them."""
 
     def __init__(self, parameters: NodeParameters) -> None:
-        self.received = 0
-        self.rejected: Counter[str] = Counter()
-        self.of_others = 0  # messages of other joints only, as of a shared /joint_states
+        super().__init__()
         self.duplicates = self.zero_stamps = self.resets = 0
         self.unnormalised_stamps = 0  # stamps with a second or more of nanoseconds, normalised
-        self.missing_joint = ''  # which joints the first message without the rotor's has
         self.last: RotorSample | None = None
         self.zero = split_turns(parameters.rotor_zero)  # zero in use; a reference can replace it
         self.origin: Fact | None = None  # source of the turn count: homing or the output's encoder
@@ -136,11 +133,7 @@ class RotorInput:
             self.unnormalised_stamps += unnormalised
             return self._take(stamp or self._clock(now), position, velocity, effort)
         except RejectedInputError as rejection:
-            self.rejected[str(rejection)] += 1
-            if not self.missing_joint and str(rejection) == Rejection.JOINT_MISSING:
-                self.missing_joint = rejection.detail
-            if self.last:
-                self._leave_others()
+            self.reject(rejection, found=self.last is not None)
             raise
 
     def home(self, rotor_angle: float) -> float:
@@ -198,7 +191,7 @@ class RotorInput:
             stamps, values, clock = stamps[rows], values[rows], clock[rows]
         self.missing_joint = self.missing_joint or states.missing_joint
         if self.last or len(rows):
-            self._leave_others()
+            self.leave_others()
         self.unnormalised_stamps += int(np.count_nonzero(states.unnormalised & usable))
         values[np.abs(values) > GREATEST] = np.nan
         parameters, last = self._parameters, self.last
@@ -212,11 +205,6 @@ class RotorInput:
         self.disorder.compare(samples, self.turns.max_acceleration)
         self.effort_field.note(samples.effort)
         return samples
-
-    def _leave_others(self) -> None:
-        """Count messages without the joint, which is in others, as no fault."""
-        self.of_others += self.rejected.pop(Rejection.JOINT_MISSING, 0)
-        self.missing_joint = ''
 
     def _all_at_once(
         self, rows: Array, stamps: Array, values: Array, received: Array, rejected: Array
@@ -280,7 +268,7 @@ class RotorInput:
     ) -> RotorSample:
         last = self.last
         if last is None:
-            self._leave_others()
+            self.leave_others()
         elif stamp <= last[0]:  # its stamp, by the fastest way
             self._check_order(last.stamp, (stamp, position, velocity, effort))
         if self.disorder.readings and last:
