@@ -37,6 +37,7 @@ class Actuator:
         if parameters.preload:
             self.state.preload_monitor = PreloadMonitor(parameters)
         self.referenced: bool | None = None  # whether turns are known, as last published
+        self.last: RotorSample | None = None  # the latest sample
         self._seen = 0.0  # time of the last valid input; s of a steady clock
         self._speed = 0.0  # of the rotor, rad/s, by its positions
         self._due = 0  # the stamp of the next measurement, ns
@@ -50,7 +51,7 @@ class Actuator:
         """
         state = self.state
         state.monitor.last_input = self._seen = now
-        sample = state.sample
+        self.last = sample = state.sample
         if 0 < self._due - sample[0] <= _SPEED_SPAN:  # its stamp, by the fastest way
             return
         turns = state.input.turns
@@ -94,7 +95,7 @@ class Actuator:
         except RuntimeError as error:  # after the joint was changed, too
             none = f'no valid {topics.ROTOR_STATE} has come yet'
             raise RefusedError(none, '; check the driver') from error
-        if self.state.monitor.publishers.several:  # whichever was right, the zero may not be
+        if self.state.monitor.several:  # whichever was right, the zero may not be
             raise RefusedError('several drivers send its joint', '; stop all but one')
         speed = abs(ratio.output_rate(self._present_speed))
         age, span = time.monotonic() - self._seen, _SPEED_SPAN / SECOND

@@ -16,8 +16,6 @@ from gear_kinematics.wire.nearest import among, listed
 from gear_kinematics.wire.topics import ROTOR_STATE
 
 _ELSEWHERE = 0.1  # rad, of a rotor that was turned by hand, or counted from another zero
-_AT_ONCE = 100_000_000  # ns, in which few drivers end and another one starts
-_CALM = 2  # updates without a change between drivers, after which a change is that of a restart
 _SEARCH = 3  # s, in which all publishers are found: they announce themselves as often
 _HOME = 'home it (gearkin home or ~/home)'
 _RESTARTED = f'check whether the drive restarted; then {_HOME}'
@@ -42,30 +40,19 @@ class DriverLog:
         self._missing = 0  # updates since there was a publisher
         self._said = self._faults()
         self._silent = False  # whether it was logged that the driver is missing or silent
-        self._calm = _CALM  # updates since one driver followed another
         self._before: dict[str, RotorSample | None] = {}
-        """The last samples, if any, of actuators that were silent or await another driver."""
-        self._others: dict[str, int] = {}
-        """Messages of others before another driver came, by the actuators that were not silent."""
+        """The last samples, if any, of actuators that were silent or have another driver."""
+        self._replaced = set[str]()  # those of them that were not silent
 
-    def replaced(self) -> None:
-        """Compare the next position, of another driver, with the last; not if two take turns."""
-        if self._calm >= _CALM:
-            last = {name: each for name, each in self._inputs.items() if each.last}
-            self._others = {n: e.of_others for n, e in last.items() if n not in self._before}
-            self._before |= {name: each.last for name, each in last.items()}
-        self._calm = 0
-
-    def _forget_others(self) -> None:
-        """Compare no position of an actuator whose joint the other driver does not send."""
-        for name, others in self._others.items():
-            if self._inputs[name].of_others > others:
-                del self._before[name]
-        self._others = {}
+    def replaced(self, name: str, last: RotorSample | None) -> None:
+        """Compare the next position of an actuator, whose driver is another, with the last."""
+        if last and name not in self._before:
+            self._before[name] = last
+            self._replaced.add(name)
 
     @property
     def awaited(self) -> bool:
-        """Whether an actuator was silent or awaits another driver, so that `heard` is wanted."""
+        """Whether an actuator was silent or has another driver, so that `heard` is wanted."""
         return self._silent or bool(self._before)
 
     def _warn_of_missing(self) -> None:
@@ -102,13 +89,11 @@ class DriverLog:
     def update(self, publishers: int, silence: float, several: Collection[str] = ()) -> None:
         """Take, once a second, the number of publishers and the time since the last message, s.
 
-        The joints of some actuators are sent by several of the publishers.
+        `several` drivers send the joints of some actuators, or of some encoders at the output.
         """
-        self._calm += 1
-        self._forget_others()
         faults, said = self._faults(), self._said
         mixed = Condition.SEVERAL_DRIVERS()
-        faults |= {(name, mixed.condition, 0.0): mixed for name in several if publishers > 1}
+        faults |= {(name, mixed.condition, 0.0): mixed for name in several}
         names = defaultdict[str, list[str]](list)  # of actuators, by what is new of them
         for key, fact in faults.items():
             if key not in said:
@@ -140,11 +125,6 @@ class DriverLog:
         Returns how far rotors are from where they were, rad, if that is far.
         """
         silent, self._silent = self._silent, False
-        self._forget_others()
-        for name in samples.keys() & self._before.keys():
-            last, shared = self._before[name], self._inputs[name].of_others > 0
-            if shared and last and 0 <= samples[name].stamp - last.stamp < _AT_ONCE:
-                del self._before[name]  # the drivers of two joints send in turn
         returned = [name for name in samples if name in self._before]
         elsewhere = dict[str, float]()
         for name, sample in samples.items():
@@ -158,11 +138,12 @@ class DriverLog:
             at = '; '.join(
                 labelled(n, turned.format(math.degrees(a))) for n, a in elsewhere.items()
             )
-            how, advice = 'comes from another driver', _ANOTHER
-            if self._calm:
-                how, advice = 'is heard again', _RESTARTED
+            how, advice = 'is heard again', _RESTARTED
+            if self._replaced & elsewhere.keys():
+                how, advice = 'comes from another driver', _ANOTHER
             self._log.warning(f'{self._topic} {how}, but {at}: {advice}')
         elif silent or returned:
             which = '' if silent else ', '.join(returned)
             self._log.info(labelled(which, f'{self._topic} is heard now'))
+        self._replaced -= samples.keys()
         return elsewhere

@@ -30,16 +30,11 @@ class DriverInput:
         topic: str,
         on_message: Callable[[bytes], None],
         facts: DriverFacts,
-        on_replaced: Callable[[], None] = lambda: None,
     ) -> None:
-        """Subscribe; `on_message` gets the bytes of each message, and `facts` are kept.
-
-        `on_replaced` is called before the first message of another publisher.
-        """
+        """Subscribe; `on_message` gets the bytes of each message, and `facts` are kept."""
         self._node = node
         self._topic = topic
-        self._on_message, self._on_replaced = on_message, on_replaced
-        self._facts = facts
+        self._on_message, self._facts = on_message, facts
         self._subscribe()
 
     def _subscribe(self) -> None:
@@ -70,8 +65,7 @@ class DriverInput:
         """Take a message, with its number where the middleware and this rclpy count."""
         message, about = with_info(message, about)
         self._facts.number = number = about and about['publication_sequence_number']
-        if self._losses.note(number):
-            self._on_replaced()
+        self._losses.note(number)
         self._on_message(message)
 
     def count_losses(self) -> None:

@@ -106,7 +106,6 @@ class GearStatePublisher(PublishingNode):
             topics.ROTOR_STATE,
             self._on_rotor_state,
             self._connections.rotor,
-            self._driver_log.replaced,
         )
         encoder = self._connections.encoder
         self._drivers = (
@@ -201,12 +200,13 @@ class GearStatePublisher(PublishingNode):
             self._warn_of(topics.ROTOR_STATE, name, rejection)
         if not answered:
             return
-        now = time.monotonic()
+        now, number = time.monotonic(), self._connections.rotor.number
         changed: dict[str, bool] = {}
         for name, state in answered:
             actuator = self._actuators[name]
+            if state.monitor.publishers.note(number):
+                self._driver_log.replaced(name, actuator.last)
             actuator.note(now)
-            state.monitor.note_publisher(self._connections.rotor)
             if state.referenced is not actuator.referenced:
                 changed[name] = state.referenced
         if self._driver_log.awaited:
@@ -249,7 +249,7 @@ class GearStatePublisher(PublishingNode):
         for name, _ in errors:
             monitor = self._actuators[name].state.encoder_monitor
             monitor.last_input = now
-            monitor.note_publisher(self._connections.encoder)
+            monitor.publishers.note(self._connections.encoder.number)
         for name, rejection in rejections:
             self._warn_of(topics.OUTPUT_ENCODER, name, rejection)
         self.send(self._arm.encode_errors(errors))
@@ -274,7 +274,8 @@ class GearStatePublisher(PublishingNode):
         if str(rejection) == Rejection.JOINT_MISSING not in source.rejected:
             return  # a message of another driver on a shared topic, and no input
         monitor.last_input = time.monotonic()
-        monitor.note_publisher(driver)
+        if monitor.publishers.note(driver.number) and monitor is state.monitor:
+            self._driver_log.replaced(name, state.input.last)
         of, detail = f' of {name}' if name else '', rejection.detail
         if str(rejection) == Rejection.JOINT_MISSING:
             detail += f'; set {monitor.joint}'
@@ -288,9 +289,14 @@ class GearStatePublisher(PublishingNode):
         inputs = [each.state.monitor.last_input for each in self._actuators.values()]
         now, last = time.monotonic(), max(each or 0.0 for each in inputs)
         rotor = self._connections.rotor
-        several = [n for n, a in self._actuators.items() if a.state.monitor.publishers.several]
-        self._driver_log.update(rotor.publishers, now - (last or now), several)
         self._publish_diagnostics()
+        several = [
+            name if monitor is state.monitor else labelled(name, topics.OUTPUT_ENCODER)
+            for name, state in self._arm.actuators.items()
+            for monitor in (state.monitor, state.encoder_monitor)
+            if monitor.several
+        ]
+        self._driver_log.update(rotor.publishers, now - (last or now), several)
 
     def _publish_diagnostics(self) -> None:
         reports = self._arm.report(time.monotonic(), self._connections)

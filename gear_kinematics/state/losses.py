@@ -3,47 +3,53 @@
 
 from collections import deque
 
-_UPDATES = 5  # in which two publishers of a joint take turns twice, unless one is very slow
+_UPDATES = 5  # in which two publishers of a joint take turns often, unless one is very slow
 
 
 class Losses:
-    """Counts the missing messages of a publisher; a number below the last is from a new one."""
+    """Counts the missing messages of a topic that has one publisher."""
 
     def __init__(self) -> None:
         self.missing = 0
         self.numbered = True  # whether all messages had numbers, which not every middleware gives
         self.next: int | None = None  # number of the next message; None before the first
-        self._last = 0  # number of the last message, of whichever publisher
-
-    def note(self, number: int | None) -> bool:
-        """Take the number of the next message; return whether it is from a new publisher."""
-        if number is None:
-            self.numbered = False
-            return False
-        if self.next is not None and number > self.next:
-            self.missing += number - self.next
-        last, self._last, self.next = self._last, number, number + 1
-        return number < last
-
-
-class Publishers:
-    """Finds whether several publishers send a joint: their numbers do not rise when they mix."""
-
-    def __init__(self) -> None:
-        self._last = -1  # number of the last message
-        self._changes = deque([0], maxlen=_UPDATES)  # of publishers, between updates
 
     def note(self, number: int | None) -> None:
         """Take the number of the next message, if it has one."""
-        if number is not None:
-            self._changes[-1] += number <= self._last
-            self._last = number
+        if number is None:
+            self.numbered = False
+            return
+        if self.next is not None and number > self.next:
+            self.missing += number - self.next
+        self.next = number + 1
+
+
+class Publishers:
+    """Finds whether a joint has another publisher, or several, whose numbers fall as they mix."""
+
+    def __init__(self) -> None:
+        self._last = -1  # number of the last message
+        self._greatest = deque([-1], maxlen=_UPDATES)  # before numbers fell, between updates
+        self._returns = deque([0], maxlen=_UPDATES)  # of a former publisher, between updates
+
+    def note(self, number: int | None) -> bool:
+        """Take the number of the next message, if any; return whether a publisher is new."""
+        if number is None:
+            return False
+        last, self._last = self._last, number
+        if number > last:
+            return False
+        returned = 0 <= max(self._greatest) < last  # it went on, as none does that restarts
+        self._returns[-1] += returned
+        self._greatest[-1] = max(self._greatest[-1], last)
+        return not returned
 
     def update(self) -> None:
         """Forget what happened before the last updates."""
-        self._changes.append(0)
+        self._greatest.append(-1)
+        self._returns.append(0)
 
     @property
     def several(self) -> bool:
-        """Whether the publisher changed more than once: one that restarts does so once."""
-        return sum(self._changes) > 1
+        """Whether publishers take turns: one that is replaced does not return."""
+        return sum(self._returns) > 1

@@ -35,7 +35,7 @@ class DriverFacts:
     publishers: int = 0
     lost: int = 0  # messages that are missing between those that came
     losses_known: bool = True  # whether they could be counted since the last report
-    number: int | None = 0  # that of the latest message; None if the middleware gives none
+    number: int | None = None  # that of the latest message, if the middleware gives one
 
 
 @dataclass(slots=True)
@@ -55,7 +55,9 @@ class DriverMonitor:
 
     def __init__(self) -> None:
         self.last_input: float | None = None  # time of the last message, valid or not
-        self.publishers = Publishers()  # of the joint, noted where the topic has several
+        self.publishers = Publishers()  # of the joint
+        self.several = False  # whether several drivers send the joint, at the last report
+        self._others = 0  # messages of other joints until then
         self._counted = Counter[str]()  # counts at the last report
 
     def _growth(self, counts: Mapping[str, int]) -> Counter[str]:
@@ -63,16 +65,13 @@ class DriverMonitor:
         grown, self._counted = Counter(counts) - self._counted, Counter(counts)
         return grown  # another input counts from 0
 
-    def note_publisher(self, driver: DriverFacts) -> None:
-        """Note who sent the latest message with the joint, if its topic has several publishers."""
-        if driver.publishers > 1:
-            self.publishers.note(driver.number)
-
-    def _several(self, driver: DriverFacts, others: int) -> Iterator[Fact]:
-        """Yield that several drivers send the joint, or can where messages have no numbers."""
-        mixed = not others if driver.number is None else self.publishers.several
-        if driver.publishers > 1 and mixed:
-            yield Condition.SEVERAL_DRIVERS()
+    def _count_drivers(self, driver: DriverFacts, others: int) -> None:
+        """Find whether several send the joint; without numbers, none of them sends others."""
+        self.publishers.update()
+        mixed = self.publishers.several
+        if driver.number is None:
+            mixed = self.last_input is not None and others == self._others
+        self.several, self._others = driver.publishers > 1 and mixed, others
 
     def _losses(
         self, grown: Counter[str], rejected: Mapping[str, int], driver: DriverFacts
@@ -111,7 +110,7 @@ class InputMonitor(DriverMonitor):
         count = rotor_input.received - rotor_input.of_others
         received = max(0, count - self._received)  # at first, others may count as rejected
         if elapsed > _SOON:
-            self.publishers.update()
+            self._count_drivers(driver, rotor_input.of_others)
             self._rate = received / elapsed
             self._reported, self._received = now, count
             stamp = rotor_input.last.stamp if rotor_input.last else 0
@@ -192,7 +191,8 @@ class InputMonitor(DriverMonitor):
             yield Condition.UNSENT(count=grown['unsent'])
         if grown['unreferenced'] and rotor_input.referenced:
             yield Condition.WERE_UNKNOWN(count=grown['unreferenced'])
-        yield from self._several(driver, grown['of others'])
+        if self.several:
+            yield Condition.SEVERAL_DRIVERS()
         yield from connections.graph
         if (
             rotor_input.referenced
@@ -224,11 +224,10 @@ class EncoderMonitor(DriverMonitor):
         compared, silent = soon or matched != self._compared, age > parameters.input_timeout
         if not soon:
             self._reported, self._compared = now, matched
-            self.publishers.update()
-
+            self._count_drivers(driver, encoder.of_others)
         counts = {'lost': driver.lost, 'of others': encoder.of_others}
         grown = self._growth({**encoder.rejected, **counts})
-        facts = list(self._several(driver, grown['of others']))
+        facts = [Condition.SEVERAL_DRIVERS()] * self.several
         if silent:
             facts.append(Condition.NO_ENCODER(age=age))
         elif not compared:

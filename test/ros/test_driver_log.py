@@ -10,6 +10,7 @@ from live import SECOND, rotor_bytes
 
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.ros.driver_log import DriverLog
+from gear_kinematics.state.losses import Publishers
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.joint_reader import RejectedInputError
 from gear_kinematics.wire.topics import JOINT_STATE
@@ -23,6 +24,13 @@ NOW = '/rotor_state is heard now'
 BOTH = 'if both run, stop one; if the drive restarted, home it (gearkin home or ~/home)'
 CHECK = 'check whether the drive restarted; then home it (gearkin home or ~/home)'
 AWAY = f'/rotor_state is heard again, but the rotor is {{}}° from where it was: {CHECK}'
+ANOTHER = (
+    f'/rotor_state comes from another driver, but the rotor is {{}}° from where it was: {BOTH}'
+)
+SEVERAL = (
+    'several drivers send this joint. Stop all but one, such as a joint_state_publisher, '
+    'or give them different topics.'
+)
 GEARS = {'/output_state', '/transmission_error', '/left/angle', '/left/transmission_error'}
 
 
@@ -34,6 +42,12 @@ class Graph:
         self.get_logger = lambda: SimpleNamespace(warning=self.log('W'), info=self.log('I'))
         self.input = RotorInput(NodeParameters.load())
         self.driver_log = DriverLog(self, {'': self.input})
+        self.publishers, self.last = Publishers(), None
+
+    def update(self, publishers):
+        """Report as the node does once a second."""
+        self.publishers.update()
+        self.driver_log.update(publishers, 0.1, [''] * self.publishers.several)
 
     def log(self, level):
         return lambda text: self.logged.append((level, text))
@@ -53,11 +67,13 @@ class Graph:
         end = SimpleNamespace(node_name=name, node_namespace=topic.rpartition('/')[0])
         return [] if topic in {'/rotor_state', '/subscribed'} else [end]
 
-    def hear(self, stamp, position, **fields):
-        """Take a message as the node does."""
+    def hear(self, stamp, position, number=None, **fields):
+        """Take a message as the node does, with the number that its publisher gives it."""
         fields = {name: [value] for name, value in fields.items()}
-        data = rotor_bytes(round(stamp * SECOND), position=[position], **fields)
-        sample = self.input.accept(data, lambda: SECOND)
+        data, last = rotor_bytes(round(stamp * SECOND), position=[position], **fields), self.last
+        self.last = sample = self.input.accept(data, lambda: SECOND)
+        if self.publishers.note(number):
+            self.driver_log.replaced('', last)
         if self.driver_log.awaited:
             self.moved |= self.driver_log.heard({'': sample})
 
@@ -102,67 +118,54 @@ def test_driver_that_stops_and_its_return_are_a_line_each(publishers, position, 
 def test_a_new_driver_is_compared_with_the_last_unless_two_take_turns():
     """It can replace the last within the timeout, where a gap explains where the rotor is."""
     graph = Graph()
-    graph.hear(1.0, 5.0)
-    for second in (1, 2, 3):
-        graph.driver_log.update(2, 0.1)  # one of which was killed
-        for stamp, position in [(0.3, 0.0), (0.31, 5.0)]:
-            graph.driver_log.replaced()
-            graph.hear(second + stamp, position)
-    said = (
-        AWAY.format(-286)
-        .replace(CHECK, BOTH)
-        .replace('is heard again', 'comes from another driver')
-    )
-    assert graph.logged == [('W', said)]
+    for second in range(1, 20):
+        graph.hear(second, 5.0, number=100 + second)
+        if second > 1:
+            graph.hear(second + 0.3, 0.0, number=second)
+        graph.update(2)
+    assert graph.logged == [('W', ANOTHER.format(-286)), ('W', SEVERAL)]
 
 
-def test_a_new_driver_of_other_joints_says_nothing_of_the_rotor():
-    """The rotor turns on by 0.3 rad in each message of its own driver."""
+def test_each_of_two_restarts_within_seconds_is_compared_with_the_last_position():
     graph = Graph()
-    for number in range(5):
-        if number == 3:
-            graph.driver_log.replaced()
-            with pytest.raises(RejectedInputError):
-                graph.hear(1.025, 5.0, names='wheel')
-        graph.hear(1.0 + 0.01 * number, 0.3 * number)
-    assert not graph.logged
+    for stamp, position, number in ((1, 5, 70), (1.1, 5, 71), (2, 3, 1), (3, 3, 2), (4, 1, 1)):
+        graph.hear(stamp, position, number=number)
+        graph.update(1)
+    assert graph.logged == [('W', ANOTHER.format(-115))] * 2
 
 
 def test_drivers_of_two_joints_that_send_in_turn_are_no_other_drivers():
     """The rotor turns by 0.6 rad between two messages of its driver, as at 30 rad/s and 50 Hz.
 
-    The other driver sends now and then, and its numbers are ahead.
+    The other driver begins later, and its numbers are behind, or ahead.
     """
-    graph = Graph()
-    for number in range(5):
-        for _ in range(3):
-            graph.driver_log.update(2, 0.01)
-        with pytest.raises(RejectedInputError):
-            graph.hear(0.99 + 0.02 * number, 5.0, names='wheel')
-        graph.driver_log.replaced()
-        graph.hear(1.0 + 0.02 * number, 0.6 * number)
-    assert not graph.logged
+    for ahead in (-100, 100):
+        graph = Graph()
+        for number in range(9):
+            graph.hear(1.0 + 0.02 * number, 0.6 * number, number=200 + number)
+            if number > 3:
+                with pytest.raises(RejectedInputError):
+                    graph.hear(1.01 + 0.02 * number, 5.0, names='wheel', number=number + ahead)
+            graph.update(2)
+        assert not graph.logged
 
 
 def test_a_driver_that_takes_over_at_once_with_another_zero_is_said():
     """Its first position is near enough for the rotor to reach it at its greatest speed."""
     graph = Graph()
     for number in range(10):
-        if number == 5:
-            graph.driver_log.replaced()
-        graph.hear(1.0 + 0.01 * number, 5.0 if number < 5 else 4.0)
-    [(level, said)] = graph.logged
-    assert (level, 'the rotor is -57° from where it was' in said) == ('W', True)
+        old = number < 5
+        graph.hear(1.0 + 0.01 * number, 5.0 if old else 4.0, number=50 * old + number)
+    assert graph.logged == [('W', ANOTHER.format(-57))]
     assert graph.moved == {'': pytest.approx(-1.0)}
 
 
 def test_several_drivers_of_a_joint_are_one_warning():
     graph = Graph()
     graph.hear(1.0, 5.0)
-    for publishers, several in ((1, ['']), (2, []), (2, ['']), (2, ['']), (2, [])):
-        graph.driver_log.update(publishers, 0.1, several)
-    said = 'several drivers send this joint. Stop all but one, such as a joint_state_publisher, '
-    assert graph.logged == [('W', f'{said}or give them different topics.')]
+    for several in ([], [''], [''], []):
+        graph.driver_log.update(2, 0.1, several)
+    assert graph.logged == [('W', SEVERAL)]
 
 
 def test_several_drivers_of_all_joints_of_an_arm_are_one_warning():

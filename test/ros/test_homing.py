@@ -12,7 +12,6 @@ from std_srvs.srv import Trigger
 
 from gear_kinematics.parameters.files import ConfigError
 from gear_kinematics.ros.live import running_node
-from gear_kinematics.state.monitors import Connections
 
 pytestmark = pytest.mark.live
 
@@ -34,8 +33,9 @@ def home(node):
     return node._homing.answer(None, Trigger.Response())
 
 
-def values_of(node):
-    return node._actuators[''].state.report(time.monotonic(), Connections())['rotor input'].texts
+def values_of(node, at=0.0):
+    now = time.monotonic() + at
+    return node._actuators[''].state.report(now, node._connections)['rotor input'].texts
 
 
 # With the ratio -19: φ5 = -(position - zero)/19, so 61.5° is -20.394 rad at the rotor.
@@ -118,18 +118,24 @@ def test_shaft_that_turns_is_not_homed_where_each_gap_could_hide_a_turn(homing, 
     assert answer.message.startswith(f'the shaft turns at {refused} rad/s') == bool(refused)
 
 
-def test_a_shaft_that_several_drivers_report_on_is_not_homed(homing):
+@pytest.mark.parametrize(
+    'numbers',
+    [[n + 200 * (n % 2) for n in range(1, 200)], [None] * 200],
+    ids=['numbered', 'without numbers'],
+)
+def test_a_shaft_that_several_drivers_report_on_is_not_homed(homing, numbers):
     """The second one counts from another zero, and either may have sent the last message."""
     node = homing()
-    publishers = node._actuators[''].state.monitor.publishers
-    drive(node, [1.0] * 200)
-    for number in (201, 1, 202, 2):
-        publishers.note(number)
+    driver = node._connections.rotor
+    driver.publishers = 2
+    for stamp, driver.number in enumerate(numbers, start=1):
+        node._on_rotor_state(rotor_bytes(stamp * MILLISECOND, position=[1.0]))
+    values_of(node, at=1.0)
     answer = home(node)
     said = 'several drivers send its joint; stop all but one'
     assert (answer.success, said in answer.message) == (False, True), answer.message
-    for _ in range(5):  # reports, in which one driver is left
-        publishers.update()
+    driver.publishers = 1
+    values_of(node, at=2.0)
     assert home(node).success
 
 

@@ -110,10 +110,10 @@ def test_drivers_of_other_joints_are_no_fault(bench):
     assert bench.facts(START + 0.6) == [lacking]
     bench.feed(START + 0.7, good(1), NO_JOINT, good(2))
     bench.connections.rotor.publishers = 3
-    report = bench.report(START + 1.6)
-    assert (report.facts, report.values['of others']) == ([], 2)
-    bench.feed(START + 1.7, good(3))
-    bench.connections.rotor.number = None  # where the others are silent, all may send the joint
+    for again in (0.0, 0.05):  # as at once where the turns become known
+        report = bench.report(START + 1.6 + again)
+        assert (report.facts, report.values['of others']) == ([], 2)
+    bench.feed(START + 1.7, good(3))  # where the others are silent, all may send the joint
     assert bench.facts(START + 2.0) == [Condition.SEVERAL_DRIVERS()]
     bench.feed(START + 1.7, NO_JOINT, NO_JOINT)  # as later ones, which are no input
     [lacking] = bench.facts(START + 3.7)
@@ -126,16 +126,17 @@ def test_two_drivers_on_the_topic_of_the_encoder_are_no_fault_if_one_sends_other
     driver = DriverFacts(publishers=2, number=None)
     gear.encoder_monitor.last_input = START
 
-    def facts(*messages):
+    def facts(at, *messages):
         for data in messages:
             with suppress(RejectedInputError):
                 gear.encoder(data, lambda: SECOND)
-        return gear.encoder_monitor.report(START, driver).facts
+        return gear.encoder_monitor.report(START + at, driver).facts
 
     other, own = NO_JOINT, rotor_bytes(1, ['output'], [0.0])
-    assert Condition.SEVERAL_DRIVERS() in facts(own)
-    assert Condition.SEVERAL_DRIVERS() not in facts(own, other)
-    assert Condition.SEVERAL_DRIVERS() in facts(own)
+    assert Condition.SEVERAL_DRIVERS() in facts(1.0, own)
+    assert Condition.SEVERAL_DRIVERS() not in facts(2.0, own, other)
+    assert Condition.SEVERAL_DRIVERS() not in facts(2.05)  # a report at once for another cause
+    assert Condition.SEVERAL_DRIVERS() in facts(3.0, own)
 
 
 def test_a_rotor_that_is_elsewhere_when_a_driver_comes_is_said_once(bench):
@@ -150,14 +151,18 @@ def test_a_rotor_that_is_elsewhere_when_a_driver_comes_is_said_once(bench):
     [
         ([1, 2, 3, 4, 5], False),
         ([900, 901, 1, 2, 3], False),  # a driver that was started again
-        ([900, 1, 901, 902, 2, 903], True),
+        ([900, 901, 1, 2, 3, 1, 2], False),  # a driver that was started twice more
+        ([900, 1, 2, 3, 1, 2, 3, 4, 1], False),
+        ([900, 1, 901, 902, 2, 903, 3], True),
         ([1, 1, 2, 2, 3, 3], True),  # both began at the same time
-        ([1, 900, 2, 901, 3], True),
+        ([1, 900, 2, 901, 3, 902, 4], True),
+        ([900, 1, 500, 901, 2, 501, 902, 3, 502], True),
     ],
 )
 def test_drivers_that_send_the_same_joint_are_known_by_their_numbers(bench, numbers, several):
     bench.connections.rotor.publishers = 2
     for stamp, number in enumerate(numbers):
+        bench.connections.rotor.number = number
         bench.monitor.publishers.note(number)
         bench.feed(START + 0.5, NO_JOINT, good(stamp + 1))  # others share the topic
     [*facts] = bench.facts(START + 1.0)
