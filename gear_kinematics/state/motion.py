@@ -6,12 +6,21 @@ from typing import NamedTuple
 import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.state.reach import FLOOR, REGULAR, STALEST, HeldUp, Reading, RotorLimits
+from gear_kinematics.state.reach import (
+    FLOOR,
+    REGULAR,
+    STALEST,
+    HeldUp,
+    Reading,
+    RotorLimits,
+    single_precision_step,
+)
 from gear_kinematics.state.wraps import LEAST_STEP
 from gear_kinematics.wire.batches import Array, once_for_joints
 
 COARSEST = TURN / 6.0  # rad; what a Hall sensor of one pole pair resolves
 EQUAL = 1e-9  # rad, below which steps differ by rounding alone
+_SINGLE = 2.0**-21  # the same of numbers of 24 bits, of their size
 STALEST_NS = round(STALEST * 1e9)
 LONGEST_NS = 12_000_000  # between readings for which a look at the step alone may be enough
 
@@ -64,7 +73,12 @@ def all_in_reach(
     if np.any(when == changed[:-1]) or np.any(np.abs(moved[1:]) > LEAST_STEP):
         return None
     sizes = np.abs([steps, steps - step[1:-1]])
-    sizes = np.where(sizes > EQUAL, sizes, COARSEST).min(axis=0)
+    equal = np.full(len(rows), EQUAL)
+    if known.noise > FLOOR:
+        ends = [position, *positions[rows].tolist()]
+        for k in np.flatnonzero(sizes.min(axis=0) < 0.5 * known.noise).tolist():
+            equal[k] = _differs(ends[k + 1], ends[k])
+    sizes = np.where(sizes > equal, sizes, COARSEST).min(axis=0)
     noise = np.minimum.accumulate(np.append(known.noise, np.maximum(2.0 * sizes, FLOOR)))
     usual = 0.5 * (span[1:-1] + span[:-2])
     regular = usual <= LONGEST_NS
@@ -98,6 +112,23 @@ def all_in_reach(
     latest = float(positions[-1]), int(changed[-1]), float(step[-1]), int(span[-1])
     held_up = max(held_up, pauses[-1])
     return Motion(latest, former, moving, int(stamps[-1]), float(noise[-1]), held_up)
+
+
+def finer(noise: float, steps: tuple[float, float], position: float, *others: float) -> float:
+    """Return the noise of readings, rad, as far as steps to a position show that it is less.
+
+    The others are the position before and what positions repeat after.
+    """
+    if noise <= FLOOR:
+        return noise
+    sizes = [size for size in map(abs, steps) if size > _differs(position, *others)]
+    return min(noise, max(2.0 * min(sizes, default=noise), FLOOR))
+
+
+def _differs(position: float, *others: float) -> float:
+    """Return from what on steps between angles differ by more than rounding, rad."""
+    most = max(map(abs, (position, *others)))
+    return max(EQUAL, _SINGLE * most) if single_precision_step(position) else EQUAL
 
 
 def _even(known: Motion, limits: RotorLimits, stamps: Array, positions: Array) -> Motion | None:

@@ -21,6 +21,7 @@ from gear_kinematics.state.motion import (
     STALEST_NS,
     Motion,
     all_in_reach,
+    finer,
 )
 from gear_kinematics.state.reach import (
     FLOOR,
@@ -97,7 +98,7 @@ class Plausibility:
             which.append(Condition.BEYOND_SPEED(speed=self.seen_speed))
         if self.seen_acceleration:
             which.append(Condition.BEYOND_ACCELERATION(acceleration=self.seen_acceleration))
-        if step := single_precision_step(self._former[0], self._last[0]):
+        if (step := single_precision_step(self._former[0], self._last[0])) > FLOOR:
             which.append(Condition.BEYOND_PRECISION(angle=step))
         return Condition.BEYOND_LIMITS(which=which, advice=which[-1].advice) if which else None
 
@@ -203,9 +204,8 @@ class Plausibility:
         if self.period and abs(step) > self.noise:
             self.repeats.note(stamp - changed, repeated - changed, self.limits)
         former_step = moving[2] if self.period else last_step
-        for size in (abs(step), abs(step - former_step)):
-            if EQUAL < size < 0.5 * self.noise:
-                self.noise = max(2.0 * size, FLOOR)
+        steps = step, step - former_step
+        self.noise = finer(self.noise, steps, position, before, self.period)
         span = stamp - changed
         if until > changed:  # it stood until then
             span = stamp - self._stamp or span

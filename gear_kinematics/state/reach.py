@@ -235,14 +235,14 @@ class Repeats:
 def single_precision_step(*positions: float) -> float:
     """Return the step of numbers of 24 bits, rad, if positions are such in some unit; else 0.
 
-    Many drivers convert them from such numbers of rad, turns or degrees. Steps up to `FLOOR` do
-    not count.
+    Many drivers convert them from such numbers of rad, turns or degrees. Of several, it is the
+    smallest step.
     """
     for unit in (1.0, TURN, math.radians(1.0)):
         steps = [math.ldexp(unit, math.frexp(each / unit)[1] - 24) for each in positions]
         if all(
-            step > FLOOR and abs(math.remainder(each, step)) < _ROUNDING * step
+            step and abs(math.remainder(each, step)) < _ROUNDING * step
             for each, step in zip(positions, steps, strict=True)
         ):
-            return steps[-1]
+            return min(steps)
     return 0.0

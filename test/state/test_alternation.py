@@ -5,6 +5,7 @@ import math
 from itertools import accumulate, cycle, islice
 from random import Random
 
+import numpy as np
 import pytest
 from live import SECOND, rotor_bytes
 
@@ -67,12 +68,13 @@ def test_one_driver_is_not_said_to_alternate():
     assert fault_of(jump) is None
 
 
-@pytest.mark.parametrize('steps', [64, 4096])
-def test_a_rotor_that_trembles_is_not_said_to_alternate(steps):
+@pytest.mark.parametrize('kind', [float, np.float32])
+@pytest.mark.parametrize('steps', [24, 42, 64, 4096])
+def test_a_rotor_that_trembles_is_not_said_to_alternate(steps, kind):
     """It changes by one step of its encoder with each message, or vibrates within its limits."""
     step = math.tau / steps
-    dithering = sent(1000, lambda t: step * (round(t * 1000) % 2 + round(turning(t) / step)))
-    assert fault_of(dithering) is None
+    counts = sent(1000, lambda t: 5e4 + round(t * 1000) % 2 + round(turning(t) / step))
+    assert fault_of([(t, float(kind(step * count))) for t, count in counts]) is None
     limit = SETTINGS.max_rotor_acceleration
     vibrating = sent(200, lambda t: limit / (math.tau * 90.0) ** 2 * math.sin(math.tau * 90.0 * t))
     assert fault_of(vibrating) is None

@@ -84,6 +84,8 @@ def disturbed(kind, times, angles, rate, generator) -> tuple[np.ndarray, np.ndar
     elif kind == 'old':  # by up to an interval, with stamps on a grid
         older = generator.uniform(0.0, min(0.01, 1.0 / rate), count)
         angles = np.interp(times - older, times, angles)
+    elif kind == 'single':  # precision, of a Hall sensor
+        angles = np.float32(np.floor(angles * 24.0 / TURN) * TURN / 24.0).astype(float)
     elif kind == 'noisy':
         angles = angles + generator.normal(0.0, 0.01, count)
     elif kind == 'gaps':
@@ -150,6 +152,22 @@ def test_no_motion_within_the_limits_is_doubted(kind, rate):
         assert complaints(rotor) == ({}, None, None)
         rotor, _ = fed(SINGLE, messages(times, np.mod(angles, TURN)))
         assert complaints(rotor) == ({}, None, None)
+
+
+@pytest.mark.parametrize('unit', [1.0, TURN, math.radians(1.0)])
+@pytest.mark.parametrize('steps', [6, 24, 42])
+@pytest.mark.parametrize('rate', RATES)
+def test_hall_sensors_whose_angle_is_of_single_precision_are_believed(rate, steps, unit):
+    """Rounding makes their steps unequal, which tells nothing of their resolution."""
+    for seed, far in ((0, 0), (1, -5000), (2, 100)):
+        times, angles, _ = drive(rate, seed)
+        counts = far + np.floor(angles * steps / TURN)
+        for parameters, each in ((MULTI, counts), (SINGLE, counts % steps)):
+            if parameters is SINGLE and rate < 500:
+                continue  # the rotor can turn half a turn between two readings, or a whole one
+            single = np.float32(each * TURN / steps / unit).astype(float) * unit
+            rotor, _ = fed(parameters, messages(times, single))
+            assert complaints(rotor) == ({}, None, None)
 
 
 @settings(max_examples=50)
@@ -773,7 +791,7 @@ def test_a_motor_that_exceeds_its_speed_little_by_little_is_named(at_once):
 @given(
     st.integers(0, 2**32),
     st.lists(st.integers(1, 99), max_size=4),
-    st.sampled_from([*KINDS, 'repeated']),
+    st.sampled_from([*KINDS, 'repeated', 'single']),
 )
 @example(109, [], 'gaps')  # intervals of exactly one and two periods
 def test_batches_are_judged_as_one_by_one(seed, bad, kind):
