@@ -45,7 +45,6 @@ _FEW_STEPS = 3.0  # between readings: what a drive whose clock begins anew may t
 _LONGER = 1.5  # times what was seen: for which a driver repeats readings, as stamps are uneven
 _SHORTER = 4  # times than a repeated reading lasts: two intervals that end the repeats
 _UPTIME = 10**17  # ns, 3 years: stamps below are the time since a start, no date
-_LEAST_MOTION = 0.01  # rad between two readings of a rotor that moves
 _UNKNOWN = math.nan, 0, 0.0, 0
 
 
@@ -197,7 +196,8 @@ class Plausibility:
         self._doubted.clear()
         self._held_up = held_up
         possible = self.wraps.counted if self.period else abs(last_step) > LEAST_STEP
-        wraps = possible and self._wraps(step, stamp)
+        readings = self._last, self._former
+        wraps = possible and self.wraps.follow(step, stamp, *readings, self._repeated, self.noise)
         clear = 2.0 * (high - low) < self.period
         self.wraps.counted = round((position - before - step) / self.period) if clear else 0
         self.wraps.earlier = former[2:] if self.wraps.counted else (0.0, 0)
@@ -231,22 +231,6 @@ class Plausibility:
                 self._even = even, most * most, math.ceil(shortest), int(longest)
         self.jumps += bool(wraps)
         return Belief.JUMP if wraps else BELIEVED
-
-    def _wraps(self, step: float, stamp: int) -> bool:
-        """Return whether the last step, which was believed, was a wrap, as the next step shows."""
-        position, changed, last_step, last_span = self._last
-        *_, former_step, former_span = self._former
-        span = stamp - changed
-        moves = min(abs(former_step), abs(step)) >= _LEAST_MOTION
-        if not (former_span and last_span and span and moves):
-            return False
-        if self.period:
-            if self._former[1] <= self._repeated:  # a part of the last step may be yet to come
-                return bool(self.wraps.period)
-            spans = former_span, last_span, span
-            return self.wraps.check((former_step, last_step, step), spans, self.noise)
-        speeds = former_step / (former_span * 1e-9), step / (span * 1e-9)
-        return self.wraps.note(last_step, position, last_span * 1e-9, speeds, jump=False)
 
     def _hold(self, position: float, stamp: int) -> Belief:
         """Judge a reading that repeats the last position.

@@ -10,9 +10,11 @@ import math
 from dataclasses import dataclass, field
 
 from gear_kinematics.kinematics.rotor_turns import TURN, RotorTurns
+from gear_kinematics.state.reach import Reading
 from gear_kinematics.state.statuses import Condition, Fact
 
 LEAST_STEP = 0.5 * TURN  # rad, of a step that may be a wrap
+_LEAST_MOTION = 0.01  # rad between two readings of a rotor that moves
 _FEWEST = 3  # equal steps back in a row between the same ends, and no other steps as far
 _EQUAL = 0.02  # of their size: what they may differ by, as stamps are uneven
 _ENDS = 0.3  # of their size: most motion during a step, and what their ends may differ by
@@ -73,6 +75,28 @@ class Wraps:
         if self._times >= _MANY and abs(mean) > noise + _SURE * error:
             self.period = abs(self.counted) * self.known + mean
         return bool(self.period)
+
+    def follow(
+        self, step: float, stamp: int, last: Reading, former: Reading, repeated: int, noise: float
+    ) -> bool:
+        """Return whether the last step, which was believed, was a wrap, as the next step shows.
+
+        The next one, rad, ends at a stamp, ns; `repeated` is the last stamp of several readings.
+        """
+        position, changed, last_step, last_span = last
+        *_, former_step, former_span = former
+        span = stamp - changed
+        moves = min(abs(former_step), abs(step)) >= _LEAST_MOTION
+        if not (former_span and last_span and span and moves):
+            return False
+        if self.known:
+            if former[1] <= repeated:  # a part of the last step may be yet to come
+                return bool(self.period)
+            return self.check(
+                (former_step, last_step, step), (former_span, last_span, span), noise
+            )
+        speeds = former_step / (former_span * 1e-9), step / (span * 1e-9)
+        return self.note(last_step, position, last_span * 1e-9, speeds, jump=False)
 
     def note(
         self, step: float, end: float, time: float, speeds: tuple[float, float], *, jump: bool
