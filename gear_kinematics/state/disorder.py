@@ -37,6 +37,8 @@ class Alternation:
     _doubted: int = 0
     _going_on: int = 0  # doubted readings that are near one of the two before
     _seen: bool = field(default=False, repr=False)  # among believed ones, of batches only
+    taken_back: int = 0  # believed readings that the next ones showed to be wrong
+    _last: tuple[float, int] = 0.0, 0  # of them: by how much it was, rad, and its stamp, ns
 
     def doubt(self, position: float, last: float, wrapped: Callable[[float], float]) -> None:
         """Note a doubted reading and the one before it; `wrapped` takes turns from differences."""
@@ -46,6 +48,17 @@ class Alternation:
         self._doubted += 1
         self._going_on += 4.0 * near < away or 4.0 * nearer < away
         self._former, self._latest = self._latest, position
+
+    def take_back(self, angle: float, stamp: int) -> None:
+        """Note a believed reading with a stamp, ns, that was wrong by about an angle, rad."""
+        self.taken_back += 1
+        self._last = angle, stamp
+
+    def wrong(self, count: int) -> Fact | None:
+        """Return that so many believed readings, up to the last one, were wrong; None for 0."""
+        angle, stamp = self._last
+        found = Condition.TAKEN_BACK(count=count, angle=angle, time=stamp / SECOND)
+        return found if count else None
 
     def note(self, stamps: Array, positions: Array, acceleration: float) -> None:
         """Note believed readings (n,), ns and rad, with the limit of the rotor, rad/s²."""
@@ -84,14 +97,15 @@ class Disorder:
 
     @property
     def fault(self) -> Fact | None:
-        """Two motions, stamps of two clocks, or of another unit, or the clock's last step back.
+        """Two motions, stamps of two clocks, or of another unit, wrong readings, or a set clock.
 
         The unit is known of batches only.
         """
         if two := self._alternation.fact:
             return two
         if self.close_resets < ALTERNATING:
-            return self._too_fast or self.step
+            wrong = self._alternation.wrong(self._alternation.taken_back)
+            return self._too_fast or wrong or self.step
         return Condition.CLOCKS_ALTERNATE(count=self.close_resets)
 
     def add(self, reading: Late) -> None:

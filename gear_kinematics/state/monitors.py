@@ -155,6 +155,7 @@ class InputMonitor(DriverMonitor):
             'received': rotor_input.received - rotor_input.of_others,
             'unsent': connections.unsent,
             'unreferenced': self.unreferenced,
+            'taken back': plausibility.alternation.taken_back,
         }
         grown = self._growth({**rotor_input.rejected, **counts})
         if age > rotor_input.parameters.input_timeout:
@@ -175,7 +176,8 @@ class InputMonitor(DriverMonitor):
             yield Condition.ELSEWHERE(angle_deg=math.degrees(self.moved))
             self.moved = 0.0
         yield from self._losses(grown, rotor_input.rejected, driver)
-        for doubt in (rotor_input.velocity_field.meaning, plausibility.beyond_limits):
+        wrong = plausibility.alternation.wrong(grown['taken back'])
+        for doubt in (wrong, rotor_input.velocity_field.meaning, plausibility.beyond_limits):
             if doubt:
                 yield doubt
         if rotor_input.parameters.rotor_period and grown['zero stamps']:

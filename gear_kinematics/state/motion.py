@@ -69,7 +69,7 @@ def all_in_reach(
     ended = stood & (moved != 0.0)
     step, span = np.where(ended, 0.0, moved), np.where(ended, 0, took)
     # Left to `judge`: steps of the same stamp, which are added up, abrupt stops, and what may be
-    # a wrap.
+    # a wrap or a wrong reading.
     if np.any(when == changed[:-1]) or np.any(np.abs(moved[1:]) > LEAST_STEP):
         return None
     sizes = np.abs([steps, steps - step[1:-1]])
@@ -105,6 +105,9 @@ def all_in_reach(
                 return None
             reach = limits.reach(times[1], times[0], last, prior, noise[k], held_up)
             if not reach[0] <= steps[k] <= reach[1]:
+                return None
+            late = held_up.late(began, times[1])
+            if limits.takes_back(times[1], steps[k], last, prior, noise[k], late):
                 return None
     if len(rows):
         before = float(positions[rows[-2]]) if len(rows) > 1 else position

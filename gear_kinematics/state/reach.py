@@ -21,6 +21,8 @@ _REPEATS = 3.5  # times as long as between two readings: for which a driver repe
 _LONGEST_REPEAT = 1.0  # s, for which a driver repeats a reading while the rotor turns on
 _REPEATED = 0.05  # of the way meanwhile: what it may differ by from that at a steady speed
 _STEADY = 0.25  # of the speed: what it may change by meanwhile
+_ALONE = 0.25  # of what a reading is off by: what the two steps beside it differ by
+_STEPS = 3.25  # times the noise, of readings that are wrong beyond it
 _UNEVEN = 0.25  # of a speed: what it may differ by, as readings are older than their stamps
 _OFTEN = 5  # repeated readings in a row before a step: they are those of the driver
 _FASTEST = 250_000  # ns between the readings of a driver; those of a burst can be closer
@@ -149,6 +151,29 @@ class RotorLimits(NamedTuple):
         turned, most = position - before, self.speed * (time + stale) + noise
         within = abs(turned) <= most and abs(turned - way) <= uncertain
         return within and abs(speed - former) <= change
+
+    def takes_back(
+        self, stamp: int, step: float, last: Reading, former: Reading, noise: float, late: float
+    ) -> bool:
+        """Whether a step, rad, takes back the last one, which the rotor cannot have made at all.
+
+        Beyond the motion before, it turns about between them, and within a time it goes no farther
+        from there than by half its acceleration times the square of that time. Readings of a burst
+        can be `late`, ns.
+        """
+        _, changed, out, took = last
+        spans = took, stamp - changed, former[3]
+        if not took or self.hides_turn(max(spans)):
+            return False
+        speed = former[2] / former[3] if former[3] else 0.0
+        out, back = out - speed * took, step - speed * spans[1]
+        way = min(abs(out), abs(back))
+        if out * back > 0.0 or abs(out + back) > _ALONE * way:
+            return False
+        stale = _stale(last, former, late)
+        time = 1e-9 * max(spans) + stale
+        least = 0.5 * self.acceleration * time * time + 1e9 * abs(speed) * stale
+        return way > least + _STEPS * noise
 
     def reach(
         self, stamp: int, until: int, last: Reading, former: Reading, noise: float, held_up: HeldUp

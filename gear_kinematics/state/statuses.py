@@ -81,6 +81,11 @@ class Condition(Enum):
         'rejected: {counts}',
         'docs/diagnostics.md explains why messages are rejected.',
     )
+    TAKEN_BACK = (
+        WARN,
+        'single positions were wrong: {count}, the last by about {angle:.3g} rad at {time:.3f} s',
+        'Check the encoder and its cable, and whether a second driver sends this joint.',
+    )
     JOINT_MISSING = (
         WARN,
         'rejected: {counts}',

@@ -109,6 +109,12 @@ ROWS = {
         {'rejected': {'implausible': 1}},
         (Condition.REJECTED(counts={'implausible': 1}),),
     ),
+    'stray reading within reach': Row(
+        part({'offset': 3.0}),
+        {},
+        (Condition.TAKEN_BACK(count=1, angle=pytest.approx(3.0, abs=0.3), time=100.6),),
+        FindingCause.SET_BACK,
+    ),
     'repeated stamp': Row(part({'stamp': START + 59 * PERIOD}), {'duplicates': 1}),
     'late stamp': Row(part({'stamp': START + 61 * PERIOD - 100_000}), {}),
     'no stamp': Row(part({'stamp': 0}), {'zero_stamps': 1}, found=FindingCause.ZERO_STAMPS),

@@ -121,8 +121,10 @@ def state_of(judge) -> dict:
     }
 
 
-def complaints(rotor) -> tuple:
+def complaints(rotor, taken_back=0) -> tuple:
     judge = rotor.plausibility
+    assert judge.alternation.fact is None
+    assert judge.alternation.taken_back == taken_back
     return rotor.rejected, judge.jumped, judge.beyond_limits
 
 
@@ -189,6 +191,38 @@ def test_a_corrupt_reading_gives_no_output_and_changes_nothing(rate, seed, size)
     assert [s for s in samples if s] == expected[:bad] + expected[bad + 1 :]
     assert rotor.referenced
     assert rotor.segment == right.segment
+
+
+@pytest.mark.parametrize('batch', [1, 37, 400])
+@pytest.mark.parametrize('speed', [0.0, 5.0, 40.0])
+@pytest.mark.parametrize(('rate', 'size'), [(50, -6.0), (100, 2.0), (200, -1.0)])
+def test_a_wrong_reading_that_the_rotor_could_reach_is_said_once_it_is_taken_back(
+    rate, size, speed, batch
+):
+    """In two of its intervals and 20 ms, it cannot go so far and return, by 6500 rad/s²."""
+    times = np.arange(400) / rate
+    angles = speed * times + 0.001 * (np.arange(400) % 2)
+    angles[200] += size
+    data = messages(times, angles)
+    rotor = RotorInput(MULTI)
+    for first in range(0, 400, batch):
+        rotor.accept_batch(data[first : first + batch], [0] * len(data[first : first + batch]))
+    assert complaints(rotor, taken_back=1) == ({}, None, None)
+    angle = pytest.approx(size, abs=1.1 * speed / rate + 2e-3)
+    time = START / SECOND + 200 / rate
+    assert rotor.disorder.fault == Condition.TAKEN_BACK(count=1, angle=angle, time=time)
+
+
+def test_a_quick_motion_there_and_back_is_not_taken_back():
+    """It takes 40 ms and turns by 0.65 rad, with the greatest acceleration."""
+    for rate in (25, 50, 100, 500):
+        for phase in np.linspace(0.0, 1.0 / rate, 9):
+            times = phase + np.arange(rate) / rate
+            since = np.clip(times - 0.5, 0.0, 0.04)
+            since = np.minimum(since, 0.04 - since)  # by symmetry
+            angles = np.where(since < 0.01, since**2, 2e-4 - (0.02 - since) ** 2)
+            rotor, _ = fed(MULTI, messages(times, 0.5 * LIMITS[1] * angles))
+            assert complaints(rotor) == ({}, None, None)
 
 
 @pytest.mark.parametrize('size', [1.0, -2.0, 3.0, 0.5])
