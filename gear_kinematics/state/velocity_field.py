@@ -37,7 +37,7 @@ _ALIGNED = 0.95  # the square of a correlation from which a factor explains the 
 _FEW = 4  # velocities between readings, of which the mean is that of an oscillation
 _RELATED = 0.5  # the correlation that a motion has with its velocities, at least
 _IMPOSSIBLE = 30.0  # times the travel: any more between two readings is no velocity
-_LONGEST = 10  # readings in which velocities that go on show a position that is stuck
+_LONGEST, _FRO = 10, 30  # readings in which velocities that go on, or to and fro, show it stuck
 _STUCK = 1.5  # times a velocity that does not change: more than its rounding and a held-up driver
 _ROUNDING = 1e-9  # of a velocity: by which a mean of equal ones may differ
 _FILTERED = 0.5  # share by which what a filter leaves of a motion may differ from a projection
@@ -186,7 +186,7 @@ class VelocityField:
         since, before, _ = self._readings[-1]
         mean, turn = self._total / max(1, self._count), position - before
         expected = mean * (stamp - since) * 1e-9
-        self._ways = [] if turn else [*self._ways[1 - _LONGEST :], expected]
+        self._ways = [] if turn else [*self._ways[1 - _FRO :], expected]
         impossible = abs(expected) > _IMPOSSIBLE * (abs(turn) + _TRAVEL)
         if impossible or (not turn and self._lead_away(mean, velocity)):
             factor = expected / turn if turn else math.inf
@@ -198,9 +198,9 @@ class VelocityField:
         last, now = (math.copysign(v or 0.0, (v or 0.0) * mean) for v in (self._last, velocity))
         # Behind a stop, the velocities of a filter fall, and lead to no place and back.
         goes_on = min(last, now) >= 0.5 * abs(mean) and now >= (1.0 - _STEADY) * last
-        goes_on &= abs(places[-1]) >= _TRAVEL and self.finding is VelocityMeaning.RIGHT
+        far = abs(sum(self._ways[-_LONGEST:])) >= _TRAVEL and self.finding is VelocityMeaning.RIGHT
         back = max(places) - min(places) - abs(places[-1])
-        return goes_on or (back >= _TRAVEL and not self.contradicts)
+        return (goes_on and far) or (back >= _TRAVEL and not self.contradicts)
 
     def _follow(self, travel: float, noise: float) -> None:
         """Decide on a motion of more than `travel`, rad, however unsteady, of the latest readings.

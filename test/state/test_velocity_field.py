@@ -395,6 +395,15 @@ def test_an_encoder_that_is_stuck_beside_right_velocities_is_named(rate, begin, 
     assert rotor.velocity_field.positions_stand
 
 
+@pytest.mark.parametrize('end', [0.52, 2.0])
+def test_positions_that_are_cut_off_at_an_end_of_their_range_are_named(end):
+    """As of 16 bits, of 10⁻⁴ turns each, of a rotor that goes beyond them for 2.6 s at a time."""
+    time = np.arange(1600) / 100
+    turned = 8.0 * np.sin(0.9 * time)
+    said = meanings(time, np.clip(turned, -end * TURN, end * TURN), 7.2 * np.cos(0.9 * time))
+    assert {*said[6:]} == {Condition.POSITIONS_STAND if end < 1.0 else None}
+
+
 def test_an_encoder_that_is_stuck_over_a_pause_of_the_driver_is_named():
     time = np.delete(np.arange(320) / 100, np.s_[235:260])
     braking = np.interp(time, [2.0, 2.35, 2.351], [20.0, 12.0, 14.0])
