@@ -85,6 +85,11 @@ class Plausibility:
         self._look_always()
 
     @property
+    def position(self) -> float:
+        """The last believed position, rad; NaN before the first."""
+        return self._last[0]
+
+    @property
     def jumped(self) -> Fact | None:
         """The last jump of the encoder, or that its positions wrap; None if there was none."""
         return self.wraps.fact or self.jump

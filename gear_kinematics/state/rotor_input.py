@@ -271,6 +271,8 @@ class RotorInput(JointCounts):
             self.leave_others()
         elif stamp <= last[0]:  # its stamp, by the fastest way
             self._check_order(last.stamp, (stamp, position, velocity, effort))
+        if last and stamp == last[0] and position == self.plausibility.position:
+            self.disorder.readings.clear()  # all came before, as of a relay that repeats messages
         if self.disorder.readings and last:
             time, readings = self.disorder.set_back(last.stamp, stamp)
             self.turns.set_back(time)

@@ -166,6 +166,23 @@ def test_messages_that_come_after_later_ones_are_no_jump(chunk):
     assert rotor_input.referenced
 
 
+@pytest.mark.parametrize('copied', [3, 30, 100])
+@pytest.mark.parametrize('position', [lambda t: 20.0 * math.sin(2.0 * t), lambda _: 7.0])
+def test_copies_of_earlier_messages_are_no_clock_that_was_set_back(position, copied):
+    """A relay repeats them, with their stamps, also while the driver pauses."""
+    rotor_input, period = RotorInput(SETTINGS), SECOND // 100
+    sent = [(START + k * period, position(k / 100.0)) for k in range(300) if k % 150 < 140]
+    for number, message in enumerate(sent):
+        copies = sent[number - copied + 1 : number + 1] if number % 140 == 139 else []
+        for each in (message, *copies):
+            with suppress(RejectedInputError):
+                accept(rotor_input, *each)
+    assert rotor_input.rejected == {'out of order': 2 * (copied - 1)}
+    assert rotor_input.plausibility.jumped is None
+    assert rotor_input.disorder.fault is None
+    assert rotor_input.referenced
+
+
 @pytest.mark.parametrize('back', range(10, 240, 5))
 def test_a_clock_that_is_set_back_by_some_messages_loses_no_turn_silently(back):
     """At 40 Hz, the first message that is rejected came an interval after the last one."""
