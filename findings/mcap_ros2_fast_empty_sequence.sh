@@ -1,6 +1,6 @@
 #!/bin/bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# mcap-ros2-support-fast 0.8.0: an angle of 1.5 rad behind an empty sequence of points is read as 0, and lost by writing.
+# mcap-ros2-support-fast 0.8.0: behind an empty sequence of points, 1.5 rad are read as 0, and written wrongly.
 #
 # A message of ROS 2 has geometry_msgs/Point[] contacts, float64 position and float64 effort. With 0, 1 and 2 contacts,
 # a position of 1.5 rad and an effort of -2.25 N·m, it is serialized by mcap-ros2-support; rosbags serializes it to the
