@@ -4,9 +4,9 @@
 #
 # Expected of Scalar(36000000, 'dega') in rad: 628318.5307 rad, as by math.radians(), and of a turn ('c') in dega: 360.
 # What happens: 628318.44 rad, 0.0907 rad less, and 360.0000519°, as the degree is defined as 0.01745329 rad, whose next
-# digits are 2520; a degree per second is as coarse. A rotor that is
-# converted so and then taken modulo one turn is 5.2° off after 100 000 turns, as in an hour at 1700 rpm, and 0.05° after
-# 1000 turns. A turn in rad and rpm in rad/s have ten digits: 0.00001° after 1000 turns.
+# digits are 2520; a degree per second is as coarse. A rotor that is converted so and then taken modulo one turn is 5.2°
+# off after 100 000 turns, as in an hour at 1700 rpm, and 0.05° after 1000 turns. A turn in rad and rpm in rad/s have
+# ten digits: 0.00001° after 1000 turns.
 # For us: convert degrees by numpy.radians(), or count in turns.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
