@@ -56,7 +56,7 @@ point = reproject_point_stamped(origin | {'point.x': 0.0, 'point.y': 0.0, 'point
 pose = {'pose.position.' + axis: 0.0 for axis in 'xyz'} | {'pose.orientation.' + axis: 0.0 for axis in 'xyz'}
 pose = reproject_pose_stamped(origin | pose | {'pose.orientation.w': 1.0}, 'base', buffer)
 turn = np.degrees(2 * np.arctan2(pose['pose.orientation.z'], pose['pose.orientation.w']))
-print('the point:', {name: float(point['point.' + name]) for name in 'xyz'}, f'the turn of the pose: {turn:.0f} degrees')
+print('the point:', *(float(point['point.' + name]) for name in 'xyz'), f'the turn of the pose: {turn:.0f} degrees')
 assert point['header.frame_id'] == pose['header.frame_id'] == 'base'
 assert np.allclose([point['point.' + axis] for axis in 'xyz'], (-0.5, 1, 0))
 assert np.allclose([pose['pose.position.' + axis] for axis in 'xyz'] + [turn], (-0.5, 1, 0, -90))
