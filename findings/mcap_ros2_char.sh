@@ -4,8 +4,8 @@
 #
 # In a message of ROS 2, a char has no sign: rosidl_adapter makes an uint8 of it, and rclpy names the range 0 to 255.
 # rclpy 7.1.6 serializes a std_msgs/Char of 200. Expected of mcap-ros2-support: 200, as rosbags reads. What happens:
-# -56, without an error, and a char[] of 200 and 255 is read as -56 and -1. Writing 200 is an error of struct, which takes
-# -128 to 127. An uint8 and a byte are right.
+# -56, without an error, and a char[] of 200 and 255 is read as -56 and -1. Writing 200 is an error of struct, which
+# takes -128 to 127. An uint8 and a byte are right.
 # For us: take `value & 0xFF`, and write -56 for 200.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
