@@ -4,11 +4,11 @@
 #
 # A shaft was read once at 358°, twice at 359°, four times at 0°, twice at 1° and once at 2°. Expected of Circular()
 # with the angles, and these numbers as w, and of circ_var() for "Angles in radian" and "Frequencies or weights": a
-# median near 0°, a deviation of 1.06° and a variance of 0.00017, as for the same readings around 90°. What happens: a median
-# of 225.4°, a deviation of NaN and a variance of -358, as the step from 359° to 0° is taken for a bin of -359°. The
-# mean is right, and so is all in the order 0, 1, 2, 358, 359. And the 98.4 % interval of the median of seven readings
-# from -1° to 1.1° is given from 0.1° to 359.8°, almost the whole turn; around 90° it is from 89° to 91.1°, which is
-# right. (A change of May 2026 to the source is about this interval; no release has it.)
+# median near 0°, a deviation of 1.06° and a variance of 0.00017, as for the same readings around 90°. What happens: a
+# median of 225.4°, a deviation of NaN and a variance of -358, as the step from 359° to 0° is taken for a bin of -359°.
+# The mean is right, and so is all in the order 0, 1, 2, 358, 359. And the 98.4 % interval of the median of seven
+# readings from -1° to 1.1° is given from 0.1° to 359.8°, almost the whole turn; around 90° it is from 89° to 91.1°,
+# which is right. (A change of May 2026 to the source is about this interval; no release has it.)
 # For us: turn angles by their circular mean, to -180° to 180°, and take the statistics of numbers.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
