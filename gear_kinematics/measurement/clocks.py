@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.measurement.columns import DATES, Column, ColumnsError
-from gear_kinematics.measurement.names import TIME_UNITS, meaning
+from gear_kinematics.measurement.names import ANGLE_UNITS, TIME_UNITS, meaning
 from gear_kinematics.measurement.recording import Array
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.report.document import number
@@ -37,6 +37,7 @@ _SAME_SPAN = 0.02  # decades by which times of equal length differ, in units of 
 _DAY = 86_400 * SECOND
 FASTEST, MOST = 1000.0, 0.9
 """Speed that hardly any rotor exceeds, rad/s; share of the samples in motion that are slower."""
+_IMPOSSIBLE = 10.0 * FASTEST  # speed that no rotor of a servo exceeds, rad/s
 
 
 def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
@@ -70,8 +71,8 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
     if len(likely) > 1:
         likely = [unit for unit in likely if speed <= FASTEST * TIME_UNITS[unit]]
     likely = [unit for unit in within if unit in dated] or likely
-    numbered = not dated and np.all(steps == 1.0)  # perhaps the numbers of the rows
-    if (role == 'rotor' and (len(likely) != 1 or numbered)) or (
+    ticks = meaning(clock.name).unit == 'counts' or np.all(steps == 1.0)  # or numbers of rows
+    if (role == 'rotor' and (len(likely) != 1 or (ticks and not dated))) or (
         clock.name.lower() == 'temps' and times[0] > _LATE_ROWS * step
     ):
         cause = f'the times in {clock.name}: steps of {step:.6g} do not tell their unit'
@@ -80,17 +81,29 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
     return clock._replace(unit=unit, scale=TIME_UNITS[unit])
 
 
-def check_steps(clock: Column, times: Array, angle: Array) -> None:
-    """Raise ColumnsError if whole s or ms may be in a finer unit, by the rotor's angle, rad."""
-    finer = {'s': 'ms', 'ms': 'us'}.get(clock.unit)
+def check_steps(clock: Column, times: Array, angle: Array, unit: str) -> None:
+    """Raise ColumnsError if times seem to be in another unit, by the rotor's angle, rad.
+
+    Whole numbers may be in a finer unit, and all in a coarser one. An angle without a `unit` may
+    be in degrees.
+    """
     known = np.isfinite(times) & np.isfinite(angle)
-    if finer and times.dtype.kind != 'M' and np.count_nonzero(known) > 1:  # no dates
-        steps, turned = np.abs(np.diff([times[known].astype(float), angle[known]]))
-        step = float(np.median(steps)) * clock.scale
-        speed = np.quantile(turned / np.maximum(steps, 1.0), MOST) / TIME_UNITS[finer]
-        if step > _MOST_STEP and speed <= FASTEST and not np.any(times[known] % 1.0):
-            cause = f'the times in {clock.name} are {step:.6g} s apart, as if they were {finer}'
+    if times.dtype.kind == 'M' or np.count_nonzero(known) <= 1:  # dates, or nothing to compare
+        return
+    steps, turned = np.abs(np.diff([times[known].astype(float), angle[known]]))
+    step, mean, turn = float(np.median(steps)), float(np.mean(steps)), np.quantile(turned, MOST)
+    if step * clock.scale > _MOST_STEP and not np.any(times[known] % 1.0):
+        short = (u for u in ('ms', 'us') if step * TIME_UNITS[u] <= _MOST_STEP)
+        finer = next(short, 'ns')
+        if np.quantile(turned / np.maximum(steps, 1.0), MOST) <= FASTEST * TIME_UNITS[finer]:
+            cause = f'the times in {clock.name} are {step * clock.scale:.6g} s apart'
+            cause += f', as if they were {finer}'
             raise ColumnsError(cause, 'their unit', time=f'{clock.name} [{finer}]')
+    if 0.0 < mean * clock.scale * _IMPOSSIBLE * (1.0 if unit else 1.0 / ANGLE_UNITS['deg']) < turn:
+        slow = (u for u in ('us', 'ms') if turn <= FASTEST * mean * TIME_UNITS[u])
+        cause = f'the times in {clock.name} are {mean * clock.scale:.6g} s apart'
+        cause += f', in which the rotor would turn by {turn:.3g} rad'
+        raise ColumnsError(cause, 'their unit', time=f'{clock.name} [{next(slow, "s")}]')
 
 
 def in_nanoseconds(seconds: Array, fraction: Array, name: str) -> Array | None:

@@ -173,7 +173,7 @@ class _Samples:
             if not clock.unit:
                 clock = with_unit(clock, raw[clocks[role]], turned, role)
             elif role == 'rotor' and not sources.time:
-                check_steps(clock, raw[clocks[role]], turned)
+                check_steps(clock, raw[clocks[role]], turned, self.found[role].unit)
         self._clock, self.timed = clock, clock is not None
         self.series: dict[str, _Series] = {}
         for roles, kept in groups:

@@ -874,6 +874,14 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
          r"times in time_s are 40 s apart, as if they were ms: .* --time-column 'time_s \[ms"),
         (lambda t, r, o: written([1e6 * t, r, o], 'time_ms,rotor,output', '{:.0f}'),
          r"times in time_ms are 40 s apart, as if they were us: .* --time-column 'time_ms \[us"),
+        (lambda t, r, o: written([1e9 * t, r, o], 'time_ms,rotor,output', '{:.0f}'),
+         r"times in time_ms are 40000 s apart, as if they were ns: .* 'time_ms \[ns"),
+        (plain('time_us,rotor_deg,output_deg', time='{:.5f}', angle=DEG),  # as of unball/Firmware
+         r"times in time_us are 4e-08 s apart, in .* turn by 1\.44 rad: .* 'time_us \[s\]'"),
+        (plain('time_ns,rotor,output', unit=1e3),
+         r"times in time_ns are 4e-08 s apart, in .* turn by 1\.44 rad: .* 'time_ns \[ms\]'"),
+        (plain('time_ticks,rotor,output', unit=8e3),  # of 125 µs each
+         r"time_ticks: steps of 320 do not tell their unit: .* 'time_ticks \["),
         (lambda t, r, o: written([t, *in_counts(r, o), in_counts(r)[0] / 4096 * 360],
                                  'time,mot_ang,ank_ang,mot_ang_deg', ('{:.2f}', *3 * ['{:.7f}'])),
          'for example: .* --output-column .?ank_ang'),
