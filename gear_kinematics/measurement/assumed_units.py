@@ -40,6 +40,7 @@ def against(
     stamp: Array | None,
     step: Step | None,
     other: str,
+    least: float,
     remark: str,
 ) -> tuple[str, str] | None:
     """Return what shows that numbers without a unit have another, and a likely one.
@@ -50,6 +51,7 @@ def against(
         stamp: (n,), ns; None if times were not recorded.
         step: of the encoder; None for a torque.
         other: unit of the other angle; empty if that is unknown, too.
+        least: the range of the angle that turns least, rad or as it is written.
         remark: titles and comments above the names.
     """
     if column.unit:
@@ -69,7 +71,7 @@ def against(
             return 'does not say that it is a torque', 'N·m'
         return ('is raw', 'N·m') if 'raw' in says.words else None
     if not says.role:
-        likely = 'rad' if np.ptp(numbers) < TURN else 'deg'
+        likely = 'rad' if least < 2.0 * TURN else 'deg'  # as outputs hardly turn further
         return 'does not say that it is an angle', 'counts' if whole else likely
     if whole and np.ptp(values) > TURN:
         return 'has whole numbers, such as counts', 'counts'

@@ -288,16 +288,17 @@ class _Samples:
 
     def steps(self) -> dict[str, Step]:
         """Return the steps of encoders by role; ValueError if an assumed unit is impossible."""
-        angles = [column.unit for role, column in self.found.items() if role != 'torque']
-        steps, other = dict[str, Step](), next(filter(None, angles), '')
+        other = next(filter(None, (self.found[role].unit for role in self._shown)), '')
+        least = min(float(np.ptp(self.series[role].values[role])) for role in self._shown)
+        steps = {}
         for role, column in self.found.items():
             if role != 'torque':
-                of_output = role == 'output'
-                known = self._sources.output_counts if of_output else self._sources.rotor_counts
+                encoder = 'output' if role == 'output' else 'rotor'
+                known = getattr(self._sources, f'{encoder}_counts')
                 steps[role] = Step(TURN / known, seen=False) if known else self._shown[role]
             values, stamp = self.series[role].values[role], self.series[role].stamp
             timed = stamp if self.timed else None
-            if found := against(column, values, timed, steps.get(role), other, self._remark):
+            if found := against(column, values, timed, steps.get(role), other, least, self._remark):
                 cause, unit = found
                 alone = role == 'torque' or other
                 example = {role: f'{column.name} [{unit}]'} if alone else {'unit': unit}
