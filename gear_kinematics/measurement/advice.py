@@ -32,11 +32,13 @@ _ALIKE, _COPIED = 0.3, 1.0 - 1e-6
 _LISTED = 600  # characters of the list of columns
 _NO_ANGLE = re.compile(
     r'(?i)torq|effort|force|curr|(?<!tra)vel(?!_mapper)|speed|rpm|/ ?s(ec)?\b|temp|time|stamp|'
-    rf'control|elec|tau|index|valid|cell|acc(?!um)|dot|err|volt|power|^t$|^[ftm][xyz]|^i_?[qd](?![a-z])|{WANTED}'
+    r'control|elec|tau|index|valid|cell|strain|acc(?!um)|dot|err|volt|power|^t$|^[ftm][xyz]|'
+    rf'^i_?[qd](?![a-z])|{WANTED}|fehler|geschwind|drehzahl|vitesse|[误誤]差|速度|[转轉]速'
 )
 """Words in names of columns that are not proposed as angles."""
 _LIKELY = re.compile(
     r'(?i)pos|\bq|_q|ang(?!e)|enc(?!y)|theta|winkel|rotation|(rad|deg|rev|inc|cnt|counts)\b|'
+    'lage|geber|codeur|угол|角|位置|编码|編碼|エンコーダ|'
     r'(motor|rotor|joint|link|output)$'
 )
 """Words in names of columns that are proposed first."""

@@ -36,7 +36,7 @@ _REVOLUTIONS = re.compile(r'(?i)servo_stats.*position|pos_estimate|pos_rel|pos_a
 _NUMBERED = re.compile(r'(\W*\d+|_[a-z]|(?<=^t)[mol])(?=( ?[\[(].*)?$)')
 """Ends of time.1, as pandas repeats a name, of time_a, and of tm, before any unit."""
 _MOTEUS = {'position', 'torque', 'q_current'}
-_NOT_MEASURED = re.compile(rf'(?i){WANTED}|err|soll|planned|refer|simul|model')
+_NOT_MEASURED = re.compile(rf'(?i){WANTED}|err|planned|refer|simul|model')
 """Words in the path of tags whose values are no measured angles."""
 _POSITION = re.compile(r'(?i)pos|ang(?!e)|encod|winkel|theta|(rad|deg|rev|counts?)\b')
 """Words of which the tag of an angle has one, as Temperature.Motor does not."""

@@ -16,7 +16,7 @@ _VOCABULARY = {
     'input': 'input eingang entrée ingresso entrada 输入 输入轴 輸入 輸入軸 入力 入力軸 입력',
     'angle': 'position positions pos angle ang encoder enc theta phi θ φ ϕ deflection twist '
     'rotation winkel drehwinkel verdrehwinkel angolo ángulo angulo posición posizione 位置 '
-    '角度 编码器 編碼器 각도 위치 엔코더',
+    '角度 转角 扭转角 回転角 ねじれ角 编码器 編碼器 각도 위치 엔코더',
     'torque': 'torque torques tor effort efforts trq tq tau τ drehmoment moment couple coppia '
     '扭矩 力矩 转矩 轉矩 トルク 토크',
     'current': 'current',
@@ -26,7 +26,7 @@ _VOCABULARY = {
     'filling': 'header receive log dynamic measured meas actual act filtered raw field data value '
     'values feedback state states axis angular rotary present sensor abs side in ist host pi ros '
     'system unix epoch tv channel ch fb fbk ave estimate scalars signals date datum utc wall '
-    'application main plc prg gvl payload msg message',
+    'application main plc prg gvl payload msg message torsional',
 }
 """Words in names by kind, the likeliest first. The input is the rotor if a quantity is said, too.
 The filling may accompany all others; any other word shows a command, a speed or the like."""
@@ -39,7 +39,10 @@ FOREIGN = {*_SHARES.split(), *_OTHERS.split()}
 """Units of quantities other than torque and angle, and words that may be times."""
 _CERTAIN = {'time', 'stamp', 'timestamp', 'timestamps', 'zeit', 'zeitstempel'}
 """Words for times that mean them beside unknown words, too, if the numbers rise."""
-WANTED = r'target|action|goal|desire|cmd|command|setpoint|demand|(?<![a-z])(ref|des)(?![a-z])'
+WANTED = (
+    r'target|action|goal|desire|cmd|command|setpoint|demand|(?<![a-z])(ref|des)(?![a-z])|'
+    'soll|consigne|目标|目標|指令|목표'
+)
 """Words in names of columns of what was commanded, not measured."""
 _SPEEDS = {'rpm', 'rps', 'dps', 'cps'}
 _OF_ONE = re.compile(r't(_[a-z]+|[mol])( ?[\[(].*)?|.*[a-z][./]t')
@@ -49,10 +52,10 @@ _NO_UNIT = re.compile(r'-|none|n/a|1|:|utc.*|.*h:m+.*')
 _DEG, _KGF, _LBF = UNITS['deg'], 9.80665, 4.4482216152605  # rad, N, N
 _SIZES: Mapping[str, Mapping[str, Any]] = {
     'angle': {
-        'rad radian radians': 1.0,
+        'rad radian radians 弧度': 1.0,
         'mrad millirad milliradian milliradians': 1e-3,
-        'deg ° º ˚ degs degree degrees grados gradi degrés': _DEG,
-        'rev turn turns revs revolution revolutions rotations umdrehungen umdr': TURN,
+        'deg ° º ˚ degs degree degrees grados gradi degrés graus graden град 度 도': _DEG,
+        'rev turn turns revs revolution revolutions rotations umdrehungen umdr 圈 转': TURN,
         'mdeg millideg': 1e-3 * _DEG,
         'cdeg': 1e-2 * _DEG,
         'ddeg': 0.1 * _DEG,
@@ -61,7 +64,7 @@ _SIZES: Mapping[str, Mapping[str, Any]] = {
         "arcmin arc-min arcminutes ′ '": _DEG / 60.0,
         'arcsec arc-sec arcseconds ″': _DEG / 3600.0,
         'gon': TURN / 400.0,
-        'counts count cnt inc increment increments ticks pulse pulses lsb steps qc': None,
+        'counts count cnt inc increment increments ticks pulse pulses lsb steps qc 脉冲': None,
     },
     'torque': {
         'N·m nm knmm': 1.0,
@@ -78,8 +81,8 @@ _SIZES: Mapping[str, Mapping[str, Any]] = {
         'oz·in ozin inoz ozfin inozf': 0.0254 / 16.0 * _LBF,
     },
     'time': {
-        's sec secs second seconds': 1.0,
-        'ms msec millis millitm millisecond milliseconds': 1e-3,
+        's sec secs second seconds 秒 초': 1.0,
+        'ms msec millis millitm millisecond milliseconds 毫秒': 1e-3,
         'us µs usec µsec micros microseconds': 1e-6,
         'ns nsec nsecs nanosec nanosecs nanoseconds': 1e-9,
         'minutes minute': 60.0,
@@ -99,10 +102,11 @@ _UNITS = {
     for word in words.split()
 }
 
-_IN_BRACKETS = _UNITS | {'rotation': 'rev', 'min': 'minutes', 'h': 'hours'}
+_IN_BRACKETS = _UNITS | {'rotation': 'rev', 'min': 'minutes', 'h': 'hours', 'с': 's'}
+_IN_BRACKETS |= {'tr': 'rev', 'tours': 'rev', 'ink': 'counts', 'inkr': 'counts'}
 """Also units that mean something else as words of a name, as in position_min."""
 
-_DOTS = '-.*·⋅∙•×'  # between newton and metre
+_DOTS = '-.*·⋅∙•×・'  # between newton and metre
 _MEGA = rf'MN(?=[{_DOTS}_ ]?m)', 'meganewton'  # so that MN·m is not read as mN·m
 _PLAINER: Mapping[str, Any] = {
     _MEGA[0]: _MEGA[1],

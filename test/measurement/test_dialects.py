@@ -524,6 +524,7 @@ ENCODERS = {
     'Chinese': lambda t, r, o: written(
         [t, r * DEG, o * DEG], '时间\uff08s\uff09,电机角度\uff08°\uff09,输出角度\uff08°\uff09'),
     'Chinese of Windows': plain('时间戳,电机编码器(deg),输出轴角度(deg)', angle=DEG, code='gbk'),
+    'units in Chinese': plain('时间(毫秒),电机角度(度),输出角度(度)', angle=DEG, unit=1e3),
     'Korean of Windows': plain('시간(s),모터 각도(deg),출력축각도(deg)', angle=DEG, code='cp949'),
     'traditional Chinese': plain('時間,馬達位置(deg),輸出軸角度(deg)', angle=DEG, code='big5'),
     'Japanese of Windows': plain('時間,モータ位置[deg],出力軸角度[deg]', angle=DEG, code='cp932'),
@@ -614,6 +615,12 @@ RAMPS = {
         [t, a * DEG, q / -30, q * 1e3], 't,angle_deg,torque_in_Nm,torque_out_MilliNm', '{:.6f}'),
     'a symbol of torque, and kN·mm': lambda t, a, q: written(
         [t, a * 60 * DEG, q], 'time,phi [arc-min],Drehmoment M [kNmm]', 3 * ['{:.6f}']),
+    'a torsion tester of MTS': lambda t, a, q: written(
+        [t, a * DEG, 1e-3 * q, q / 0.112985, 1e-7 * q], 'Test: 20in-lb-return\n\n\n'
+        'Time ,Torsional Angle ,Torsional Epsilon 3550 Torsion ,Torsional Torque ,Axial Epsilon\n'
+        'sec,°,°,in·lbf,in', 5 * ['{:.6f}']),
+    'a middle dot of Japanese': lambda t, a, q: written(
+        [t, a * DEG, q * 1e3], '時間(s),ねじれ角(deg),トルク(mN・m)', 3 * ['{:.6f}']),
     'symbols alone': lambda t, a, q: written([t, a * DEG, q], 't,φ [°],M [Nm]', 3 * ['{:.6f}']),
     'N.m': lambda t, a, q: written([t, a * DEG, q], 't,angle [deg.],torque [N.m]'),
     'the motor in other units': lambda t, a, q: written(
@@ -961,6 +968,8 @@ UNTOLD = {
     'unknown word': plain('time,motor_pos_x,output_pos_x'),
     'times': lambda t, r, o: written([25 * t, r / 3, o / 3], NAMES),
     'both motors': plain('time,motor1_pos,motor2_pos'),
+    'Chinese, by angles alone': plain('时间,输入端转角,输出端转角'),
+    'turns in French': plain('temps;codeur moteur (tr);codeur sortie (tr)', ';', angle=REV),
     'a unit of a maker': lambda t, r, o: written([t * 1e3, *in_counts(r, o)],
         'Time [ms];Position actual value [qc];Load position [qc]', 3 * ['{:.0f}'], ';'),
     'a torque beside': lambda t, r, o: written(
@@ -1710,6 +1719,9 @@ def test_the_first_column_without_a_name_that_rises_is_no_encoder(
 
 @pytest.mark.parametrize(('kind', 'names'), [
     ('encoders', 't,pressure_2,pressure_1'), ('encoders', 't,Range,Exchange'),
+    ('encoders', 't,Drehzahl [°],Schleppfehler [°]'),
+    ('encoders', '时间,目标角度[deg],指令位置[deg]'),
+    ('encoders', 't,Shear Strain (deg),Axial Strain (deg)'),
     ('ramps', 'time,actual_q_0,momentum_0'), ('ramps', 'time,Efficiency (kgf/W),Torque (N·m)'),
 ])  # fmt: skip
 def test_only_angles_and_torques_are_proposed(tmp_path, gear, reference, kind, names):
