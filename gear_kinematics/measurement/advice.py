@@ -33,6 +33,7 @@ _LISTED = 600  # characters of the list of columns
 _NO_ANGLE = re.compile(
     r'(?i)torq|effort|force|curr|(?<!tra)vel(?!_mapper)|speed|rpm|/ ?s(ec)?\b|temp|time|stamp|'
     r'control|elec|tau|index|valid|cell|strain|acc(?!um)|dot|err|volt|power|^t$|^[ftm][xyz]|'
+    r'(?<![a-z])(mm|[µu]m|inch)(?![a-z])|'
     rf'^i_?[qd](?![a-z])|{WANTED}|fehler|geschwind|drehzahl|vitesse|[误誤]差|速度|[转轉]速'
 )
 """Words in names of columns that are not proposed as angles."""
@@ -120,7 +121,8 @@ def _rising(table: TableFile, names: Iterable[str]) -> Iterator[tuple[str, Any]]
         except ValueError:  # of a column that need not be read
             continue
         several = values.dtype.kind in 'iufM' and len(values) > 1
-        if several and np.all(values[1:] >= values[:-1]) and values[-1] > values[0]:
+        changes = np.count_nonzero(values[1:] != values[:-1]) if several else 0
+        if changes >= min(2, len(values) - 1) > 0 and np.all(values[1:] >= values[:-1]):
             yield name, values
 
 
@@ -198,7 +200,8 @@ def _alike(
     """Yield the pairs of columns that move alike, the likeliest first, and in each the faster.
 
     `sizes` are those of their units, 0 where unknown: then both are taken to have the same unit.
-    A pair is sure if both move much alike and their names do not contradict that.
+    A pair is sure if both move much alike and their names do not contradict that. Of those that
+    move nearly as alike, the likeliest share the most words, such as those of one joint.
     """
     pairs = {}
     for rotor, output in permutations(columns, 2):
@@ -211,8 +214,10 @@ def _alike(
         if pair.shape[1] > _FEWEST and (spread := np.std(pair, axis=1))[0] > spread[1] > 0.0:
             likeness = abs(np.corrcoef(pair)[0, 1])
             named = not (meaning(rotor).on_output or meaning(output).on_rotor)
+            shared = len({*meaning(rotor).words} & {*meaning(output).words})
             if likeness > _COPIED:
                 likeness = 0.0  # comes last
-            pairs[named and likeness > _ALIKE, likeness] = rotor, output
-    for sure, likeness in sorted(pairs, reverse=True)[:_FEWEST]:
-        yield sure, *pairs[sure, likeness]
+            sure = named and likeness > _ALIKE
+            pairs[sure, round(likeness, 1), shared, likeness] = rotor, output
+    for key in sorted(pairs, reverse=True)[:_FEWEST]:
+        yield key[0], *pairs[key]

@@ -31,8 +31,9 @@ _RARE = (
     ("[ '\u2019\u00a0\u202f]", r"(?<=\d)[ '\u2019\u00a0\u202f](?=\d{3}\b)", ''),
 )
 """What few columns contain, and how numbers are written without it."""
-_MARKED, _FEW_MARKED = r'[^\w\s]{0,3} ?[.,]?\d[\d.,]*([eE][-+]?\d+)? ?[^\w\s]{0,3}', 0.01
-"""Numbers with more marks, such as 12.5- or < 0.1; share of the rows that can have them."""
+_MARKED = r'[^\w\s]{0,3} ?[.,]?\d[\d.,]*([eE][-+]?\d+)? ?[^\w\s]{0,3}|[-+.,\d]*\d'
+"""Numbers with more marks, such as 12.5- or < 0.1, or two without a space, such as 0.5-12.5."""
+_FEW_MARKED = 0.01  # share of the rows that can have them
 _IDS = re.compile(r'((joint|motor|actuator|servo|axis|node|can|id|name|index) ?)+')
 """Names of the column of a table with a row for each joint."""
 _TOPICS = (

@@ -144,7 +144,7 @@ def are_no_times(name: str, unit: str, times: Array) -> bool:
     """Return whether numbers of a name that may say something else do not rise as times do.
 
     They are called T, t_m, or temps (French for times), or have a further word, as cycle_time has.
-    A date may be that of the day alone.
+    A date may be that of the day alone, and durations may be 0 once.
     """
     steps, says = np.diff(times.astype(float)), meaning(name)
     date = says.words in DATES
@@ -153,8 +153,9 @@ def are_no_times(name: str, unit: str, times: Array) -> bool:
     if (name.lower() == 'temps' and not unit) or (says.unsure and 't' in says.words):
         return not np.all(steps > 0.0)
     rise, least = np.sum(steps), _RISING * np.sum(steps, where=steps > 0.0)
+    durations = says.unsure and len(steps) > 1 and np.count_nonzero(steps) == 1
     unsure = says.unsure or date
-    return bool((unsure and rise <= least) or (name == 'T' and rise < least))
+    return bool(durations or (unsure and rise <= least) or (name == 'T' and rise < least))
 
 
 def stamps(

@@ -82,8 +82,8 @@ _SIZES: Mapping[str, Mapping[str, Any]] = {
     },
     'time': {
         's sec secs second seconds 秒 초': 1.0,
-        'ms msec millis millitm millisecond milliseconds 毫秒': 1e-3,
-        'us µs usec µsec micros microseconds': 1e-6,
+        'ms msec msecs millis millitm millisecond milliseconds 毫秒': 1e-3,
+        'us µs usec usecs µsec micros microseconds': 1e-6,
         'ns nsec nsecs nanosec nanosecs nanoseconds': 1e-9,
         'minutes minute': 60.0,
         'hours hour': 3600.0,

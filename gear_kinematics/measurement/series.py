@@ -1,6 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Series with rows of their own: a row for each value, gaps that were filled, held readings."""
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -10,7 +11,7 @@ from gear_kinematics.measurement.cells import numbers
 from gear_kinematics.measurement.clocks import in_nanoseconds
 from gear_kinematics.measurement.columns import fraction_of, likeliest
 from gear_kinematics.measurement.encoder_step import find_step
-from gear_kinematics.measurement.names import meaning
+from gear_kinematics.measurement.names import FOREIGN, known_units, meaning
 from gear_kinematics.measurement.recording import Array
 from gear_kinematics.measurement.sentences import Observation, Observed
 
@@ -42,7 +43,7 @@ def series_of(
         point: the decimal point.
         key: the column that says which series, or which joint, a row is of.
         value: the column of the values; empty if all other columns have some.
-        units: units by column.
+        units: units by column; those of a series may be in a column of their own.
 
     Returns:
         Columns, their units, and the columns of their times, by the name of the series.
@@ -58,17 +59,26 @@ def series_of(
         if (both := in_nanoseconds(seconds, fraction, rest)) is not None:
             frame[clock], unit = both, 'ns'
     others = [name for name in frame if name not in {key, clock, ''} and frame[name].ndim == 1]
+    labels = [name for name in others if value and re.fullmatch('(?i)units?|einheit', name)]
+    labels = [name for name in labels if known_units(_texts(frame[name]), FOREIGN, fewest=1)]
     columns, clocks, known = {}, dict[str, str](), dict[str, str]()
     for joint, series in frame.groupby(key, sort=False):
         for column in [value] if value else others:
             name = str(joint) if value else f'{joint} {column}'
             columns[name] = numbers(series[column], point)
             known |= {name: units[column]} if column in units and not value else {}
+            if said := ' and '.join(text for label in labels for text in _texts(series[label])):
+                known[name] = said
             clocks |= {name: f'{clock} of {joint}'} if clock else {}
         if clock:
             columns[own := f'{clock} of {joint}'] = numbers(series[clock], point)
             known[own] = unit
     return columns, known, clocks
+
+
+def _texts(column: Any) -> list[str]:
+    """Return the different texts in a column of pandas."""
+    return [*map(str, column.dropna().unique())]
 
 
 def rows_of(

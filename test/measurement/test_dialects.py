@@ -381,12 +381,18 @@ ENCODERS = {
     'units above names': plain('ms,deg,deg\ntime,rotor,output', angle=DEG, unit=1e3),
     'meta lines of three cells above names with units': plain(
         'bench,3,x\nTime (s),Rotor (deg),Output (deg)', angle=DEG),
+    'a unit that is a machine': lambda t, r, o: 'unit,time,signal,value\n' + ''.join(
+        f'B7,{at:.2f},rotor,{rotor:.5f}\nB7,{at:.2f},output,{out:.5f}\n'
+        for at, rotor, out in zip(t, r, o, strict=True)),
     'an index called key, and a value of something else': lambda t, r, o: written(
         [range(len(t)), t, r, o, t], 'key,time,rotor,output,value',
         ('{:.0f}', '{:.2f}', '{:.5f}', '{:.5f}', '{:.1f}')),
     'a label, and a value of something else': lambda t, r, o: 'time,label,rotor,output,value\n'
     + ''.join(f'{at:.2f},{"up" if rotor > 0.0 else "down"},{rotor:.5f},{out:.5f},3\n'
               for at, rotor, out in zip(t, r, o, strict=True)),
+    'a row for each value, with its unit': lambda t, r, o: 'Time,Signal,Value,Unit\n' + ''.join(
+        f'{at:.2f},Motor angle,{rotor * REV:.7f},rev\n{at:.2f},Output angle,{out * DEG:.5f},deg\n'
+        for at, rotor, out in zip(t, r, o, strict=True)),
     'texts among the values': lambda t, r, o: 'time,topic,value\n' + ''.join(
         f'{at:.2f},rotor,{rotor:.5f}\n{at:.2f},output,{out:.5f}\n{at:.2f},state,idle\n'
         for at, rotor, out in zip(t, r, o, strict=True)),
@@ -893,6 +899,10 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
                                  'time,mot_ang,ank_ang,mot_ang_deg', ('{:.2f}', *3 * ['{:.7f}'])),
          'for example: .* --output-column .?ank_ang'),
         ('time;rotor;output\nsec;U;U\n0;0;0\n', 'rotor: the unit u is not known'),
+        (lambda t, r, o: 'time,signal,value,unit\n' + ''.join(
+            f'{at:.2f},motor,{rotor:.5f},{"rad" if at < 9.0 else "deg"}\n'
+            f'{at:.2f},output,{out:.5f},rad\n' for at, rotor, out in zip(t, r, o, strict=True)),
+         'motor: the unit radanddeg is not known'),
         *((f'time,angle,{name}\n0,0,2\n1,0.001,3\n',
            f'{name} does not say that it is a torque: .* --torque-column .{name} .N·m')
           for name in ('load', 'Iq')),
@@ -1086,6 +1096,15 @@ def test_the_command_line_of_the_advice_works(tmp_path, gear, reference, name, u
     both = read(path, gear, followed(caught.value)).both
     if unit[1:] == ['rad']:
         assert np.ptp(both.measured) == pytest.approx(np.ptp(output), rel=1e-3)
+
+
+def test_seconds_and_their_fractions_are_one_time(tmp_path, gear, reference):
+    t, r, o = reference('encoders')
+    form = '{:.0f}', '{:.0f}', '{:.5f}', '{:.5f}'
+    columns = t // 1, 1e6 * (t % 1.0), r, o
+    recording = read(saved(tmp_path, written(columns, 'secs,usecs,rotor,output', form)), gear)
+    assert recording.remarks == ()
+    np.testing.assert_allclose(recording.both.seconds, t, atol=1e-6)
 
 
 def test_names_can_be_given_with_units(tmp_path, gear, reference):
@@ -1722,11 +1741,35 @@ def test_the_first_column_without_a_name_that_rises_is_no_encoder(
     ('encoders', 't,Drehzahl [°],Schleppfehler [°]'),
     ('encoders', '时间,目标角度[deg],指令位置[deg]'),
     ('encoders', 't,Shear Strain (deg),Axial Strain (deg)'),
+    ('encoders', 't,motor_pos_rad,output_pos_mm'),
     ('ramps', 'time,actual_q_0,momentum_0'), ('ramps', 'time,Efficiency (kgf/W),Torque (N·m)'),
 ])  # fmt: skip
 def test_only_angles_and_torques_are_proposed(tmp_path, gear, reference, kind, names):
     path = saved(tmp_path, written(reference(kind), names, '{:.6f}'))
     with pytest.raises(RecordingError, match='by --angle-column, --torque-column'):
+        read(path, gear)
+
+
+@pytest.mark.parametrize('form', ['{}_motor_pos,{}_output_pos', 'motor_pos[{}],joint_pos[{}]'])
+def test_encoders_of_one_joint_are_proposed_together(tmp_path, gear, reference, form):
+    t, r, o = reference('encoders')
+    names = [form.format(side, side) for side in ('1', '2')]
+    path = saved(tmp_path, written([t, r, o, r / 2, o / 2], ','.join(['time', *names]), '{:.5f}'))
+    with pytest.raises(RecordingError) as told:
+        read(path, gear)
+    given = followed(told.value)
+    assert f'{given.rotor},{given.output}' in names
+
+
+def test_numbers_that_touch_are_no_gaps(tmp_path, gear, reference):
+    t, r, o = reference('encoders')
+    assert r.min() * DEG < -1e4  # of twelve characters
+    rows = [
+        f'{at:10.3f}{rotor * DEG:12.5f}{out * DEG:12.5f}'
+        for at, rotor, out in zip(t, r, o, strict=True)
+    ]
+    path = saved(tmp_path, '\n'.join(['      time   rotor_deg  output_deg', *rows]) + '\n')
+    with pytest.raises(RecordingError, match=r'time has cells such as .*, which are no numbers'):
         read(path, gear)
 
 
@@ -1751,7 +1794,8 @@ def test_whole_seconds_are_believed_where_the_rotor_would_be_too_fast_in_ms(
 
 def test_durations_are_no_times(tmp_path, gear, reference):
     t, r, o = reference('encoders')
-    for duration in (t - t + 0.04, 0.04 + 1e-3 * np.sin(t), -t, t + math.nan, t % 3.0):
+    fixed = 0.04 * (t > 0.0)
+    for duration in (fixed + 0.04, 0.04 + 1e-3 * np.sin(t), -t, t + math.nan, t % 3.0, fixed):
         content = written([duration, r, o], 'loop_time,rotor,output', 3 * ['{:.5f}'])
         assert not read(saved(tmp_path, content), gear).encoders.timed
 
