@@ -33,7 +33,7 @@ _LISTED = 600  # characters of the list of columns
 _NO_ANGLE = re.compile(
     r'(?i)torq|effort|force|curr|(?<!tra)vel(?!_mapper)|speed|rpm|/ ?s(ec)?\b|temp|time|stamp|'
     r'control|elec|tau|index|valid|cell|strain|acc(?!um)|dot|err|volt|power|^t$|^[ftm][xyz]|'
-    r'(?<![a-z])(mm|[µu]m|inch)(?![a-z])|'
+    r'(?<![a-z])(mm|[µu]m|inch|q[wxyz])(?![a-z])|'
     rf'^i_?[qd](?![a-z])|{WANTED}|fehler|geschwind|drehzahl|vitesse|[误誤]差|速度|[转轉]速'
 )
 """Words in names of columns that are not proposed as angles."""

@@ -81,18 +81,19 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
     return clock._replace(unit=unit, scale=TIME_UNITS[unit])
 
 
-def check_steps(clock: Column, times: Array, angle: Array, unit: str) -> None:
-    """Raise ColumnsError if times seem to be in another unit, by the rotor's angle, rad.
+def check_steps(clock: Column, times: Array, angle: Array, unit: str, role: str) -> None:
+    """Raise ColumnsError if times seem to be in another unit, by the angle in a role, rad.
 
-    Whole numbers may be in a finer unit, and all in a coarser one. An angle without a `unit` may
-    be in degrees.
+    Whole numbers beside a rotor may be in a finer unit, and all in a coarser one. An angle without
+    a `unit` may be in degrees.
     """
     known = np.isfinite(times) & np.isfinite(angle)
     if times.dtype.kind == 'M' or np.count_nonzero(known) <= 1:  # dates, or nothing to compare
         return
     steps, turned = np.abs(np.diff([times[known].astype(float), angle[known]]))
     step, mean, turn = float(np.median(steps)), float(np.mean(steps)), np.quantile(turned, MOST)
-    if step * clock.scale > _MOST_STEP and not np.any(times[known] % 1.0):
+    whole = not np.any(times[known] % 1.0)
+    if role == 'rotor' and whole and step * clock.scale > _MOST_STEP:
         short = (u for u in ('ms', 'us') if step * TIME_UNITS[u] <= _MOST_STEP)
         finer = next(short, 'ns')
         if np.quantile(turned / np.maximum(steps, 1.0), MOST) <= FASTEST * TIME_UNITS[finer]:
@@ -102,7 +103,7 @@ def check_steps(clock: Column, times: Array, angle: Array, unit: str) -> None:
     if 0.0 < mean * clock.scale * _IMPOSSIBLE * (1.0 if unit else 1.0 / ANGLE_UNITS['deg']) < turn:
         slow = (u for u in ('us', 'ms') if turn <= FASTEST * mean * TIME_UNITS[u])
         cause = f'the times in {clock.name} are {mean * clock.scale:.6g} s apart'
-        cause += f', in which the rotor would turn by {turn:.3g} rad'
+        cause += f', in which the shaft would turn by {turn:.3g} rad'
         raise ColumnsError(cause, 'their unit', time=f'{clock.name} [{next(slow, "s")}]')
 
 

@@ -172,8 +172,8 @@ class _Samples:
             turned = data[role] * (self.found[role].unit != 'counts')  # whose speed is unknown
             if not clock.unit:
                 clock = with_unit(clock, raw[clocks[role]], turned, role)
-            elif role == 'rotor' and not sources.time:
-                check_steps(clock, raw[clocks[role]], turned, self.found[role].unit)
+            elif not sources.time:
+                check_steps(clock, raw[clocks[role]], turned, self.found[role].unit, role)
         self._clock, self.timed = clock, clock is not None
         self.series: dict[str, _Series] = {}
         for roles, kept in groups:

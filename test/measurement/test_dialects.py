@@ -1159,6 +1159,9 @@ def test_loads_take_columns_that_say_no_side_for_those_of_the_rotor(tmp_path, ge
     path = saved(tmp_path, written([rotor, np.sin(time)], 'position,effort', '{:.5f}'))
     with pytest.raises(RecordingError, match=r'--time-column and --torque-column$'):
         read_rotor(path, Sources(), gear.gear.gear_ratio)
+    path = saved(tmp_path, written([time, rotor, rotor], 'time_us,position,effort', '{:.5f}'))
+    with pytest.raises(RecordingError, match=r"the shaft would turn by .* 'time_us \[s\]'"):
+        read_rotor(path, Sources(), gear.gear.gear_ratio)
 
 
 def test_rows_are_those_of_the_output_where_encoders_share_none(tmp_path, gear, reference):
@@ -1741,7 +1744,7 @@ def test_the_first_column_without_a_name_that_rises_is_no_encoder(
     ('encoders', 't,Drehzahl [°],Schleppfehler [°]'),
     ('encoders', '时间,目标角度[deg],指令位置[deg]'),
     ('encoders', 't,Shear Strain (deg),Axial Strain (deg)'),
-    ('encoders', 't,motor_pos_rad,output_pos_mm'),
+    ('encoders', 't,motor_pos_rad,output_pos_mm'), ('encoders', 't,qy,qx'),
     ('ramps', 'time,actual_q_0,momentum_0'), ('ramps', 'time,Efficiency (kgf/W),Torque (N·m)'),
 ])  # fmt: skip
 def test_only_angles_and_torques_are_proposed(tmp_path, gear, reference, kind, names):
