@@ -3,7 +3,7 @@
 
 import math
 from bisect import bisect_right
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from itertools import pairwise
 
 import numpy as np
@@ -118,6 +118,20 @@ def in_nanoseconds(seconds: Array, fraction: Array, name: str) -> Array | None:
     whole, rest = (np.where(known, one, 0.0) for one in (seconds, fraction * (SECOND / size)))
     both = whole.astype(np.int64) * SECOND + np.round(rest).astype(np.int64)
     return both if known.all() else np.where(known, both, np.nan)
+
+
+def join_fractions(raw: dict[str, Array], rests: Mapping[str, str]) -> set[str]:
+    """Make whole seconds and their fractions, by the names of both, times in ns, if they are such.
+
+    Both columns become the same, so that neither is the time of one encoder. Returns the names of
+    those of seconds.
+    """
+    joined = set()
+    for name, rest in rests.items():
+        if rest and (both := in_nanoseconds(raw[name], raw[rest], rest)) is not None:
+            raw[name] = raw[rest] = both
+            joined.add(name)
+    return joined
 
 
 def are_apart(usual: Array, other: Array) -> bool:

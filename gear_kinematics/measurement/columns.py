@@ -193,6 +193,8 @@ def own_clocks(names: Sequence[str], columns: Mapping[str, Column]) -> dict[str,
     numbered, but not one each before the values, the order of both is the same.
     """
     times = {name: meaning(name) for name in names if meaning(name).role == 'time'}
+    rests = {fraction_of(name, names) for name in times}
+    times = {name: says for name, says in times.items() if name not in rests}
     found = {}
     for role, column in columns.items():
         side = meaning(column.name)[4:6]

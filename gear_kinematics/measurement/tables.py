@@ -18,7 +18,7 @@ from gear_kinematics.measurement.clocks import (
     are_no_times,
     check_steps,
     check_units,
-    in_nanoseconds,
+    join_fractions,
     stamps,
     with_unit,
 )
@@ -195,8 +195,8 @@ class _Samples:
         self, table: TableFile, clock: Column | None, clocks: set[str]
     ) -> tuple[dict[str, Array], Column | None]:
         """Load columns by name; also return the column of times with its unit, if it has any."""
-        rest = fraction_of(clock.name, table.names) if clock else None
-        wanted = {column.name for column in self.found.values()} | clocks | {rest or ''}
+        rests = {name: fraction_of(name, table.names) or '' for name in clocks - {''} if clock}
+        wanted = {column.name for column in self.found.values()} | clocks | {*rests.values()}
         raw, self._every = table.load(sorted(wanted - {''}))
         if self._every > 1:
             self.remarks.append(Observation.ROWS_THINNED(every=self._every))
@@ -207,9 +207,7 @@ class _Samples:
             filled = times == times  # noqa: PLR0124, as NaN is not equal to itself
             empty = not (filled.any() or table.first.get(clock.name, clock.name))
             clock = None if empty or are_no_times(clock.name, clock.unit, times[filled]) else clock
-        both = in_nanoseconds(raw[clock.name], raw[rest], rest) if clock and rest else None
-        if clock and rest and both is not None:
-            raw[clock.name] = raw[rest] = both  # so that neither is the time of one encoder
+        if clock and clock.name in join_fractions(raw, rests):
             clock = clock._replace(unit='ns', scale=1.0 / SECOND)
         return raw, clock
 

@@ -1107,6 +1107,18 @@ def test_seconds_and_their_fractions_are_one_time(tmp_path, gear, reference):
     np.testing.assert_allclose(recording.both.seconds, t, atol=1e-6)
 
 
+def test_the_seconds_of_each_encoder_have_their_own_fractions(tmp_path, gear, reference):
+    t, r, o = reference('encoders')
+    kinds = [*split_time(t[:-1]), r[:-1], *split_time(t[1:]), o[1:]]
+    head = ','.join(
+        f'{one}_stamp_sec,{one}_stamp_nanosec,{one}_pos' for one in ('motor', 'output')
+    )
+    content = written(kinds, head, 2 * ['{:.0f}', '{:.0f}', '{:.5f}'])
+    both = read(saved(tmp_path, content), gear).both
+    assert (both.duration, both.before[0]) == (pytest.approx(52.72, abs=0.05), 1)
+    assert_followed(both)
+
+
 def test_names_can_be_given_with_units(tmp_path, gear, reference):
     time, rotor, output = reference('encoders')
     path = saved(tmp_path, written([1e3 * time, DEG * rotor, output], 'a,b,c\n25 Hz,,'))
