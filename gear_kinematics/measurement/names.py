@@ -121,6 +121,7 @@ _PLAINER: Mapping[str, Any] = {
     r'((?i:moment|torque)) M(?![^\W_])': r'\1',  # the symbol, and no motor
     r'^M(?=[ _/\[(]*[mckµ]?N|_[xyz](?![^\W_]))': 'moment',
     r'(?i)[ _]?milli(?=(nm|rad|deg)(?![a-z]))': '_m',
+    r'(?i)(rad|deg|°|rev)[ ·.*]?s(\^?-1|⁻¹)': r'\1/s',
     r'(?i)(winkel.*[^a-z])grad(?![a-z])': r'\1deg',  # gradians elsewhere
     r'(?i)[ _]?(deg|rad|rev)[ _]?x1(0{1,3})$': lambda u: f'_{"dcm"[len(u[2]) - 1]}{u[1]}',
     rf'(?i)(?<![a-z])([mcdkµ]?n|k?gf?)[{_DOTS}_ ]([cm]?m)(?![a-z])': r'\1\2',

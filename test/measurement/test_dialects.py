@@ -1757,6 +1757,7 @@ def test_the_first_column_without_a_name_that_rises_is_no_encoder(
     ('encoders', '时间,目标角度[deg],指令位置[deg]'),
     ('encoders', 't,Shear Strain (deg),Axial Strain (deg)'),
     ('encoders', 't,motor_pos_rad,output_pos_mm'), ('encoders', 't,qy,qx'),
+    ('encoders', 't,motor [rad s^-1],output [rad·s⁻¹]'), ('encoders', 't,motor rad s-1,output'),
     ('ramps', 'time,actual_q_0,momentum_0'), ('ramps', 'time,Efficiency (kgf/W),Torque (N·m)'),
 ])  # fmt: skip
 def test_only_angles_and_torques_are_proposed(tmp_path, gear, reference, kind, names):
