@@ -39,7 +39,7 @@ _NO_ANGLE = re.compile(
 """Words in names of columns that are not proposed as angles."""
 _LIKELY = re.compile(
     r'(?i)pos|\bq|_q|ang(?!e)|enc(?!y)|theta|winkel|rotation|(rad|deg|rev|inc|cnt|counts)\b|'
-    'lage|geber|codeur|угол|角|位置|编码|編碼|エンコーダ|'
+    'accum|lage|geber|codeur|угол|角|位置|编码|編碼|エンコーダ|'
     r'(motor|rotor|joint|link|output)$'
 )
 """Words in names of columns that are proposed first."""
@@ -201,7 +201,8 @@ def _alike(
 
     `sizes` are those of their units, 0 where unknown: then both are taken to have the same unit.
     A pair is sure if both move much alike and their names do not contradict that. Of those that
-    move nearly as alike, the likeliest share the most words, such as those of one joint.
+    move nearly as alike, the likeliest share the most words, such as those of one joint, and say
+    the most sides of the gear.
     """
     pairs = {}
     for rotor, output in permutations(columns, 2):
@@ -213,11 +214,12 @@ def _alike(
             pair *= [[sizes[rotor]], [sizes[output]]]
         if pair.shape[1] > _FEWEST and (spread := np.std(pair, axis=1))[0] > spread[1] > 0.0:
             likeness = abs(np.corrcoef(pair)[0, 1])
-            named = not (meaning(rotor).on_output or meaning(output).on_rotor)
-            shared = len({*meaning(rotor).words} & {*meaning(output).words})
+            fast, slow = meaning(rotor), meaning(output)
+            named = not (fast.on_output or slow.on_rotor)
+            fitting = len({*fast.words} & {*slow.words}) + fast.on_rotor + slow.on_output
             if likeness > _COPIED:
                 likeness = 0.0  # comes last
             sure = named and likeness > _ALIKE
-            pairs[sure, round(likeness, 1), shared, likeness] = rotor, output
+            pairs[sure, round(likeness, 1), fitting, likeness] = rotor, output
     for key in sorted(pairs, reverse=True)[:_FEWEST]:
         yield key[0], *pairs[key]

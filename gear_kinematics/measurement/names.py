@@ -26,7 +26,7 @@ _VOCABULARY = {
     'filling': 'header receive log dynamic measured meas actual act filtered raw field data value '
     'values feedback state states axis angular rotary present sensor abs side in ist host pi ros '
     'system unix epoch tv channel ch fb fbk ave estimate scalars signals date datum utc wall '
-    'application main plc prg gvl payload msg message torsional',
+    'application main plc prg gvl payload msg message torsional accum',
 }
 """Words in names by kind, the likeliest first. The input is the rotor if a quantity is said, too.
 The filling may accompany all others; any other word shows a command, a speed or the like."""

@@ -978,6 +978,9 @@ UNTOLD = {
     'unknown word': plain('time,motor_pos_x,output_pos_x'),
     'times': lambda t, r, o: written([25 * t, r / 3, o / 3], NAMES),
     'both motors': plain('time,motor1_pos,motor2_pos'),
+    'accumulated angles beside raw ones': lambda t, r, o: written(  # adamhaze8/Cycloidal_Actuator
+        [r * DEG % 360.0, 9.0 * o * DEG % 360.0, r * DEG, 9.0 * o * DEG, o * DEG, t],
+        'Motor_Raw,MT6_Raw,Motor_Accum,MT6_Accum,Output_Accum,Progress_Perc', '{:.3f}'),
     'Chinese, by angles alone': plain('时间,输入端转角,输出端转角'),
     'turns in French': plain('temps;codeur moteur (tr);codeur sortie (tr)', ';', angle=REV),
     'a unit of a maker': lambda t, r, o: written([t * 1e3, *in_counts(r, o)],
@@ -1045,7 +1048,7 @@ def test_every_refusal_ends_with_a_command_line_that_works(tmp_path, gear, refer
         assert (recording.locked is not None) == ramps
     if untold in {'two torques', 'a sensor of three axes', 'moments of a hexapod'}:
         assert_measured(recording, gear)
-    elif 'counts' in untold or 'degrees' in untold or untold == 'both motors':
+    elif any(word in untold for word in ('counts', 'degrees', 'both motors', 'accumulated')):
         assert_followed(recording.both)
 
 
