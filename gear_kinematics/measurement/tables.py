@@ -286,8 +286,8 @@ class _Samples:
 
     def steps(self) -> dict[str, Step]:
         """Return the steps of encoders by role; ValueError if an assumed unit is impossible."""
-        other = next(filter(None, (self.found[role].unit for role in self._shown)), '')
         least = min(float(np.ptp(self.series[role].values[role])) for role in self._shown)
+        unit = next(filter(None, (self.found[role].unit for role in self._shown)), '')
         steps = {}
         for role, column in self.found.items():
             if role != 'torque':
@@ -296,10 +296,10 @@ class _Samples:
                 steps[role] = Step(TURN / known, seen=False) if known else self._shown[role]
             values, stamp = self.series[role].values[role], self.series[role].stamp
             timed = stamp if self.timed else None
-            if found := against(column, values, timed, steps.get(role), other, least, self._remark):
-                cause, unit = found
-                alone = role == 'torque' or other
-                example = {role: f'{column.name} [{unit}]'} if alone else {'unit': unit}
+            if found := against(column, values, timed, steps.get(role), unit, least, self._remark):
+                cause, likely = found
+                alone = role == 'torque' or unit
+                example = {role: f'{column.name} [{likely}]'} if alone else {'unit': likely}
                 raise ColumnsError(f'{column.name} {cause}', 'its unit', **example)
         return steps
 
