@@ -34,6 +34,7 @@ from gear_kinematics.ros.outputs import PublishingNode, latched
 from gear_kinematics.state.arm_state import ArmState
 from gear_kinematics.state.monitors import Connections
 from gear_kinematics.state.state_messages import state_messages
+from gear_kinematics.state.statuses import GearReport
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.joint_reader import RejectedInputError, Rejection
 from gear_kinematics.wire.topics import topic_of
@@ -241,7 +242,7 @@ class GearStatePublisher(PublishingNode):
             values[topics.REFERENCED] = self._referenced = every
         self.send((topic, serialize_message(Bool(data=value))) for topic, value in values.items())
         if known:
-            self._publish_diagnostics()
+            self._publish(self._arm.report(time.monotonic(), self._connections))
 
     def _on_output_encoder(self, data: bytes) -> None:
         errors, rejections = self._arm.encoder(data, self._now)
@@ -289,7 +290,7 @@ class GearStatePublisher(PublishingNode):
         inputs = [each.state.monitor.last_input for each in self._actuators.values()]
         now, last = time.monotonic(), max(each or 0.0 for each in inputs)
         rotor = self._connections.rotor
-        self._publish_diagnostics()
+        reports = self._arm.report(now, self._connections)
         several = [
             name if monitor is state.monitor else labelled(name, topics.OUTPUT_ENCODER)
             for name, state in self._arm.actuators.items()
@@ -297,9 +298,9 @@ class GearStatePublisher(PublishingNode):
             if monitor.several
         ]
         self._driver_log.update(rotor.publishers, now - (last or now), several)
+        self._publish(reports)
 
-    def _publish_diagnostics(self) -> None:
-        reports = self._arm.report(time.monotonic(), self._connections)
+    def _publish(self, reports: Mapping[str, GearReport]) -> None:
         message = serialize_message(diagnostic_array(self, reports))
         self.send([(topics.DIAGNOSTICS, message)])
 
