@@ -1,6 +1,6 @@
 #!/bin/bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# hebi-py 2.16.1: a trajectory goes through other waypoints if their array is a slice, read-only or transposed.
+# hebi-py 2.16.1: a trajectory goes through other waypoints if their array is a slice of another one, or read-only.
 #
 # A rotor and an output are to pass (0, 0), (1, 5) and (2, 7) rad at 0, 1 and 2 s. Expected of create_trajectory(): the
 # trajectory passes them, whatever the memory of the NumPy array with these numbers looks like. What happens: it does so

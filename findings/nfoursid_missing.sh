@@ -2,7 +2,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # nfoursid 1.0.2: after a second without readings, a joint's angle that is wrong by 0.7 rad is given as ±6 mrad.
 #
-# The speed of a joint wanders by 1 rad/s in the root of a second, and its encoder has a noise of 10 mrad. Of 6 s at
+# The speed of a joint wanders by about 1 rad/s in a second, and its encoder has a noise of 10 mrad. Of 6 s at
 # 100 Hz, one second is missing, step(None, u) as documented. Expected of Kalman: while there is no reading, the
 # uncertainty of the angle grows, to 0.61 rad at the end, and the first reading after it corrects the angle to within
 # 10 mrad. What happens: p_filtereds, and the standard deviation of to_dataframe(), stay what they were, 6 mrad, as the
