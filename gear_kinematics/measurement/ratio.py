@@ -36,7 +36,7 @@ _MOST_ERROR = 0.5
 """Greatest error of a gear without a delay, play and noise over its motion, rms. It is about 1 or
 more where the output is the angle of another joint, a time, a current or a temperature."""
 _EXCHANGED = 1.2  # times the rotor's travel, by which encoders at one shaft never differ
-_MULTIPLE = 1e-3  # from a whole multiple of the assumed ratio, as by wrong counts per turn
+_MULTIPLE = 1e-3  # from a multiple of the assumed ratio, as by wrong counts per turn or units
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,9 +91,11 @@ def wrong_ratio(encoders: Encoders, assumed: Fraction) -> Observed | None:
         return Observation.EXCHANGED() if more else None
     what = Observation.ANOTHER_RATIO if found.taken else Observation.OTHER_RATIOS
     ratio = found.candidates[0]
-    times = round(found.measured.value / assumed)
-    if times > 1 and abs(found.measured.value / (times * assumed) - 1) < _MULTIPLE:
-        what, ratio = Observation.MULTIPLE_RATIO, times * assumed
+    times = found.measured.value / float(assumed)
+    for size in (round(times), math.degrees(1.0), TURN):
+        if size > 1 and abs(times / size - 1.0) < _MULTIPLE:
+            what = Observation.MULTIPLE_RATIO
+            ratio = size * assumed if isinstance(size, int) else ratio
     return what(measured=found.measured, assumed=assumed, ratio=ratio)
 
 

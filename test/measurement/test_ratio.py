@@ -320,6 +320,15 @@ def test_counts_per_turn_that_are_too_few_are_suspected(counts, ratio):
     assert (what, values['ratio']) == (Observation.MULTIPLE_RATIO, ratio)
 
 
+@pytest.mark.parametrize('unit', [180.0 / math.pi, math.tau])
+def test_angles_in_different_units_are_suspected(unit):
+    """The rotor in degrees, or the output in turns, taken for rad."""
+    rotor, output = angles(Fraction(-19), 6.0, noise=1e-5)
+    what, values = wrong_ratio(encoders(rotor * unit, output), GearRatio(-19))
+    assert what is Observation.MULTIPLE_RATIO
+    assert float(values['ratio']) == pytest.approx(-19.0 * unit, rel=1e-3)
+
+
 @pytest.mark.parametrize(
     ('rotor', 'output', 'cause'),
     [
