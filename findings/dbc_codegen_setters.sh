@@ -6,9 +6,9 @@
 # raw values Backward, Stop and Forward. A second message has a page, with a position on page 0 and a current on page 1.
 # Expected of the code that is generated: what is set is what is read again, as VAL_ names raw values.
 # What happens: a name is read from the raw value, but set as if its number were the physical one. Set to Backward, the
-# frame says Stop, and set to Stop it says Forward; Forward is refused. That holds for each named value of a signal with
-# an offset or a factor. And set_m0() joins the bits of the new page to those that are there, so that in a message that
-# is used again the position 2 after 1 is 3, a page with the position 0 leaves 3, and the current 8 on page 1 is 11.
+# frame says Stop, and set to Stop it says Forward; Forward is refused. And set_m0() joins the bits of the new page to
+# those that are there, so that in a message that is used again the position 2 after 1 is 3, a page with the position 0
+# leaves 3, and the current 8 on page 1 is 11.
 # For us: set a named value by its raw value (set_direction_raw_val), and make a new message for each frame with pages.
 #
 # Exit code 0: still so. Needs cargo; installs the versions into a temporary folder.
