@@ -6,7 +6,7 @@
 # but without the type: by Sparkplug 3.0 the type should not be in DDATA. Expected: each angle that is sent, with the
 # type of the DBIRTH. What happens: a value without a type is left out, without an error or a callback, so that the
 # entity keeps the angle and the stamp of the DBIRTH for ever. With the type in DDATA as well, as this library itself
-# sends it, the angle is read right. The application of the library reads all messages by these functions.
+# sends it, the angle is read right. The application of the library reads DBIRTH and DDATA by these two functions.
 # Output: DBIRTH 1.0, DDATA without a type 1.0, with the type 2.5; callbacks: [2.5]
 # For us: have devices send the type in DDATA too, or take the bytes of DDATA apart with the protobuf classes.
 #
