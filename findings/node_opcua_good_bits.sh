@@ -54,7 +54,7 @@ async function main() {
     const query = (read, from, to) => new Promise((resolve, reject) => {
       read(torque, 1000 * (to - from), at(from), at(to), (error, [result]) => {
         if (error) reject(error);
-        else resolve(result.value.value + (result.statusCode.isGoodish() ? '' : '?'));
+        else resolve(result.value.value + (result.statusCode.name.startsWith('Uncertain') ? '?' : ''));
       });
     });
     found[name] = [
