@@ -4,9 +4,9 @@
 # begins.
 #
 # BaseNode402.state is documented to take 'DISABLE VOLTAGE' as a command. Expected: a control word of 0, after which no
-# drive has a torque. What happens: it is looked up as a state that can be reached, is none, and so the way to
-# OPERATION ENABLED is taken, from each state on it: a drive without voltage, or one that is ready or switched on, is
-# enabled, and one that is enabled stays so. Then comes a ValueError.
+# drive has a torque. What happens: it is looked up as a state to be reached, and as no transition leads to it, the way
+# to OPERATION ENABLED is taken. A drive without voltage, or one that is ready or switched on, is enabled, and one that
+# is enabled stays so. Then comes a ValueError.
 # The second one: homing() sends the control word 0x1F, whose bit 4 starts a homing when it changes from 0 to 1, and
 # leaves it so. A second homing() sends 0x1F again, which is no change for a drive of CiA 402, reads that the first one
 # is done, and returns True. An output that was moved to 500 counts by hand is not homed.
