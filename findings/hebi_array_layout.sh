@@ -10,7 +10,7 @@
 # for 0.3 rad/s. Of the transposed ones, estimate_segment_times() gives 3.5 s and 5.5 s instead of 5.5 s and 2.5 s.
 # There is no error. The addresses of the arrays are handed to its library without their strides; one flag, that of the
 # positions, decides for all of them whether they lie in rows or in columns. And `n_fabian`, a keyword in the signature
-# of estimate_segment_times(), has no effect.
+# of estimate_segment_times(), has no effect; fabian_constant, in its docstring, has one.
 # For us: give numpy.array(…, dtype=float, order='C') of each array, a copy of its own, and check the waypoints by
 # get_state().
 #
