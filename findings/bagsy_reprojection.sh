@@ -1,13 +1,14 @@
 #!/bin/bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# bagsy 1.6.3: the tip of an arm that is at (1, 0.5) m in the base is reprojected from a bag to (-0.5, 1) m.
+# bagsy 1.6.3: the tip of an arm that is at (1, 0.5) m in the base is reprojected to (-0.5, 1) m.
 #
-# It reprojects topics of a bag into other frames by the transforms in /tf. The elbow is 1 m in front of the base and
-# turned by 90° to the left, the tip is 0.5 m further along the forearm. Expected of TFBuffer.lookup_transform('base',
-# 'tip', stamp), whose arguments are named target_frame and source_frame as in tf2, and of reproject_point_stamped() and
+# Its stream_bag() reprojects topics of a bag into other frames, by the transforms in /tf, a TFBuffer and a function for
+# each type of message, which are called here without a bag. The elbow is 1 m in front of the base and turned by 90° to
+# the left, the tip is 0.5 m further along the forearm. Expected of TFBuffer.lookup_transform('base', 'tip', stamp),
+# whose arguments are named target_frame and source_frame as in tf2, and of reproject_point_stamped() and
 # reproject_pose_stamped() with a point or a pose at the origin of the tip: (1, 0.5, 0) and 90°. What happens:
 # (-0.5, 1, 0) and -90°, which is where the base is as seen from the tip. So the arguments the other way round give the
-# right pose. Transform itself is right, and so is a frame that is reprojected into itself.
+# right pose. A frame that is reprojected into itself is right.
 # For us: give lookup_transform() the two frames exchanged, or multiply by the inverse.
 #
 # Exit code 0: still so. Installs the versions into a temporary folder, without open3d, which these parts do not need.
