@@ -61,9 +61,9 @@ def readings(kind, delay=DELAY, **options):
 
 
 def wrong(name, read, turned):
-    """Return which readings after the delay are off by more than the way of two periods, but for whole turns."""
+    """Return which readings after the delay are off by more than the way of one period, but for whole turns."""
     error = np.abs((read - turned + np.pi) % (2 * np.pi) - np.pi)
-    found = np.flatnonzero((error > 2 * SPEED * PERIOD) & (turned > 0))
+    found = np.flatnonzero((error > SPEED * PERIOD) & (turned > 0))
     print(f'{name}: {len(found)} wrong, by up to {error[turned > 0].max():.3f} rad', flush=True)
     return found
 
