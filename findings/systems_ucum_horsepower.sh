@@ -6,8 +6,8 @@
 # 745.7 W; of 20 dB: 100; of a ratio of 100: 2 B or 20 dB; of 1 Np: 2.718 (e). What happens: 1.356 W, which is
 # 1 [ft_i].[lbf_av]/s, as the 550 is left out; 0.301, the logarithm of 2; 1e100 B or 1e101 dB, as logarithm and power
 # are exchanged; and 0 for 1 Np. No error is raised. 550 [ft_i].[lbf_av]/s are 745.7 W, and [lbf_av].[ft_i], kgf.m,
-# deg, gon, ' and circ are right.
-# For us: multiply watts by hand, and take HORSEPOWER of USCustomary in systems-common, which is 745.7 W.
+# deg, gon, ' and circ are right. (An open issue of si-units asks whether the converter of its own bel is wrong.)
+# For us: convert decibels by hand, and take HORSEPOWER of USCustomary in systems-common, which is 745.7 W.
 #
 # Exit code 0: still so. Needs a JDK and mvn; installs the versions into a temporary folder.
 set -euo pipefail
