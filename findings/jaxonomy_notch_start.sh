@@ -51,5 +51,5 @@ default, _ = filtered()
 assert np.isclose(default.max(), 112.5, atol=0.1) and default[0] == 0
 PYTHON
 export JAX_PLATFORMS=cpu
-timeout 300 "$folder/venv/bin/python" "$folder/notch.py" > "$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }
+timeout 500 "$folder/venv/bin/python" "$folder/notch.py" > "$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }
 grep rad "$folder/log"
