@@ -12,6 +12,7 @@ ARC_MINUTES = 60.0 * 180.0 / math.pi  # per radian; catalogues give lost motion 
 PERCENT = f'{100.0 * COVERAGE:g} %'  # probability with which an interval contains the value
 _UNITS = {'si': 1.0, 'arcmin': ARC_MINUTES, 'deg': math.degrees(1.0), 'ms': 1e3}
 _EXACT = 1e-5  # relative uncertainty below which it is written with an exponent
+_DIGITS = 16  # which floating point has
 _TINY = 1e-9  # uncertainty below which small values are written with an exponent
 
 
@@ -27,7 +28,7 @@ def plus_minus(estimate: Estimate | None, scale: float = 1.0) -> str:
     spread *= scale
     if spread < max(abs(value) * _EXACT, _TINY):
         places = math.floor(math.log10(abs(value) or spread)) - math.floor(math.log10(spread))
-        return f'{number(value, max(6, places + 2))} ± {number(spread, 2)}'
+        return f'{number(value, min(max(6, places + 2), _DIGITS))} ± {number(spread, 2)}'
     decimals = max(0, 1 - math.floor(math.log10(spread)))
     # Adding 0.0 takes the sign from a zero.
     return f'{round(value, decimals) + 0.0:.{decimals}f} ± {spread:.{decimals}f}'
