@@ -3,7 +3,7 @@
 
 import math
 from bisect import bisect_right
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator
 from itertools import pairwise
 
 import numpy as np
@@ -105,33 +105,6 @@ def check_steps(clock: Column, times: Array, angle: Array, unit: str, role: str)
         cause = f'the times in {clock.name} are {mean * clock.scale:.6g} s apart'
         cause += f', in which the shaft would turn by {turn:.3g} rad'
         raise ColumnsError(cause, 'their unit', time=f'{clock.name} [{next(slow, "s")}]')
-
-
-def in_nanoseconds(seconds: Array, fraction: Array, name: str) -> Array | None:
-    """Add the fractions in a column of a name to whole seconds; None if they are times alone."""
-    size = round(1.0 / TIME_UNITS[meaning(name).unit])
-    if seconds.dtype.kind == 'M':
-        seconds = np.where(np.isnat(seconds), np.nan, seconds.astype(np.int64) / SECOND)
-    known = (seconds == seconds) & (fraction == fraction)  # noqa: PLR0124, no NaN
-    if np.any(seconds[known] % 1.0) or np.any(fraction[known] >= size):
-        return None
-    whole, rest = (np.where(known, one, 0.0) for one in (seconds, fraction * (SECOND / size)))
-    both = whole.astype(np.int64) * SECOND + np.round(rest).astype(np.int64)
-    return both if known.all() else np.where(known, both, np.nan)
-
-
-def join_fractions(raw: dict[str, Array], rests: Mapping[str, str]) -> set[str]:
-    """Make whole seconds and their fractions, by the names of both, times in ns, if they are such.
-
-    Both columns become the same, so that neither is the time of one encoder. Returns the names of
-    those of seconds.
-    """
-    joined = set()
-    for name, rest in rests.items():
-        if rest and (both := in_nanoseconds(raw[name], raw[rest], rest)) is not None:
-            raw[name] = raw[rest] = both
-            joined.add(name)
-    return joined
 
 
 def are_apart(usual: Array, other: Array) -> bool:

@@ -19,6 +19,7 @@ from gear_kinematics.measurement.names import (
     meaning,
     usual_unit,
 )
+from gear_kinematics.measurement.second_fractions import fraction_of
 from gear_kinematics.wire.nearest import among
 
 GIVEN_UNITS = (*UNITS, 'counts')  # units of angle that users can give
@@ -266,12 +267,3 @@ def described(role: str, column: Column) -> str:
     side = ' of the rotor' if column.on_rotor else ' at the output'
     side = side if role in {'angle', 'torque'} else ''
     return f'{role}{side} [{unit}] from {column.name}'
-
-
-def fraction_of(name: str, names: Sequence[str]) -> str | None:
-    """Return the column of ns, µs or ms that may belong to one of whole seconds, or dates."""
-    words, unit, *_ = meaning(name)
-    likely = [(words, other) for other in ('ns', 'us', 'ms') if unit == 's']
-    # Millisecond beside Time, or Fractional Seconds
-    likely += [((), 'ms'), (('fractional',), 's')] * (not unit)
-    return next((other for other in names if meaning(other)[:2] in likely), None)

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from gear_kinematics.measurement.cells import numbers
-from gear_kinematics.measurement.clocks import in_nanoseconds
-from gear_kinematics.measurement.columns import fraction_of, likeliest
+from gear_kinematics.measurement.columns import likeliest
 from gear_kinematics.measurement.encoder_step import find_step
 from gear_kinematics.measurement.names import FOREIGN, known_units, meaning
 from gear_kinematics.measurement.recording import Array
+from gear_kinematics.measurement.second_fractions import fraction_of, in_nanoseconds
 from gear_kinematics.measurement.sentences import Observation, Observed
 
 _BY_CHANCE = 0.01

@@ -18,7 +18,6 @@ from gear_kinematics.measurement.clocks import (
     are_no_times,
     check_steps,
     check_units,
-    join_fractions,
     stamps,
     with_unit,
 )
@@ -28,7 +27,6 @@ from gear_kinematics.measurement.columns import (
     Sources,
     described,
     find_columns,
-    fraction_of,
     own_clocks,
 )
 from gear_kinematics.measurement.dialects import TableFile
@@ -46,6 +44,7 @@ from gear_kinematics.measurement.recording import (
     locked_shaft,
     match,
 )
+from gear_kinematics.measurement.second_fractions import fraction_of, join_fractions
 from gear_kinematics.measurement.sentences import Observation, Observed
 from gear_kinematics.measurement.series import rows_of
 from gear_kinematics.wire.cdr import SECOND
@@ -150,7 +149,7 @@ class _Samples:
         if given or (clock and not (table.clocks or sources.time)):
             own = {'output': given.name} if given else own_clocks(table.names, self.found)
         units = {**table.units, **{one.name: one.unit for one in (clock, given) if one}}
-        raw, clock = self._loaded(table, clock, {*clocks.values(), *own.values()})
+        raw, clock = self._loaded(table, clock, {*clocks.values(), *own.values()}, units)
         if sources.output_time and not (given and clock):
             raise ValueError('--output-time-column needs both encoders, and --time-column')
         clocks |= self._own(own, raw, usual, units)
@@ -192,9 +191,9 @@ class _Samples:
         self.said.append(f'{self.used} of {rows} rows{thinned}')
 
     def _loaded(
-        self, table: TableFile, clock: Column | None, clocks: set[str]
+        self, table: TableFile, clock: Column | None, clocks: set[str], units: dict[str, str]
     ) -> tuple[dict[str, Array], Column | None]:
-        """Load columns by name; also return the column of times with its unit, if it has any."""
+        """Load columns, and join times, as `units` then say; also return the clock, if any."""
         rests = {name: fraction_of(name, table.names) or '' for name in clocks - {''} if clock}
         wanted = {column.name for column in self.found.values()} | clocks | {*rests.values()}
         raw, self._every = table.load(sorted(wanted - {''}))
@@ -207,7 +206,8 @@ class _Samples:
             filled = times == times  # noqa: PLR0124, as NaN is not equal to itself
             empty = not (filled.any() or table.first.get(clock.name, clock.name))
             clock = None if empty or are_no_times(clock.name, clock.unit, times[filled]) else clock
-        if clock and clock.name in join_fractions(raw, rests):
+        units |= join_fractions(raw, rests)
+        if clock and units[clock.name] == 'ns':
             clock = clock._replace(unit='ns', scale=1.0 / SECOND)
         return raw, clock
 

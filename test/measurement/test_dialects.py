@@ -1122,6 +1122,23 @@ def test_the_seconds_of_each_encoder_have_their_own_fractions(tmp_path, gear, re
     assert_followed(both)
 
 
+@pytest.mark.parametrize('whole', ['motor', 'output'])
+def test_one_encoder_has_fractions_of_seconds_and_the_other_decimals(
+    tmp_path, gear, reference, whole
+):
+    t, r, o = reference('encoders')
+    names, columns, forms = [], [], []
+    for side, times, angle in (('motor', t[:-1], r[:-1]), ('output', t[1:], o[1:])):
+        parts = split_time(times) if side == whole else [1764230000 + times]
+        units = ['sec', 'nanosec'] if side == whole else ['s']
+        names += [*(f'{side}_stamp_{unit}' for unit in units), f'{side}_pos']
+        columns += [*parts, angle]
+        forms += [*len(parts) * ['{:.0f}' if side == whole else '{:.2f}'], '{:.5f}']
+    both = read(saved(tmp_path, written(columns, ','.join(names), forms)), gear).both
+    assert both.duration == pytest.approx(52.72, abs=0.05)
+    assert_followed(both)
+
+
 def test_names_can_be_given_with_units(tmp_path, gear, reference):
     time, rotor, output = reference('encoders')
     path = saved(tmp_path, written([1e3 * time, DEG * rotor, output], 'a,b,c\n25 Hz,,'))
