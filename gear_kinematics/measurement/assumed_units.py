@@ -70,8 +70,10 @@ def against(
         if not (known or _COMPOUND.search(column.name)):
             return 'does not say that it is a torque', 'N·m'
         return ('is raw', 'N·m') if 'raw' in says.words else None
+    likely = other if other in ANGLE_UNITS else 'rad'
     if not says.role:
-        likely = 'rad' if least < 2.0 * TURN else 'deg'  # as outputs hardly turn further
+        if not other and least >= 2.0 * TURN:  # as outputs hardly turn further
+            likely = 'deg'
         return 'does not say that it is an angle', 'counts' if whole else likely
     if whole and np.ptp(values) > TURN:
         return 'has whole numbers, such as counts', 'counts'
@@ -86,7 +88,6 @@ def against(
         if (speed := np.quantile(moved[moving] / seconds, MOST)) > FASTEST:
             return f'has speeds of {speed:.3g} a second, as in degrees', 'deg'
     if other not in {'', 'rad'}:
-        likely = other if other in ANGLE_UNITS else 'rad'
         return f'has no unit, and that of the other angle is {other}', likely
     return None
 

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.columns import DATES, Column, ColumnsError
 from gear_kinematics.measurement.names import ANGLE_UNITS, TIME_UNITS, meaning
 from gear_kinematics.measurement.recording import Array
@@ -84,23 +85,30 @@ def with_unit(clock: Column, times: Array, angle: Array, role: str) -> Column:
 def check_steps(clock: Column, times: Array, angle: Array, unit: str, role: str) -> None:
     """Raise ColumnsError if times seem to be in another unit, by the angle in a role, rad.
 
-    Whole numbers beside a rotor may be in a finer unit, and all in a coarser one. An angle without
-    a `unit` may be in degrees.
+    Whole s or ms beside a rotor may be in a finer unit, and all below s in a coarser one. An angle
+    without a `unit` may be in degrees, or in counts, whose unit is asked for elsewhere.
     """
     known = np.isfinite(times) & np.isfinite(angle)
     if times.dtype.kind == 'M' or np.count_nonzero(known) <= 1:  # dates, or nothing to compare
         return
-    steps, turned = np.abs(np.diff([times[known].astype(float), angle[known]]))
-    step, mean, turn = float(np.median(steps)), float(np.mean(steps)), np.quantile(turned, MOST)
-    whole = not np.any(times[known] % 1.0)
-    if role == 'rotor' and whole and step * clock.scale > _MOST_STEP:
-        short = (u for u in ('ms', 'us') if step * TIME_UNITS[u] <= _MOST_STEP)
-        finer = next(short, 'ns')
-        if np.quantile(turned / np.maximum(steps, 1.0), MOST) <= FASTEST * TIME_UNITS[finer]:
+    times, angle = times[known].astype(float), angle[known]
+    steps, turned = np.abs(np.diff([times, angle]))
+    step, mean = float(np.median(steps)), float(np.mean(steps))
+    units = {'s': ('ms', 'us', 'ns'), 'ms': ('us', 'ns')}.get(clock.unit, ())
+    finer = next((u for u in units if step * TIME_UNITS[u] <= _MOST_STEP), '')
+    if finer and role == 'rotor' and step * clock.scale > _MOST_STEP and not np.any(times % 1.0):
+        slowed = turned / np.maximum(steps * TIME_UNITS[finer], TIME_UNITS[finer])
+        if np.quantile(slowed, MOST) <= FASTEST:
             cause = f'the times in {clock.name} are {step * clock.scale:.6g} s apart'
             cause += f', as if they were {finer}'
             raise ColumnsError(cause, 'their unit', time=f'{clock.name} [{finer}]')
-    if 0.0 < mean * clock.scale * _IMPOSSIBLE * (1.0 if unit else 1.0 / ANGLE_UNITS['deg']) < turn:
+    if clock.scale >= 1.0:
+        return
+    size = 1.0 if unit else 1.0 / ANGLE_UNITS['deg']
+    # A shaft at rest may be read on either side of the end of a turn.
+    turn = np.quantile(np.minimum(turned, np.abs(turned - size * TURN)), MOST)
+    fast = 0.0 < mean * clock.scale * _IMPOSSIBLE * size < turn
+    if fast and (unit or np.any(angle % 1.0)):
         slow = (u for u in ('us', 'ms') if turn <= FASTEST * mean * TIME_UNITS[u])
         cause = f'the times in {clock.name} are {mean * clock.scale:.6g} s apart'
         cause += f', in which the shaft would turn by {turn:.3g} rad'
@@ -132,7 +140,7 @@ def are_no_times(name: str, unit: str, times: Array) -> bool:
     """Return whether numbers of a name that may say something else do not rise as times do.
 
     They are called T, t_m, or temps (French for times), or have a further word, as cycle_time has.
-    A date may be that of the day alone, and durations may be 0 once.
+    A date may be that of the day alone, and durations that are mostly the same may begin with 0.
     """
     steps, says = np.diff(times.astype(float)), meaning(name)
     date = says.words in DATES
@@ -141,7 +149,8 @@ def are_no_times(name: str, unit: str, times: Array) -> bool:
     if (name.lower() == 'temps' and not unit) or (says.unsure and 't' in says.words):
         return not np.all(steps > 0.0)
     rise, least = np.sum(steps), _RISING * np.sum(steps, where=steps > 0.0)
-    durations = says.unsure and len(steps) > 1 and np.count_nonzero(steps) == 1
+    still = 2 * np.count_nonzero(steps) <= len(steps)
+    durations = says.unsure and still and 2.0 * np.max(steps, initial=0.0) >= rise
     unsure = says.unsure or date
     return bool(durations or (unsure and rise <= least) or (name == 'T' and rise < least))
 

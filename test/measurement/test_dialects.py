@@ -1828,10 +1828,54 @@ def test_whole_seconds_are_believed_where_the_rotor_would_be_too_fast_in_ms(
     assert recording.encoders.duration == pytest.approx(50 * 52.76, rel=1e-3)
 
 
+@pytest.mark.parametrize('head', ['time_ns', 'time_us', 'time [min]'])
+def test_times_of_rows_that_are_seconds_apart_are_believed(tmp_path, gear, reference, head):
+    t, r, o = reference('encoders')
+    size = {'time_ns': 125e9, 'time_us': 125e6}.get(head, 25.0)  # 5 s and 1 min
+    content = written([size * t, r / 50, o / 50], f'{head},rotor,output', '{:.0f}')
+    seconds = read(saved(tmp_path, content), gear).both.seconds
+    assert np.median(np.diff(seconds)) == pytest.approx(60.0 if 'min' in head else 5.0)
+
+
+def test_a_rotor_that_stands_where_its_turn_ends_is_not_fast(tmp_path, gear, reference):
+    _, r, o = reference('encoders')
+    rest = 1e-4 * np.random.default_rng(3).choice([-1.0, 1.0], 20_000)
+    r = np.concatenate([rest, r - r[0]]) % math.tau
+    columns = 0.1 * np.arange(len(r)), r, np.concatenate([np.full(len(rest), o[0]), o])
+    content = written(columns, 'time_ms,rotor_rad,output_rad', '{:.1f}')
+    assert read(saved(tmp_path, content), gear).encoders.timed
+
+
+def test_counts_without_a_unit_say_nothing_of_the_times(tmp_path, gear, reference):
+    t, r, o = reference('encoders')
+    columns = 1e3 * t / 40, np.round(2**20 * r * REV), np.round(2**20 * o * REV)
+    content = written(columns, 'time_ms,motor_pos,output_pos', ['{:.1f}', '{:.0f}', '{:.0f}'])
+    with pytest.raises(RecordingError, match='motor_pos has whole numbers, such as counts'):
+        read(saved(tmp_path, content), gear)
+
+
+def test_a_placeholder_for_counts_says_nothing_of_times_in_seconds(tmp_path, gear, reference):
+    t, r, o = reference('encoders')
+    columns = t / 40, np.round(2**20 * r * REV), np.round(2**20 * o * REV)
+    content = written(columns, 'time_s,motor_inc,output_inc', ['{:.6f}', '{:.0f}', '{:.0f}'])
+    with pytest.raises(RecordingError, match=r'--rotor-counts 4096 --output-counts 4096$'):
+        read(saved(tmp_path, content), gear)
+
+
+def test_the_unit_of_the_other_angle_is_proposed(tmp_path, gear, reference):
+    t, r, o = reference('encoders')
+    path = saved(tmp_path, written([t, r * DEG / 40, o * DEG / 40], 't,a,b', 3 * ['{:.5f}']))
+    with pytest.raises(RecordingError, match='b does not say that it is an angle') as told:
+        read(path, gear, Sources(rotor='a [deg]', output='b'))
+    assert followed(told.value).output == 'b [deg]'
+
+
 def test_durations_are_no_times(tmp_path, gear, reference):
     t, r, o = reference('encoders')
     fixed = 0.04 * (t > 0.0)
-    for duration in (fixed + 0.04, 0.04 + 1e-3 * np.sin(t), -t, t + math.nan, t % 3.0, fixed):
+    changed = fixed + 0.001 * (t > 20.0)
+    varied = 0.04 + 1e-3 * np.sin(t)
+    for duration in (fixed + 0.04, varied, -t, t + math.nan, t % 3.0, fixed, changed):
         content = written([duration, r, o], 'loop_time,rotor,output', 3 * ['{:.5f}'])
         assert not read(saved(tmp_path, content), gear).encoders.timed
 
