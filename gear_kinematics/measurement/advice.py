@@ -202,7 +202,7 @@ def _alike(
     `sizes` are those of their units, 0 where unknown: then both are taken to have the same unit.
     A pair is sure if both move much alike and their names do not contradict that. Of those that
     move nearly as alike, the likeliest share the most words, such as those of one joint, and say
-    the most sides of the gear.
+    the most sides of the gear. Letters are no words: c1 and c2 are no joint.
     """
     pairs = {}
     for rotor, output in permutations(columns, 2):
@@ -216,7 +216,8 @@ def _alike(
             likeness = abs(np.corrcoef(pair)[0, 1])
             fast, slow = meaning(rotor), meaning(output)
             named = not (fast.on_output or slow.on_rotor)
-            fitting = len({*fast.words} & {*slow.words}) + fast.on_rotor + slow.on_output
+            shared = [w for w in {*fast.words} & {*slow.words} if w.isdigit() or w[1:]]
+            fitting = len(shared) + fast.on_rotor + slow.on_output
             if likeness > _COPIED:
                 likeness = 0.0  # comes last
             sure = named and likeness > _ALIKE

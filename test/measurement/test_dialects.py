@@ -1797,6 +1797,17 @@ def test_encoders_of_one_joint_are_proposed_together(tmp_path, gear, reference, 
     assert f'{given.rotor},{given.output}' in names
 
 
+def test_motors_with_the_same_letter_are_no_joint(tmp_path, gear, reference):
+    t, r, o = reference('encoders')
+    columns = t, r * REV, np.round(o * REV, 3), o
+    names = 'time [s],c1 position [rev],c2 position [rev],a3 position [rad]'
+    path = saved(tmp_path, written(columns, names, '{:.5f}'))
+    with pytest.raises(RecordingError, match='name them with their units') as told:
+        read(path, gear)
+    given = followed(told.value)
+    assert (given.rotor, given.output) == ('c1 position [rev]', 'a3 position [rad]')
+
+
 def test_numbers_that_touch_are_no_gaps(tmp_path, gear, reference):
     t, r, o = reference('encoders')
     assert r.min() * DEG < -1e4  # of twelve characters
