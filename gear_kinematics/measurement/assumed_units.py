@@ -54,13 +54,13 @@ def against(
         least: the range of the angle that turns least, rad or as it is written.
         remark: titles and comments above the names.
     """
-    if column.unit:
+    if column.unit and not column.assumed:
         return None
     numbers = np.round(values / column.scale, 6)  # as they are in the table
     moved, whole = np.abs(np.diff(values)), bool(np.all(numbers == np.round(numbers)))
     says = meaning(column.name)
     said = (_ANGLES if step else _TORQUES).search(remark)
-    if said and says.role:
+    if said and says.role and not column.assumed:
         unit = usual_unit(said[0])
         return f'has no unit, and a line above the names says {unit}', unit
     if not step:
@@ -71,7 +71,7 @@ def against(
             return 'does not say that it is a torque', 'N·m'
         return ('is raw', 'N·m') if 'raw' in says.words else None
     likely = other if other in ANGLE_UNITS else 'rad'
-    if not says.role:
+    if not (says.role or column.assumed):
         if not other and least >= 2.0 * TURN:  # as outputs hardly turn further
             likely = 'deg'
         return 'does not say that it is an angle', 'counts' if whole else likely
@@ -79,6 +79,8 @@ def against(
         return 'has whole numbers, such as counts', 'counts'
     if 'raw' in says.words:
         return 'is raw', 'rev'
+    if column.assumed:
+        return None
     if _HALF_TURN < np.max(moved, initial=0.0) <= np.ptp(values) <= 2.0 * _HALF_TURN:
         return 'has turns of 360, such as degrees', 'deg'
     if unit := other_unit(values, step).partition(':')[0]:

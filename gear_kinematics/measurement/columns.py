@@ -75,6 +75,7 @@ class Column(NamedTuple):
     unit: str  # empty where nothing is known
     on_rotor: bool
     on_output: bool  # whether its name, or the user, says so
+    assumed: bool = False  # whether the unit is that of a maker whose file it seems to be
 
 
 class ColumnsError(ValueError):
@@ -160,10 +161,11 @@ def find_columns(
         given = replace(given, on_rotor=True)
     for name in filter(_REVOLUTIONS.search, angles):
         units[name] = units[name] or 'rev'
-    if {name.lower() for name in header} >= _MOTEUS:
-        units |= {name: units[name] or 'rev' for name in angles}
+    usual = 'rev' if {name.lower() for name in header} >= _MOTEUS else ''
     return {
-        role: _column(side if role == 'angle' else role, found[role], units[found[role]], given)
+        role: _column(
+            side if role == 'angle' else role, found[role], units[found[role]], given, usual
+        )
         for role in ROLES
         if role in found
     }
@@ -229,15 +231,16 @@ def likeliest(header: Sequence[str]) -> dict[str, str]:
     return found
 
 
-def _column(role: str, name: str, unit: str, given: Sources) -> Column:
-    """Return a column with its unit, which is empty where nothing is known."""
+def _column(role: str, name: str, unit: str, given: Sources, usual: str) -> Column:
+    """Return a column with its unit, for an angle the usual one, or empty if nothing is known."""
     says, units = meaning(name), ROLES[role]
-    unit = unit or says.unknown
+    own = unit = unit or says.unknown
     if role in {'time', 'output_time'} and unit == 'counts':  # ticks, whose size sampling shows
         unit = ''
     such = f'{name} [{next(iter(units))}]'
     if role in ANGULAR:
-        unit = given.unit or unit
+        own = given.unit or unit
+        unit = own or usual
     if unit and unit not in units:
         known = ', '.join(units)
         letter = role in ANGULAR and unit == says.unknown  # as of pos_a
@@ -258,12 +261,13 @@ def _column(role: str, name: str, unit: str, given: Sources) -> Column:
     # The current of a motor says a torque of either side.
     on_rotor = given.on_rotor or (says.on_rotor and 'current' not in says.words)
     on_rotor = role == 'rotor' or (on_rotor and not on_output)
-    return Column(name, scale, unit, on_rotor, on_output)
+    return Column(name, scale, unit, on_rotor, on_output, unit != '' and not own)
 
 
 def described(role: str, column: Column) -> str:
     """Describe a column by its unit, and by the side of the gear where it was measured."""
-    unit = column.unit or {'torque': 'N·m, assumed'}.get(role, 'rad, assumed')
+    unit = column.unit + ', assumed' * column.assumed
+    unit = unit or {'torque': 'N·m, assumed'}.get(role, 'rad, assumed')
     side = ' of the rotor' if column.on_rotor else ' at the output'
     side = side if role in {'angle', 'torque'} else ''
     return f'{role}{side} [{unit}] from {column.name}'

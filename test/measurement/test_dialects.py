@@ -937,6 +937,18 @@ def test_what_speaks_against_a_unit_is_said(tmp_path, gear, reference, table, wr
     assert '\n' not in str(caught.value)
 
 
+def test_the_revolutions_of_moteus_are_assumed_unless_the_numbers_are_counts(
+    tmp_path, gear, reference
+):
+    t, a, q = reference('ramps')
+    names, forms = 'time,position,torque,q_current', 4 * ['{:.9f}']
+    recording = read(saved(tmp_path, written([t, a * REV, q, q], names, forms)), gear)
+    assert 'angle at the output [rev, assumed] from position' in recording.columns
+    path = saved(tmp_path, written([t, np.round(65536 * a * REV), q, q], names, forms))
+    with pytest.raises(RecordingError, match='position has whole numbers, such as counts'):
+        read(path, gear)
+
+
 @pytest.mark.parametrize('name', ['Bremsmoment', 'torquemeter_2'])
 def test_compound_words_say_that_they_are_torques(tmp_path, gear, reference, name):
     path = saved(tmp_path, written(reference('ramps'), f'time,angle,{name}', '{:.5f}'))
