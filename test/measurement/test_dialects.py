@@ -993,6 +993,7 @@ UNTOLD = {
     'accumulated angles beside raw ones': lambda t, r, o: written(  # adamhaze8/Cycloidal_Actuator
         [r * DEG % 360.0, 9.0 * o * DEG % 360.0, r * DEG, 9.0 * o * DEG, o * DEG, t],
         'Motor_Raw,MT6_Raw,Motor_Accum,MT6_Accum,Output_Accum,Progress_Perc', '{:.3f}'),
+    'constraints, which are no strains': plain('t,motor_constraint_pos,output_constraint_pos'),
     'Chinese, by angles alone': plain('时间,输入端转角,输出端转角'),
     'turns in French': plain('temps;codeur moteur (tr);codeur sortie (tr)', ';', angle=REV),
     'a unit of a maker': lambda t, r, o: written([t * 1e3, *in_counts(r, o)],
