@@ -653,7 +653,7 @@ RAMPS = {
     'a symbol by DIN 1313': lambda t, a, q: written(
         [t, a * DEG, q], 't / s;φ / °;M / Nm', 3 * ['{:.6f}'], ';'),
     'moteus': lambda t, a, q: written(
-        [t, a * REV, q, t], '# bench\n#time,position,torque,q_current', 4 * ['{:.9f}']),
+        [t, a * REV, q, t], '# revolutions\n#time,position,torque,q_current', 4 * ['{:.9f}']),
     'time in ms': lambda t, a, q: written([t * 1e3, a, q], 'time,angle,torque', 3 * ['{:.6f}']),
     'torque at other times': lambda t, a, q: '__time,/angle,/torque\n' + ''.join(
         f'{at:.4f},{angle:.6f},\n{at + 1e-3:.4f},,{torque:.4f}\n'
@@ -893,6 +893,7 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
          r"times in time_us are 4e-08 s apart, in .* turn by 1\.44 rad: .* 'time_us \[s\]'"),
         (plain('time_ns,rotor,output', unit=1e3),
          r"times in time_ns are 4e-08 s apart, in .* turn by 1\.44 rad: .* 'time_ns \[ms\]'"),
+        (plain('time_us,rotor_rad,output_rad', unit=0.0), 'times in time_us: they stand still'),
         (plain('time_ticks,rotor,output', unit=8e3),  # of 125 µs each
          r"time_ticks: steps of 320 do not tell their unit: .* 'time_ticks \["),
         (lambda t, r, o: written([t, *in_counts(r, o), in_counts(r)[0] / 4096 * 360],
@@ -1886,12 +1887,28 @@ def test_a_placeholder_for_counts_says_nothing_of_times_in_seconds(tmp_path, gea
         read(saved(tmp_path, content), gear)
 
 
-def test_the_unit_of_the_other_angle_is_proposed(tmp_path, gear, reference):
+@pytest.mark.parametrize(('unit', 'scale'), [('deg', DEG / 40), ('rad', 3.0)])
+def test_the_unit_of_the_other_angle_is_proposed(tmp_path, gear, reference, unit, scale):
     t, r, o = reference('encoders')
-    path = saved(tmp_path, written([t, r * DEG / 40, o * DEG / 40], 't,a,b', 3 * ['{:.5f}']))
+    path = saved(tmp_path, written([t, r * scale, o * scale], 't,a,b', 3 * ['{:.5f}']))
     with pytest.raises(RecordingError, match='b does not say that it is an angle') as told:
-        read(path, gear, Sources(rotor='a [deg]', output='b'))
-    assert followed(told.value).output == 'b [deg]'
+        read(path, gear, Sources(rotor=f'a [{unit}]', output='b'))
+    assert followed(told.value).output == f'b [{unit}]'
+
+
+def test_times_beside_fast_degrees_without_a_unit_are_believed(tmp_path, gear, reference):
+    t, r, o = reference('encoders')
+    columns = 1e3 * t / 20, r * DEG, o * DEG  # 720 rad/s
+    path = saved(tmp_path, written(columns, 'time_ms,rotor,output', '{:.1f}'))
+    with pytest.raises(RecordingError, match=r'rotor has speeds of .* as in degrees'):
+        read(path, gear)
+
+
+def test_slow_ramps_of_torque_may_have_whole_seconds(tmp_path, gear, reference):
+    t, a, q = reference('ramps')
+    columns = 10.0 * np.arange(len(t)), a * DEG, q
+    content = written(columns, 'time_s,angle_deg,torque', ['{:.0f}', '{:.6f}', '{:.4f}'])
+    assert read(saved(tmp_path, content), gear).locked
 
 
 def test_durations_are_no_times(tmp_path, gear, reference):
@@ -1902,6 +1919,8 @@ def test_durations_are_no_times(tmp_path, gear, reference):
     for duration in (fixed + 0.04, varied, -t, t + math.nan, t % 3.0, fixed, changed):
         content = written([duration, r, o], 'loop_time,rotor,output', 3 * ['{:.5f}'])
         assert not read(saved(tmp_path, content), gear).encoders.timed
+    content = written([(t + 1764230000) * (t > 0.0), r, o], 'loop_time,rotor,output')
+    assert read(saved(tmp_path, content), gear).encoders.timed
 
 
 def test_a_sample_that_is_missing_at_a_reversal_is_no_slip(tmp_path, gear, reference):
