@@ -170,9 +170,10 @@ class RotorLimits(NamedTuple):
         way = min(abs(out), abs(back))
         if out * back > 0.0 or abs(out + back) > _ALONE * way:
             return False
-        stale = _stale(last, former, late)
-        time = 1e-9 * max(spans) + stale
-        least = 0.5 * self.acceleration * time * time + 1e9 * abs(speed) * stale
+        stale, span = _stale(last, former, late), 1e-9 * max(spans)
+        time = span + stale
+        # Where two readings have the same stamp, the next one seems to be an interval late.
+        least = 0.5 * self.acceleration * time * time + 1e9 * abs(speed) * max(span, stale)
         return way > least + _STEPS * noise
 
     def reach(

@@ -225,6 +225,16 @@ def test_a_quick_motion_there_and_back_is_not_taken_back():
             assert complaints(rotor) == ({}, None, None)
 
 
+@pytest.mark.parametrize('acceleration', [60.0, -180.0])
+def test_a_reading_with_the_stamp_of_the_one_before_is_not_taken_back(acceleration):
+    """The gear accelerates slowly, and its stamps, at 50 Hz, are cut off to whole intervals."""
+    number = np.arange(100)
+    stamps = number - (number % 30 == 20)
+    slow = replace(MULTI, max_rotor_acceleration=200.0)
+    rotor, _ = fed(slow, messages(stamps / 50, 0.5 * acceleration * (number / 50) ** 2))
+    assert complaints(rotor) == ({}, None, None)
+
+
 @pytest.mark.parametrize('size', [1.0, -2.0, 3.0, 0.5])
 def test_a_corrupt_reading_of_a_single_turn_encoder_loses_no_turn(size):
     times, angles = motion(1000, 400, np.random.default_rng(5))
