@@ -21,7 +21,7 @@ FASTEST = 100.0  # times the clock: faster than any playback
 _FEWEST, _LEAST = 10, 100_000_000  # stamps, and ns, that tell their pace; no burst takes as long
 _EVEN = 1.5  # times the usual one: time until a reading that directly follows
 
-_ROUNDING, _SINGLE = 1e-9, 2.0**-22  # rad; and of a position, if it was a number of 24 bits
+_ROUNDING = 1e-9  # rad
 _FEWEST_TURNABOUTS, _AMONG = 20, 100
 """More turnabouts than these within so many readings show two motions."""
 
@@ -68,8 +68,7 @@ class Alternation:
         out, back = np.minimum(abs(steps[1:]), abs(steps[:-1])), steps[1:] + steps[:-1]
         time = (stamps[2:] - stamps[:-2]) / (2.0 * SECOND)
         # A rotor can turn about within a quarter of the last angle, and an encoder by a few steps.
-        rounding = max(_ROUNDING, _SINGLE * float(np.max(abs(positions), initial=0.0)))
-        step = np.min(abs(back), initial=math.inf, where=abs(back) > rounding)
+        step = np.min(abs(back), initial=math.inf, where=abs(back) > _ROUNDING)
         far = out > np.maximum(max(3.5 * step, 3.0 * FLOOR), 2.0 * acceleration * time * time)
         far &= time > 0.0  # repeated stamps show no time
         rows = np.flatnonzero(far & (4.0 * abs(back) < out))

@@ -1,6 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Follows the motion of a rotor over many readings at once, while each is within its reach."""
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -72,14 +73,14 @@ def all_in_reach(
     # a wrap or a wrong reading.
     if np.any(when == changed[:-1]) or np.any(np.abs(moved[1:]) > LEAST_STEP):
         return None
-    sizes = np.abs([steps, steps - step[1:-1]])
-    equal = np.full(len(rows), EQUAL)
+    noise = np.full(len(rows) + 1, known.noise)
     if known.noise > FLOOR:
-        ends = [position, *positions[rows].tolist()]
-        for k in np.flatnonzero(sizes.min(axis=0) < 0.5 * known.noise).tolist():
-            equal[k] = _differs(ends[k + 1], ends[k])
-    sizes = np.where(sizes > equal, sizes, COARSEST).min(axis=0)
-    noise = np.minimum.accumulate(np.append(known.noise, np.maximum(2.0 * sizes, FLOOR)))
+        sizes, ends = np.abs([steps, steps - step[1:-1]]), [position, *positions[rows].tolist()]
+        fine = (sizes > EQUAL) & (sizes < 0.5 * known.noise - EQUAL)
+        for k in np.flatnonzero(fine.any(axis=0)).tolist():
+            noise[k + 1 :] = finer(float(noise[k]), sizes[:, k].tolist(), ends[k + 1], ends[k])
+            if noise[k + 1] == FLOOR:
+                break
     usual = 0.5 * (span[1:-1] + span[:-2])
     regular = usual <= LONGEST_NS
     for each in (span[1:-1], np.diff(changed)):
@@ -106,8 +107,7 @@ def all_in_reach(
             reach = limits.reach(times[1], times[0], last, prior, noise[k], held_up)
             if not reach[0] <= steps[k] <= reach[1]:
                 return None
-            late = held_up.late(began, times[1])
-            if limits.takes_back(times[1], steps[k], last, prior, noise[k], late):
+            if limits.takes_back(times[1], steps[k], last, prior, noise[k], held_up):
                 return None
     if len(rows):
         before = float(positions[rows[-2]]) if len(rows) > 1 else position
@@ -117,21 +117,18 @@ def all_in_reach(
     return Motion(latest, former, moving, int(stamps[-1]), float(noise[-1]), held_up)
 
 
-def finer(noise: float, steps: tuple[float, float], position: float, *others: float) -> float:
+def finer(noise: float, steps: Iterable[float], position: float, *others: float) -> float:
     """Return the noise of readings, rad, as far as steps to a position show that it is less.
 
     The others are the position before and what positions repeat after.
     """
     if noise <= FLOOR:
         return noise
-    sizes = [size for size in map(abs, steps) if size > _differs(position, *others)]
-    return min(noise, max(2.0 * min(sizes, default=noise), FLOOR))
-
-
-def _differs(position: float, *others: float) -> float:
-    """Return from what on steps between angles differ by more than rounding, rad."""
-    most = max(map(abs, (position, *others)))
-    return max(EQUAL, _SINGLE * most) if single_precision_step(position) else EQUAL
+    sizes = [size for size in map(abs, steps) if EQUAL < size < 0.5 * noise - EQUAL]
+    if sizes and single_precision_step(position):
+        rounding = _SINGLE * max(map(abs, (position, *others)))
+        sizes = [size for size in sizes if size > rounding]
+    return max(2.0 * min(sizes), FLOOR) if sizes else noise
 
 
 def _even(known: Motion, limits: RotorLimits, stamps: Array, positions: Array) -> Motion | None:

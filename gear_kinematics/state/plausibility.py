@@ -198,10 +198,8 @@ class Plausibility:
         reached = low <= step <= high or high - low > _MOST_OF * self.period > 0.0
         if not reached or (self._doubted and self._stays(position, step, stamp)):
             return self._doubt(position, stamp)
-        if abs(step - last_step) > self.noise:  # else nothing is taken back
-            late = held_up.late(changed, stamp)
-            if self.limits.takes_back(stamp, step, last, former, self.noise, late):
-                self.alternation.take_back(last_step, changed)
+        if self.limits.takes_back(stamp, step, last, former, self.noise, held_up):
+            self.alternation.take_back(last_step, changed)
         self._doubted.clear()
         self._held_up = held_up
         possible = self.wraps.counted if self.period else abs(last_step) > LEAST_STEP

@@ -153,15 +153,23 @@ class RotorLimits(NamedTuple):
         return within and abs(speed - former) <= change
 
     def takes_back(
-        self, stamp: int, step: float, last: Reading, former: Reading, noise: float, late: float
+        self,
+        stamp: int,
+        step: float,
+        last: Reading,
+        former: Reading,
+        noise: float,
+        held_up: HeldUp,
     ) -> bool:
         """Whether a step, rad, takes back the last one, which the rotor cannot have made at all.
 
         Beyond the motion before, it turns about between them, and within a time it goes no farther
-        from there than by half its acceleration times the square of that time. Readings of a burst
-        can be `late`, ns.
+        from there than by half its acceleration times the square of that time. The last pause
+        tells how late the readings of a burst can be.
         """
         _, changed, out, took = last
+        if abs(out - step) <= 2.0 * _STEPS * noise:  # by which both are beyond what is possible
+            return False
         spans = took, stamp - changed, former[3]
         if not took or self.hides_turn(max(spans)):
             return False
@@ -170,7 +178,7 @@ class RotorLimits(NamedTuple):
         way = min(abs(out), abs(back))
         if out * back > 0.0 or abs(out + back) > _ALONE * way:
             return False
-        stale, span = _stale(last, former, late), 1e-9 * max(spans)
+        stale, span = _stale(last, former, held_up.late(changed, stamp)), 1e-9 * max(spans)
         time = span + stale
         # Where two readings have the same stamp, the next one seems to be an interval late.
         least = 0.5 * self.acceleration * time * time + 1e9 * abs(speed) * max(span, stale)
