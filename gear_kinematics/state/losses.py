@@ -29,6 +29,7 @@ class Publishers:
 
     def __init__(self) -> None:
         self._last = -1  # number of the last message
+        self._passed = False  # whether one jumped past the greatest since they fell
         self._greatest = deque([-1], maxlen=_UPDATES)  # before numbers fell, between updates
         self._returns = deque([0], maxlen=_UPDATES)  # of a former publisher, between updates
 
@@ -37,12 +38,18 @@ class Publishers:
         if number is None:
             return False
         last, self._last = self._last, number
-        if number > last:
+        if number == last + 1:
             return False
-        returned = 0 <= max(self._greatest) < last  # it went on, as none does that restarts
+        greatest = max(self._greatest)
+        if number > last:
+            self._passed |= last < greatest < number
+            return False
+        # A former one went on, then: those of one that restarts rise little by little.
+        returned = self._passed or 0 <= greatest < number == last
+        self._passed = False
         self._returns[-1] += returned
         self._greatest[-1] = max(self._greatest[-1], last)
-        return not returned
+        return not (returned or self.several)
 
     def update(self) -> None:
         """Forget what happened before the last updates."""

@@ -126,10 +126,13 @@ def test_a_new_driver_is_compared_with_the_last_unless_two_take_turns():
     assert graph.logged == [('W', ANOTHER.format(-286)), ('W', SEVERAL)]
 
 
-def test_each_of_two_restarts_within_seconds_is_compared_with_the_last_position():
-    graph = Graph()
-    for stamp, position, number in ((1, 5, 70), (1.1, 5, 71), (2, 3, 1), (3, 3, 2), (4, 1, 1)):
-        graph.hear(stamp, position, number=number)
+@pytest.mark.parametrize('numbers', [(70, 71, 1, 2, 1), (1, 2, 1, 2, 3, 1)])
+def test_each_of_two_restarts_within_seconds_is_compared_with_the_last_position(numbers):
+    """It counts from 2 rad less each time, also where it ran longer than the time before."""
+    graph, position = Graph(), 7.0
+    for second, number in enumerate(numbers, start=1):
+        position -= 2.0 * (number == 1)
+        graph.hear(second, position, number=number)
         graph.update(1)
     assert graph.logged == [('W', ANOTHER.format(-115))] * 2
 

@@ -153,6 +153,7 @@ def test_a_rotor_that_is_elsewhere_when_a_driver_comes_is_said_once(bench):
         ([900, 901, 1, 2, 3], False),  # a driver that was started again
         ([900, 901, 1, 2, 3, 1, 2], False),  # a driver that was started twice more
         ([900, 1, 2, 3, 1, 2, 3, 4, 1], False),
+        ([2, 1, 2, 3, 1, 2, 3, 4, 1], False),  # it ran ever longer
         ([900, 1, 901, 902, 2, 903, 3], True),
         ([1, 1, 2, 2, 3, 3], True),  # both began at the same time
         ([1, 900, 2, 901, 3, 902, 4], True),
