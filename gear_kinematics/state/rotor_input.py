@@ -197,7 +197,7 @@ class RotorInput(JointCounts):
         parameters, last = self._parameters, self.last
         in_order, _ = order(stamps)
         in_order &= not (last and len(stamps) and stamps[0] < last.stamp)
-        in_order &= not (parameters.rotor_period or parameters.absolute)
+        in_order &= not (parameters.rotor_period or parameters.absolute or self.disorder.readings)
         in_order = in_order and self.plausibility.believes(stamps, values[:, 0])
         take = self._all_at_once if in_order else self._one_by_one
         samples = take(rows, stamps, values, clock, rejected)

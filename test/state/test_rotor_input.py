@@ -13,6 +13,7 @@ from live import SECOND, rotor_bytes
 
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.statuses import Condition
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
 SETTINGS = NodeParameters.load()
@@ -181,6 +182,21 @@ def test_copies_of_earlier_messages_are_no_clock_that_was_set_back(position, cop
     assert rotor_input.plausibility.jumped is None
     assert rotor_input.disorder.fault is None
     assert rotor_input.referenced
+
+
+@pytest.mark.parametrize('length', [1, 2, 53, 54, 100])
+def test_a_clock_that_is_set_back_is_said_wherever_batches_end(length):
+    """The last of four readings that are rejected for it can end a batch."""
+    rotor_input = RotorInput(SETTINGS)
+    sent = [
+        rotor_bytes(START + (2 * k - 9 * (k >= 50)) * SECOND // 200, position=[0.01 * k])
+        for k in range(100)
+    ]
+    for first in range(0, 100, length):
+        batch = sent[first : first + length]
+        rotor_input.accept_batch(batch, [0] * len(batch))
+    step = Condition.CLOCK_SET_BACK(size=0.035, time=(START + 49 * SECOND // 100) / SECOND)
+    assert (rotor_input.rejected, rotor_input.disorder.fault) == ({'out of order': 4}, step)
 
 
 @pytest.mark.parametrize('back', range(10, 240, 5))
