@@ -271,8 +271,6 @@ class RotorInput(JointCounts):
             self.leave_others()
         elif stamp <= last[0]:  # its stamp, by the fastest way
             self._check_order(last.stamp, (stamp, position, velocity, effort))
-        if last and stamp == last[0] and position == self.plausibility.position:
-            self.disorder.readings.clear()  # all came before, as of a relay that repeats messages
         if self.disorder.readings and last:
             time, readings = self.disorder.set_back(last.stamp, stamp)
             self.turns.set_back(time)
@@ -328,6 +326,9 @@ class RotorInput(JointCounts):
         stamp, position, *_ = reading
         if stamp == last:
             self.duplicates += 1
+            # All came before, as of a relay that repeats messages, or there were turns between.
+            if position == self.plausibility.position and not self.turns.period:
+                self.disorder.readings.clear()
         elif last - stamp <= CLOCK_RESET:
             self.disorder.add(reading)
             raise RejectedInputError(Rejection.OUT_OF_ORDER)

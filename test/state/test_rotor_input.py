@@ -184,6 +184,20 @@ def test_copies_of_earlier_messages_are_no_clock_that_was_set_back(position, cop
     assert rotor_input.referenced
 
 
+def test_a_turn_while_the_clock_is_set_back_is_seen_from_an_equal_position_and_stamp():
+    """A Hall sensor of 24 steps makes it within 0.2 s; the clock is set back by 0.19 s."""
+    rotor_input, end = RotorInput(replace(SINGLE_TURN, max_rotor_speed=118.0)), None
+    for k in range(100):
+        stamp, steps = START + (k - 20 * (k >= 50)) * SECOND // 100, k * 24 // 20
+        with suppress(RejectedInputError):
+            end = accept(rotor_input, stamp, steps % 24 * math.tau / 24)
+        if not k:
+            rotor_input.home(0.0)
+    assert rotor_input.rejected == {'out of order': 19}
+    turned = math.tau * end.position.turns + end.position.angle
+    assert not rotor_input.referenced or turned == pytest.approx(steps * math.tau / 24)
+
+
 @pytest.mark.parametrize('length', [1, 2, 53, 54, 100])
 def test_a_clock_that_is_set_back_is_said_wherever_batches_end(length):
     """The last of four readings that are rejected for it can end a batch."""
