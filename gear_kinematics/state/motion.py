@@ -76,7 +76,7 @@ def all_in_reach(
     noise = np.full(len(rows) + 1, known.noise)
     if known.noise > FLOOR:
         sizes, ends = np.abs([steps, steps - step[1:-1]]), [position, *positions[rows].tolist()]
-        fine = (sizes > EQUAL) & (sizes < 0.5 * known.noise - EQUAL)
+        fine = (sizes > EQUAL) & (sizes < 0.5 * known.noise)
         for k in np.flatnonzero(fine.any(axis=0)).tolist():
             noise[k + 1 :] = finer(float(noise[k]), sizes[:, k].tolist(), ends[k + 1], ends[k])
             if noise[k + 1] == FLOOR:
@@ -124,7 +124,7 @@ def finer(noise: float, steps: Iterable[float], position: float, *others: float)
     """
     if noise <= FLOOR:
         return noise
-    sizes = [size for size in map(abs, steps) if EQUAL < size < 0.5 * noise - EQUAL]
+    sizes = [size for size in map(abs, steps) if EQUAL < size < 0.5 * noise]
     if sizes and single_precision_step(position):
         rounding = _SINGLE * max(map(abs, (position, *others)))
         sizes = [size for size in sizes if size > rounding]
