@@ -95,7 +95,8 @@ class Actuator:
         except RuntimeError as error:  # after the joint was changed, too
             none = f'no valid {topics.ROTOR_STATE} has come yet'
             raise RefusedError(none, '; check the driver') from error
-        if self.state.monitor.several:  # whichever was right, the zero may not be
+        # By their numbers: without them, a second publisher on a shared topic may just be idle.
+        if self.state.monitor.publishers.several:  # whichever was right, the zero may not be
             raise RefusedError('several drivers send its joint', '; stop all but one')
         speed = abs(ratio.output_rate(self._present_speed))
         age, span = time.monotonic() - self._seen, _SPEED_SPAN / SECOND

@@ -57,7 +57,6 @@ class DriverMonitor:
         self.last_input: float | None = None  # time of the last message, valid or not
         self.publishers = Publishers()  # of the joint
         self.several = False  # whether several drivers send the joint, at the last report
-        self._others = 0  # messages of other joints until then
         self._counted = Counter[str]()  # counts at the last report
 
     def _growth(self, counts: Mapping[str, int]) -> Counter[str]:
@@ -66,12 +65,12 @@ class DriverMonitor:
         return grown  # another input counts from 0
 
     def _count_drivers(self, driver: DriverFacts, others: int) -> None:
-        """Find whether several send the joint; without numbers, none of them sends others."""
+        """Find whether several send the joint; without numbers, none has sent `others` so far."""
         self.publishers.update()
         mixed = self.publishers.several
         if driver.number is None:
-            mixed = self.last_input is not None and others == self._others
-        self.several, self._others = driver.publishers > 1 and mixed, others
+            mixed = self.last_input is not None and not others
+        self.several = driver.publishers > 1 and mixed
 
     def _losses(
         self, grown: Counter[str], rejected: Mapping[str, int], driver: DriverFacts
