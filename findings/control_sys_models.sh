@@ -1,17 +1,18 @@
 #!/bin/bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# control-sys 0.1.0 (Rust): an arm of 2000 kg·m² is not controllable, and an accelerometer of a resting joint reads -1.
+# control-sys 0.1.0 (Rust): an arm of 2000 kg·m² is not controllable, and an even turn has an acceleration.
 #
 # 1. An arm with an inertia of 2000 kg·m² and a damping of 1000 N·m·s/rad is turned by a torque in N·m. Expected of
 #    `is_ss_controllable()`: true, as for the same arm with a torque in kN·m. What happens: false, since the rank of the
 #    controllability matrix is that above an absolute tolerance of 1e-3.
-# 2. The damped joint x' = -10 x + 10 u, whose motor's acceleration -x + u is measured. Expected of a step: 1 at first,
-#    then 0. What happens: 0, then -1, since the simulation leaves the matrix D out, which each model takes.
+# 2. A motor whose speed follows x' = -10 x + 10 u, and whose acceleration, -10 x + 10 u, is the output. Expected of a
+#    step: 10 rad/s² at first, then 0, as the motor turns evenly. What happens: 0 at first, then -10 rad/s², since the
+#    simulation leaves the matrix D out, which each model takes.
 # 3. Expected of `from_continuous_ss_forward_euler()`, "using the forward Euler method": A = I + dt A. What happens:
 #    inverse(I - dt A), the backward Euler method: an output of an elastic shaft without damping, at 20 rad/s, swings by
 #    14 % of its first amplitude after 10 s in steps of 1 ms, where the forward method would make 739 % of it.
 # Output: controllable: in N·m false, in kN·m true
-#         acceleration: -0.00 at first, -1.00 at the end
+#         acceleration: -0.00 at first, -10.00 at the end
 #         A of the forward Euler method: 0.9615 instead of 1; swing after 10 s: 0.14
 # For us: scale a model to numbers near 1, add D u to each output, and take an exact discretization for an elastic gear.
 #
@@ -46,7 +47,7 @@ fn main() {
     println!("controllable: in N·m {newton}, in kN·m {kilonewton}");
 
     let motor = ContinuousStateSpaceModel::from_matrices(
-        &dmatrix![-10.0], &dmatrix![10.0], &dmatrix![-1.0], &dmatrix![1.0]);
+        &dmatrix![-10.0], &dmatrix![10.0], &dmatrix![-10.0], &dmatrix![10.0]);
     let (acceleration, _, _) = step_for_continuous_ss(&motor, 1e-3, 2.0);
     let (first, last) = (acceleration[(0, 0)], acceleration[(0, acceleration.ncols() - 1)]);
     println!("acceleration: {first:.2} at first, {last:.2} at the end");
@@ -60,7 +61,7 @@ fn main() {
     println!("A of the forward Euler method: {entry:.4} instead of 1; swing after 10 s: {swing:.2}");
 
     assert!(!newton && kilonewton);
-    assert!(first.abs() < 1e-9 && (last + 1.0).abs() < 1e-3);
+    assert!(first.abs() < 1e-9 && (last + 10.0).abs() < 1e-3);
     assert!((entry - 1.0 / 1.04).abs() < 1e-9 && (swing - 0.14).abs() < 0.03);
 }
 RUST
