@@ -4,9 +4,9 @@
 #
 # `xyEquallySpaced()` puts a record on an even grid. Expected of an angle of 100 rad throughout: 100 rad. What happens,
 # with the default variant "smooth", "the trapezoidal integral divided by the step size": the first and the last value
-# are means over a step that lies half outside of the record, where the angle counts as 0. From 1 kHz to 10 Hz they are
-# 50.5 rad, on the same grid 87.5 rad. With the variant "slot", "averages y values within each bin", a bin without any
-# sample, as during a gap of 0.26 s, is 0 rad. Neither is described.
+# are means over a step that lies half outside of the record, where the angle falls to 0 within one sample. From 1 kHz
+# to 10 Hz they are 50.5 rad, on the same grid 87.5 rad. With the variant "slot", which "averages y values within each
+# bin", a bin without any sample, as during a gap of 0.26 s, is 0 rad. Neither is described.
 # Expected of `xyInterpolateLinear()` for times just before and after a ramp from 0 to 10 rad in 1 s: both held, or both
 # extrapolated. What happens: -1 rad at -0.1 s, which is extrapolated, and 10 rad at 1.1 s, which is held.
 # Output: smooth, 10 Hz: 50.5 100.0 100.0 100.0 100.0 100.0 100.0 100.0 100.0 100.0 50.5
