@@ -51,6 +51,11 @@ func main() {
 		if err := splines[i].Fit(times, angles); err != nil {
 			panic(err)
 		}
+		start, before := splines[i].PredictDerivative(0), splines[i].PredictDerivative(-1)
+		if splines[i].Predict(-1) != 0 || before != start {
+			fmt.Println(name, "before the table: not as before")
+			os.Exit(1)
+		}
 		text := name + ":"
 		for k, time := range []float64{6, 7, 100} {
 			angle, speed := splines[i].Predict(time), splines[i].PredictDerivative(time)
