@@ -1,17 +1,18 @@
 #!/bin/bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# biquad 0.6.0 (Rust): the band from 49 to 51 Hz has the same filter as the one from 25 to 100 Hz.
+# biquad 0.6.0 (Rust): the band from 49 to 51 Hz has nearly the same filter as that from 25 to 100 Hz.
 #
 # `band_0db_from_cutting_frequencies()` makes a band-pass or a notch from the two edges of its band. Expected of both
 # edges: 0.707 (-3 dB), and of 30 Hz with a notch from 49 to 51 Hz, which is to take the hum of the mains out of a
 # measured torque: 0.999. What happens: only the middle of the band is taken from the edges, and the quality factor is
-# 1 for each band, so that three bands around 50 Hz have the same coefficients: a notch takes 27 % of a vibration at
-# 30 Hz away, and a band-pass that is to find a gear mesh at 50 Hz passes 68 % of what is at 30 Hz. The function has no
-# description. A band-pass of `from_params()` is not limited to 0 dB: its middle is multiplied by the quality factor,
+# 1 for each band, so that three bands around 50 Hz have nearly the same coefficients: a notch takes 27 % of a vibration
+# at 30 Hz away, and a band-pass that is to find a gear mesh at 50 Hz passes 68 % of what is at 30 Hz. The function has
+# no description. A band-pass of `from_params()` is not limited to 0 dB: its middle is multiplied by the quality factor,
 # which is one of the two forms in the cookbook that the crate follows; which one, it does not say.
-# Output: edges 49 and 51 Hz: band-pass 0.68 at 30 Hz, 1.00 at the edges; notch 0.73 at 30 Hz, 0.04 at the edges
-#         edges 45 and 55 Hz: band-pass 0.68 at 30 Hz, 0.98 at the edges; notch 0.73 at 30 Hz, 0.20 at the edges
-#         edges 25 and 100 Hz: band-pass 0.68 at 30 Hz, 0.55 at the edges; notch 0.73 at 30 Hz, 0.83 at the edges
+# Output: edges 49 and 51 Hz: band-pass 0.68 at 30 Hz, 1.00 at the lower edge; notch 0.73 at 30 Hz, 0.04 at the lower edge
+#         edges 45 and 55 Hz: band-pass 0.68 at 30 Hz, 0.98 at the lower edge; notch 0.73 at 30 Hz, 0.20 at the lower edge
+#         edges 25 and 100 Hz: band-pass 0.68 at 30 Hz, 0.55 at the lower edge; notch 0.73 at 30 Hz, 0.83 at the lower edge
+#         notch of from_params(): 0.9990 at 30 Hz, 0.71 at 49 Hz
 #         band-pass with a quality factor of 10: 10.00 at 50 Hz
 # For us: call `from_params()` with the middle of the band and its quality factor, middle / (upper - lower edge), and
 # divide a band-pass by this factor.
@@ -55,8 +56,8 @@ fn main() {
     {
         let (pass, notch) = (made(Type::BandPass, lower, upper), made(Type::Notch, lower, upper));
         println!(
-            "edges {lower} and {upper} Hz: band-pass {:.2} at 30 Hz, {:.2} at the edges; \
-             notch {:.2} at 30 Hz, {:.2} at the edges",
+            "edges {lower} and {upper} Hz: band-pass {:.2} at 30 Hz, {:.2} at the lower edge; \
+             notch {:.2} at 30 Hz, {:.2} at the lower edge",
             gain(&pass, 30.0), gain(&pass, lower), gain(&notch, 30.0), gain(&notch, lower)
         );
         assert!((gain(&pass, 30.0) - 0.68).abs() < 5e-3 && (gain(&notch, 30.0) - 0.73).abs() < 5e-3);
