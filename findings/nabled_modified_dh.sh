@@ -27,7 +27,7 @@ version = "0.1.0"
 edition = "2021"
 [dependencies]
 nabled-kinematics = "=0.0.11"
-ndarray = "0.17"
+ndarray = "=0.17.2"
 TOML
 cat > src/main.rs <<'RUST'
 use nabled_kinematics::{fk::fk, jacobian::jacobian, ChainSpec, DhConvention, JointType};
