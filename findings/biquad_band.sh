@@ -9,9 +9,9 @@
 # at 30 Hz away, and a band-pass that is to find a gear mesh at 50 Hz passes 68 % of what is at 30 Hz. The function has
 # no description. A band-pass of `from_params()` is not limited to 0 dB: its middle is multiplied by the quality factor,
 # which is one of the two forms in the cookbook that the crate follows; which one, it does not say.
-# Output: edges 49 and 51 Hz: band-pass 0.68 at 30 Hz, 1.00 at the lower edge; notch 0.73 at 30 Hz, 0.04 at the lower edge
-#         edges 45 and 55 Hz: band-pass 0.68 at 30 Hz, 0.98 at the lower edge; notch 0.73 at 30 Hz, 0.20 at the lower edge
-#         edges 25 and 100 Hz: band-pass 0.68 at 30 Hz, 0.55 at the lower edge; notch 0.73 at 30 Hz, 0.83 at the lower edge
+# Output: edges 49 and 51 Hz: band-pass 0.68 at 30 Hz, 1.00 at the lower edge; notch 0.73 and 0.04
+#         edges 45 and 55 Hz: band-pass 0.68 at 30 Hz, 0.98 at the lower edge; notch 0.73 and 0.20
+#         edges 25 and 100 Hz: band-pass 0.68 at 30 Hz, 0.55 at the lower edge; notch 0.73 and 0.83
 #         notch of from_params(): 0.9990 at 30 Hz, 0.71 at 49 Hz
 #         band-pass with a quality factor of 10: 10.00 at 50 Hz
 # For us: call `from_params()` with the middle of the band and its quality factor, middle / (upper - lower edge), and
@@ -57,7 +57,7 @@ fn main() {
         let (pass, notch) = (made(Type::BandPass, lower, upper), made(Type::Notch, lower, upper));
         println!(
             "edges {lower} and {upper} Hz: band-pass {:.2} at 30 Hz, {:.2} at the lower edge; \
-             notch {:.2} at 30 Hz, {:.2} at the lower edge",
+             notch {:.2} and {:.2}",
             gain(&pass, 30.0), gain(&pass, lower), gain(&notch, 30.0), gain(&notch, lower)
         );
         assert!((gain(&pass, 30.0) - 0.68).abs() < 5e-3 && (gain(&notch, 30.0) - 0.73).abs() < 5e-3);
