@@ -114,7 +114,7 @@ def test_turns_are_referenced_when_those_of_all_are(sent):
     drive(arm.node, 3 * MILLISECOND, m2=1.0)
     values = [deserialize_message(arm.last[topic], Bool).data for topic in topics]
     assert values == [True, True, True]
-    arm.node._publish_diagnostics()
+    arm.node._report()
     statuses = deserialize_message(arm.last['/diagnostics'], DiagnosticArray).status
     assert [each.name for each in statuses] == [
         f'arm/gear_state_publisher: {name}: rotor input' for name in ('shoulder', 'elbow')
