@@ -42,6 +42,9 @@ LOSS = 2  # % of the packets, in each direction
 CUTS = (20, 160)  # messages that are sent while the cable is out
 # rad/s. Half a turn takes 8 messages: so many are not lost in a row but by a pulled cable.
 MAX_ROTOR_SPEED = 40.0
+HOME_MAX_SPEED = 100.0
+"""rad/s. In 0.1 s it is a way for which that rotor takes 5 s at its output: so long, lines can be
+homed one after another while the driver pauses."""
 
 
 class Cut(NamedTuple):
@@ -134,7 +137,7 @@ def node(name, folder):
     arguments = ['--ros-args', '-r', f'__ns:=/{name}',
                  '-p', f'rotor_encoder:={LINES[name].encoder}',
                  '-p', f'max_rotor_speed:={MAX_ROTOR_SPEED}',
-                 '-p', 'home_max_speed:=10.0', *PATIENT]  # fmt: skip
+                 '-p', f'home_max_speed:={HOME_MAX_SPEED}', *PATIENT]  # fmt: skip
     with (
         log.open('w', encoding='utf-8') as stream,
         running_node(arguments, stdout=stream, stderr=stream) as process,
