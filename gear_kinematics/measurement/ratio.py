@@ -92,10 +92,11 @@ def wrong_ratio(encoders: Encoders, assumed: Fraction) -> Observed | None:
     what = Observation.ANOTHER_RATIO if found.taken else Observation.OTHER_RATIOS
     ratio = found.candidates[0]
     times = found.measured.value / float(assumed)
-    for size in (round(times), math.degrees(1.0), TURN):
-        if size > 1 and abs(times / size - 1.0) < _MULTIPLE:
-            what = Observation.MULTIPLE_RATIO
-            ratio = size * assumed if isinstance(size, int) else ratio
+    whole = round(times)
+    if whole > 1 and abs(times - whole) < _MULTIPLE * whole:
+        what, ratio = Observation.MULTIPLE_RATIO, whole * assumed
+    elif any(abs(times - size) < _MULTIPLE * size for size in (math.degrees(1.0), TURN)):
+        what = Observation.MULTIPLE_RATIO
     return what(measured=found.measured, assumed=assumed, ratio=ratio)
 
 
