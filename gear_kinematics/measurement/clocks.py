@@ -88,8 +88,10 @@ def check_steps(clock: Column, times: Array, angle: Array, unit: str, role: str)
     Whole s or ms beside a rotor may be in a finer unit, and all below s in a coarser one. An angle
     without a `unit` may be in degrees, or in counts, whose unit is asked for elsewhere.
     """
+    if times.dtype.kind == 'M' or (clock.scale >= 1.0 and role != 'rotor'):  # dates are sure
+        return
     known = np.isfinite(times) & np.isfinite(angle)
-    if times.dtype.kind == 'M' or np.count_nonzero(known) <= 1:  # dates, or nothing to compare
+    if np.count_nonzero(known) <= 1:
         return
     times, angle = times[known].astype(float), angle[known]
     steps, turned = np.abs(np.diff([times, angle]))
