@@ -28,7 +28,9 @@ How the branches share the torque of the output is statically indeterminate: `To
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
+from functools import reduce
 from numbers import Real
+from operator import add
 from typing import Any
 
 import numpy as np
@@ -186,7 +188,8 @@ class LoadEquations:
     ) -> Any:
         """Compute τ2, N·m, from O3 × F_cam of each branch's masses, rotor inertia and Σ T."""
         inertial = self._bodies.rotor_inertia * self._ratio * output_acceleration
-        return sum(shares, inertial) + torque / self._ratio
+        # From Python 3.12 on, `sum` rounds floats otherwise than arrays.
+        return reduce(add, shares, inertial) + torque / self._ratio
 
 
 @np.errstate(invalid='ignore')  # values that are not finite give NaN

@@ -118,6 +118,7 @@ def state_of(judge) -> dict:
         'noise': pytest.approx(judge.noise, abs=2e-8),
         '_last': judge._last[1:],
         '_former': judge._former[2:],
+        'alternation': repr(judge.alternation),  # NaN equals NaN
     }
 
 
