@@ -30,8 +30,7 @@ _ALIKE = 0.1  # of a factor that has a name
 _REPEATED = 1.4
 """Greatest factor that even steps show of right velocities: where a driver reads each 75 to 82 ms,
 there is one new reading in most intervals of `SPAN`, and two in the others."""
-_TRAVEL = 3.0  # rad, at least, in a comparison
-_NOISES = 10  # of a reading, at least, in a comparison
+_TRAVEL, _NOISES = 3.0, 10  # rad, and noises of a reading, at least, in a comparison
 _FEWEST = 10  # turns between readings in a comparison of an unsteady motion
 _ALIGNED = 0.95  # the square of a correlation from which a factor explains the velocities
 _FEW = 4  # velocities between readings, of which the mean is that of an oscillation
@@ -42,9 +41,10 @@ _STUCK = 1.5  # times a velocity that does not change: more than its rounding an
 _ROUNDING = 1e-9  # of a velocity: by which a mean of equal ones may differ
 _FILTERED = 0.5  # share by which what a filter leaves of a motion may differ from a projection
 _LATE, _EXPLAINED = 0.03, 0.9  # s, square of a correlation, from which a delay is reported
-_CHANGES = 4.0
-"""Noises of a reading: least change of the travels that shows a delay. At a steady speed,
-an error of the positions, such as one of each turn, looks like a delay of half of `SPAN`."""
+_CHANGES, _MOST_CHANGES = 4.0, 10.0
+"""Noises of a reading, and times the changes of the velocities, as squares: changes of the travels
+that can show a delay. At a steady speed, an error of the positions, such as one of each turn, or
+of the stamps looks like a delay of half of `SPAN`."""
 
 _POSITIONS = {VelocityMeaning.OF_TURNS, VelocityMeaning.OF_DEGREES, VelocityMeaning.OF_OUTPUT}
 
@@ -82,11 +82,10 @@ class VelocityField:
     def _begin_block(self) -> None:
         self._turns = 0  # between readings, and what is known of them
         self._path = self._squares = self._velocity_squares = self._products = 0.0
-        self._fewest = SPAN  # velocities between two readings
+        self._fewest, self._off_squares = SPAN, 0.0  # velocities between two readings; rad²
         # Products of what the velocities differ by and what the speed changed by, as travels, by
         # the positions and by the velocities.
         self._products_of_changes, self._change_squares = [0.0, 0.0], [0.0, 0.0]
-        self._off_squares = 0.0
 
     @property
     def positions_stand(self) -> bool:
@@ -224,7 +223,8 @@ class VelocityField:
                 self._products_of_changes[k] += off * change
                 self._change_squares[k] += change * change
         if self._turns >= _FEWEST and self._path >= travel:
-            if self._moved and self._change_squares[0] >= self._turns * (_CHANGES * noise) ** 2:
+            least, (squares, given) = self._turns * (_CHANGES * noise) ** 2, self._change_squares
+            if self._moved and least <= squares <= _MOST_CHANGES * given:
                 self._note_delay()
             least = _ALIGNED * self._squares * self._velocity_squares
             if self._products * self._products >= least > 0.0:

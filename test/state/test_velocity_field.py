@@ -279,6 +279,18 @@ def test_errors_of_positions_at_a_steady_speed_are_no_delay(eccentric, noise):
     assert rotor.meaning is None
 
 
+def test_stamps_of_a_coarse_clock_at_a_steady_speed_are_no_delay():
+    """Of a clock that ticks each 15.625 ms, for readings each 20 ms."""
+    for start in np.arange(20) / 1000:
+        time = np.arange(600) / 50 + start
+        stamps = (np.floor(time / 0.015625) * (SECOND // 64)).astype(np.int64)
+        velocity = 300.0 + 3.0 * np.sin(8.0 * time)
+        position = 300.0 * time - 0.375 * np.cos(8.0 * time)
+        rotor = VelocityField(np.nan)
+        rotor.believed(SECOND + stamps, np.column_stack([position, velocity, 0.0 * time]), 0.05)
+        assert rotor.meaning is None
+
+
 @pytest.mark.parametrize('age', [0.0, 0.5])
 @pytest.mark.parametrize('rate', [10, 20, 30, 100])
 def test_velocities_of_a_slow_driver_are_no_sign_of_a_delay(rate, age):
