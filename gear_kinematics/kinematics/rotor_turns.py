@@ -169,8 +169,7 @@ class RotorTurns:
         """Time without a sample, ns, after which a multi-turn encoder may have restarted, so that
         its turns are unknown at the start, too; 0: it never does."""
         self.lost = False  # whether they are unknown until the next reference, because of a jump
-        self.unknown_gaps = 0
-        """Number of gaps in which the rotor could have turned half a period or more unseen."""
+        self.unknown_gaps = 0  # in which the rotor could have turned half a period or more unseen
         self.reset()
 
     @property
@@ -189,8 +188,7 @@ class RotorTurns:
         self._position: tuple[int, float] | None = None
         self.forget_turns()
         self.longest_gap: float | None = None  # s, that made the turns unknown; None: nothing did
-        self._gaps, self._gap = 0, 0.0
-        """By how many the gaps too long for the speed outnumber the others; their mean, s."""
+        self._gaps, self._gap = 0, 0.0  # surplus of those too long for the speed; their mean, s
         self.periods = 0  #: number of periods that are added to the readings
         self._offset = 0, 0, 0.0  # periods, and their sum as turns and angle, rad
         self._reading, self._stamp, self._changed = math.nan, 0, 0
@@ -223,7 +221,12 @@ class RotorTurns:
         self._latest -= time
 
     def update(
-        self, position: float, stamp: int, velocity: float | None = None, lasts: float = 0.0
+        self,
+        position: float,
+        stamp: int,
+        velocity: float | None = None,
+        lasts: float = 0.0,
+        likely: tuple[int, float] = (0, 0.0),
     ) -> None:
         """Process the encoder's next sample.
 
@@ -232,6 +235,7 @@ class RotorTurns:
             stamp: ns, not earlier than the last.
             velocity: rad/s, or None if unknown.
             lasts: ns, for which the driver repeats each reading; 0: it does not.
+            likely: a stamp, ns, and the likeliest turn up to it by the motion so far, rad.
         """
         self._latest = stamp
         if lasts and position == self._reading and stamp < self._stamp + lasts:
@@ -246,8 +250,7 @@ class RotorTurns:
             expected, width = self._possible_turn(within, self._velocity, velocity)
             apparent, since = position - self._reading, self._since_gap
             more = round((expected - apparent) / period)
-            # Stamps that are early or late put the turn outside of what is possible: it is the
-            # right one only if any other were far less possible.
+            # It is outside by stamps that are early or late, if any other is far less possible.
             turn, gap, wide = apparent + period * more, elapsed, width >= period
             if wide:
                 self._gap += (elapsed - self._gap) / (self._gaps + 1)
@@ -261,7 +264,9 @@ class RotorTurns:
                 if since:
                     turn, expected, width, gap = turned, middle, between, since[3]
             outside = abs(turn - expected) - 0.5 * width
-            if wide or outside > _NOISE + (period - width - outside) / 5.0:
+            # By the motion it was another turn: this reading or the last one is wrong.
+            other = not since and stamp == likely[0] and abs(turn - likely[1]) > 0.5 * period
+            if wide or other or outside > _NOISE + (period - width - outside) / 5.0:
                 self.referenced, since = False, None
                 self.unknown_gaps += 1
                 self.longest_gap = max(self.longest_gap or 0.0, gap)

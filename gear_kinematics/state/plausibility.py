@@ -78,6 +78,7 @@ class Plausibility:
         self._stamp = 0  # ns, of the last believed reading with the last position
         self._repeated = 0  # ns, the last stamp of several readings
         self.repeats = Repeats()
+        self.likely = 0, 0.0  # ns, rad: the latest step of positions that repeat, as it is judged
         self._held_up = HeldUp()
         self.noise = 2.0 * COARSEST
         """rad, of a reading: twice the resolution of the encoder, which is the smallest step of
@@ -195,6 +196,7 @@ class Plausibility:
         if self.period:
             middle = 0.5 * (low + high)
             step = middle + math.remainder(step - middle, self.period)
+            self.likely = stamp, step
         reached = low <= step <= high or high - low > _MOST_OF * self.period > 0.0
         if not reached or (self._doubted and self._stays(position, step, stamp)):
             return self._doubt(position, stamp)

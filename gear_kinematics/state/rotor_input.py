@@ -286,7 +286,8 @@ class RotorInput(JointCounts):
             if self.plausibility.wraps.period:  # then no slope of the positions was a speed
                 self.velocity_field = VelocityField(float(1 / self._parameters.gear.gear_ratio))
         if stamp < (field := self.velocity_field).quiet_until:
-            self.turns.update(position, stamp, velocity, self.plausibility.repeats.lasts)
+            gate = self.plausibility
+            self.turns.update(position, stamp, velocity, gate.repeats.lasts, gate.likely)
             field.add(velocity)
         else:
             velocity = self._compare(stamp, position, velocity)
@@ -303,14 +304,14 @@ class RotorInput(JointCounts):
 
     def _compare(self, stamp: int, position: float, velocity: float | None) -> float | None:
         """Update the turns; returns the velocity, unless the positions contradict it."""
-        field = self.velocity_field
+        field, gate = self.velocity_field, self.plausibility
         given = None if field.contradicts else velocity
-        self.turns.update(position, stamp, given, self.plausibility.repeats.lasts)
+        self.turns.update(position, stamp, given, gate.repeats.lasts, gate.likely)
         if stamp < field.due:
             field.add(velocity)
             return None
         position = self._unwrapped(position)
-        field.note(stamp, position, velocity, self.plausibility.noise)
+        field.note(stamp, position, velocity, gate.noise)
         doubtful = field.contradicts and self.turns.narrowed > max(0, field.confirmed)
         if self.turns.period and (field.positions_stand or doubtful):
             self.turns.lose_unseen()

@@ -109,6 +109,21 @@ def test_velocity_narrows_the_possible_turn_of_a_single_turn_encoder():
     assert sample.position == (1, pytest.approx(8.0 - TURN))
 
 
+@pytest.mark.parametrize('speed', [-600.0, -500.0, 500.0, 600.0])
+def test_fast_rotor_loses_no_turn_silently_by_a_single_wrong_reading(speed):
+    """At 250 Hz, it turns by 2 rad or more between two readings, nearly half a turn."""
+    for off in [k / 10 for k in range(1, 63)]:
+        rotor_input, error = homed(0.0), math.inf
+        for k in range(1, 60):
+            position = speed * k / 250
+            with suppress(RejectedInputError):
+                read = (position + off * (k == 40)) % TURN
+                sample = accept(rotor_input, START + k * SECOND // 250, read)
+                error = angle_error(sample, position)
+            assert k >= 40 or rotor_input.referenced
+        assert not rotor_input.referenced or error < 1e-9
+
+
 def test_change_of_encoder_resets_the_state(rotor_input):
     accept(rotor_input, START, 20.0)
     rotor_input.parameters = SINGLE_TURN
