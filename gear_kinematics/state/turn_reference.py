@@ -206,7 +206,7 @@ class TurnReference:
         for sample in samples:
             if errors := self._block.add(sample):
                 unseen = self.rotor.turns.unseen_travel
-                least = self.refuted.budget if self.refuted else math.inf
+                least = self.refuted.budget if self.refuted else self._least_for_jump()
                 self.decision = decision = decide(errors, self.rotor.parameters, unseen)
                 if decision.disagreement or decision.budget < decision.margin:
                     self.disagreement = decision.disagreement
@@ -219,6 +219,19 @@ class TurnReference:
                 elif decision.refuted and decision.budget < least:
                     self.refuted = decision
         return samples if referenced else ()
+
+    def _least_for_jump(self) -> float:
+        """Return the budget, rad, that a jump of an encoder that repeats asks for, if one did.
+
+        A greater one explains the jump, behind which the encoder may have another zero.
+        """
+        rotor, ratio = self.rotor, float(self.rotor.parameters.gear.gear_ratio)
+        jump = rotor.plausibility.jump if rotor.turns.lost and rotor.turns.period else None
+        if not jump:
+            return math.inf
+        least = 4.0 * rotor.parameters.transmission_error_limit  # of jumps that can be told
+        angle: float = jump.values['angle'] / ratio
+        return max(abs(angle), least) / (2.0 * _ALIKE)
 
     def _refer(self, decision: Decision) -> None:
         """Add turns, or what is missing to the measured angle, to the rotor's count."""

@@ -2,6 +2,7 @@
 """Turns of the rotor from the encoder at the output, beside a simulated gear and real ones."""
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 
@@ -15,6 +16,7 @@ from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.gear_state import GearState
 from gear_kinematics.state.monitors import Connections
 from gear_kinematics.state.statuses import Condition
+from gear_kinematics.wire.joint_reader import RejectedInputError
 
 MS = SECOND // 1000
 MULTI = replace(
@@ -370,3 +372,27 @@ def test_motion_does_not_find_turns_that_the_rest_before_it_refutes(apart):
         why = Condition.UNEXPLAINED(used_deg=near(0.2 * 360.0 / 19), margin_deg=near(180.0 / 19))
         report = gear.report(0.0, Connections())['rotor input']
         assert Condition.NOT_FOUND(why=why) in report.facts
+
+
+@pytest.mark.parametrize('stops', [False, True])
+@pytest.mark.parametrize('wrong', [10, 10_000])
+def test_motion_that_could_explain_a_jump_finds_no_turns(wrong, stops):
+    """In motion, a delay of 20 ms could explain 2.4 rad of a rotor that got another zero."""
+    settings = {'max_rotor_speed': 250.0, 'transmission_error_max_gap': 0.02}
+    gear = GearState(replace(SINGLE, max_rotor_acceleration=2500.0, **settings))
+    turned = 0.0
+    for k in range(2400):
+        share = min(max(0.01 * (k - 400), 0.0), 1.0, max(0.01 * (1900 - k), 0.0 if stops else 1.0))
+        turned += 120.0 * share / 200
+        stamp = START + k * SECOND // 200
+        read = turned + 2.2 * (1200 <= k < 1200 + wrong)
+        with suppress(RejectedInputError):
+            gear.rotor(rotor_bytes(stamp, position=[math.remainder(read, math.tau)]), int)
+        gear.encoder(rotor_bytes(stamp, ['shaft'], [turned / -19.0]), int)
+        assert gear.referenced or not 400 <= k < 1200
+    assert gear.input.plausibility.jumps
+    assert gear.referenced is (wrong == 10 and stops)
+    if gear.referenced:
+        turns, angle = gear.sample.position
+        error = math.remainder(math.tau * turns + angle - turned, 19.0 * math.tau)
+        assert error == pytest.approx(0.0, abs=1e-9)

@@ -280,7 +280,7 @@ def test_errors_of_positions_at_a_steady_speed_are_no_delay(eccentric, noise):
 
 
 def test_stamps_of_a_coarse_clock_at_a_steady_speed_are_no_delay():
-    """Of a clock that ticks each 15.625 ms, for readings each 20 ms."""
+    """The clock ticks each 15.625 ms, and readings are 20 ms apart."""
     for start in np.arange(20) / 1000:
         time = np.arange(600) / 50 + start
         stamps = (np.floor(time / 0.015625) * (SECOND // 64)).astype(np.int64)
