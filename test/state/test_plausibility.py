@@ -214,6 +214,20 @@ def test_a_wrong_reading_that_the_rotor_could_reach_is_said_once_it_is_taken_bac
     assert rotor.disorder.fault == Condition.TAKEN_BACK(count=1, angle=angle, time=time)
 
 
+@pytest.mark.parametrize('rate', [50, 100, 200])
+@pytest.mark.parametrize('acceleration', [100.0, 6500.0])
+def test_a_wrong_reading_at_rest_is_said_from_the_documented_bound_on(acceleration, rate):
+    """The bound of docs/trust.md; for the lower acceleration, most of it is that of the noise."""
+    time = 1.0 / rate + min(1.25 / rate, 0.01)
+    bound = 0.5 * acceleration * time * time + 0.1625
+    for share in (0.95, 1.05):
+        angles = 0.001 * (np.arange(100) % 2)
+        angles[60] += share * bound
+        settings = replace(MULTI, max_rotor_acceleration=acceleration)
+        rotor, _ = fed(settings, messages(np.arange(100) / rate, angles))
+        assert complaints(rotor, taken_back=int(share > 1.0)) == ({}, None, None)
+
+
 def test_a_quick_motion_there_and_back_is_not_taken_back():
     """It takes 40 ms and turns by 0.65 rad, with the greatest acceleration."""
     for rate in (25, 50, 100, 500):
