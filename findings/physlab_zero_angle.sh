@@ -2,8 +2,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 # physlab 1.0.8: the torque at an angle of 0 ± 0.1 degrees is exactly 0, and the 2 ** 12 counts of an encoder are 144.
 #
-# The package propagates the uncertainties of quantities. Expected of a product with 0: the other factor times
-# the uncertainty of the 0. What happens: it is calculated by relative uncertainties, which are infinite at 0; what is no number
+# The package propagates the uncertainties of quantities. Expected of a product with 0: the other factor times the
+# uncertainty of the 0. What happens: it is calculated by relative uncertainties, which are infinite at 0; what is NaN
 # in the end is replaced by a tenth of the result, which is 0: the product, and the quotient too, count as exact. For a
 # power of a negative value the tenth is given as well, whatever the uncertainty: (-30 ± 0.5)^2 is 900 ± 90 instead of
 # 900 ± 30, and (-2 ± 0.01)^3 is -8 ± 0.8 instead of -8 ± 0.12. A number to the power of a quantity, which the
