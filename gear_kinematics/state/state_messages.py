@@ -47,7 +47,7 @@ class OutputMessages:
         output_turns, output_rest = self._ratio.output_angle(*sample.position, math)
         angle = TURN * output_turns + output_rest
         _, _, velocity, effort = sample
-        return [(topic, *self._output_state(angle, velocity, effort)) for topic in topics]
+        return [self._output_state(topic, angle, velocity, effort) for topic in topics]
 
     @np.errstate(over='ignore')  # an effort can overflow, as it does for a single sample
     def encode_outputs(self, samples: RotorSamples) -> dict[str, list[bytes]]:
@@ -66,7 +66,7 @@ class OutputMessages:
                 _, _, velocity, effort = sample
                 if velocity is not None:
                     velocity *= 1.0 + correction.slope
-                yield topic, *self._output_state(angle, velocity, effort)
+                yield self._output_state(topic, angle, velocity, effort)
             else:
                 yield topic, self.angle, [correction.half_width]
 
@@ -83,16 +83,14 @@ class OutputMessages:
             CORRECTED_INTERVAL: encode(self.angle, samples.stamp, [correction.half_width]),
         }
 
-    def _output_state(
-        self, output_angle: Any, velocity: Any, effort: Any
-    ) -> tuple[Template, list[Any]]:
-        """Return template and numbers of an output_state: floats or arrays; None where absent."""
+    def _output_state(self, topic: str, output_angle: Any, velocity: Any, effort: Any) -> Row:
+        """Return the row of an output_state: floats or arrays; None where absent."""
         numbers = [output_angle]
         if velocity is not None:
             numbers.append(self._ratio.output_rate(velocity))
         if effort is not None:
             numbers.append(self._torque_ratio * effort)
-        return self._output_states[velocity is not None, effort is not None], numbers
+        return topic, self._output_states[velocity is not None, effort is not None], numbers
 
     def _output_states_of(self, samples: RotorSamples, output_angle: Array) -> list[bytes]:
         output_states = len(samples.stamp) * [b'']
@@ -100,9 +98,8 @@ class OutputMessages:
         for present in self._output_states:
             rows = np.flatnonzero(np.all(present != absent.T, axis=1))
             rates, torques = samples.velocity[rows], samples.effort[rows]
-            template, numbers = self._output_state(
-                output_angle[rows], rates if present[0] else None, torques if present[1] else None
-            )
+            given = rates if present[0] else None, torques if present[1] else None
+            _, template, numbers = self._output_state(OUTPUT_STATE, output_angle[rows], *given)
             encoded = encode(template, samples.stamp[rows], numbers)
             for row, message in zip(rows.tolist(), encoded, strict=True):
                 output_states[row] = message
@@ -132,8 +129,7 @@ class StateMessages(OutputMessages):
         rows: list[Row] = []
         for topic in topics:
             if topic == OUTPUT_STATE:
-                state, numbers = self._output_state(output_angle, velocity, effort)
-                rows.append((topic, state, numbers))
+                rows.append(self._output_state(topic, output_angle, velocity, effort))
                 continue
             branches = branches or self._form.branches(angle, output_rest, math)
             if topic == BODY_POSES:
