@@ -156,7 +156,10 @@ class SeriesRecorder:
         """Add compared messages (n,): stamps, ns, rotor angles, rad, and their fields."""
         if not len(stamp):
             return
-        self._start = int(stamp[0]) if self._start is None else self._start
+        if self._start is None:
+            self._start = int(stamp[0])
+            while len(stamp) > _MAX_SAMPLES * self._interval:  # else halved until then
+                self._interval *= 2
         moment, errors = self._worst([field.error for field in fields], self._interval)
         time = (stamp[moment] - self._start) / SECOND
         new = np.stack([time, rotor_angle[moment], *errors])
