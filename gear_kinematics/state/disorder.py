@@ -169,3 +169,24 @@ def spaced(stamps: Array, due: int, span: int) -> Array:
         rows.append(row)
         due = int(stamps[row]) + span
     return np.array(rows, np.intp)
+
+
+def sums_between(
+    values: Array, given: Array, rows: Array, carried: float
+) -> tuple[list[float], list[int]]:
+    """Return the sums of values before the first row, between rows, and behind, and their counts.
+
+    Values, (n,), are added one by one in their order, the first ones to what is carried. Only
+    those `given`, (n,), are counted. Without values, the first sum is what is carried.
+    """
+    starts, ends = np.append(0, rows + 1), np.append(rows, len(values))
+    sizes, sums = ends - starts, np.zeros(len(starts))
+    values[:1] += carried
+    for size in np.unique(sizes[sizes > 0]).tolist():
+        alike = np.flatnonzero(sizes == size)
+        places = starts[alike, np.newaxis] + np.arange(size)
+        sums[alike] = values[places].cumsum(axis=1)[:, -1] + 0.0  # none is -0.0, as from 0 on
+    if not sizes[0]:
+        sums[0] = carried
+    counts = np.append(0, given.cumsum())
+    return sums.tolist(), (counts[ends] - counts[starts]).tolist()

@@ -12,7 +12,7 @@ from operator import mul
 import numpy as np
 
 from gear_kinematics.state.belief import VelocityMeaning, velocity_factors
-from gear_kinematics.state.disorder import spaced
+from gear_kinematics.state.disorder import spaced, sums_between
 from gear_kinematics.state.reach import FLOOR
 from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.wire.batches import Array
@@ -117,29 +117,23 @@ class VelocityField:
         effort; `noise` is that of a reading, rad. Velocities that contradict the positions become
         NaN.
         """
-        velocity, start, noted = values[:, 1].copy(), 0, 0
+        velocity, start = values[:, 1].copy(), 0
         given = ~np.isnan(velocity)
-        terms = np.where(given, velocity, 0.0)
         rows = spaced(stamps, self.due, SPAN)
         rows = rows[rows < len(values)]
+        terms = np.where(given, velocity, 0.0)
+        totals, counts = sums_between(terms, given, rows, self._total)
         readings = zip(rows.tolist(), stamps[rows].tolist(), values[rows].tolist(), strict=True)
-        for row, stamp, (position, last, _) in readings:
-            self._add(terms[noted:row], given[noted:row])
+        for k, (row, stamp, (position, last, _)) in enumerate(readings):
+            self._total, self._count = totals[k], self._count + counts[k]
             if self.contradicts:
                 velocity[start:row] = np.nan
-            start, noted = row, row + 1
+            start = row
             self.note(stamp, position, None if math.isnan(last) else last, noise)
-        self._add(terms[noted:], given[noted:])
+        self._total, self._count = totals[-1], self._count + counts[-1]
         if self.contradicts:
             velocity[start:] = np.nan
         return velocity
-
-    def _add(self, terms: Array, given: Array) -> None:
-        """Add velocities of messages, (n,), 0 where none is given, with the result of `add`."""
-        if len(terms):
-            terms[0] += self._total
-            self._total = float(terms.cumsum()[-1])
-            self._count += int(np.count_nonzero(given))
 
     def add(self, velocity: float | None) -> None:
         """Take the velocity of a message, rad/s, without comparing it yet."""
