@@ -46,26 +46,27 @@ class JoinedMessages:
         self._actuators, self._order, self._others = joints, list(joints), others
         self._all = np.arange(count)
         self._needed = np.isin(self._all, [*needed])
-        self._inputs = np.zeros(0, np.int64), np.zeros((0, count), bool)
-        """Stamps of the latest inputs, ns, and which actuators need a joint then, (n, count)."""
+        self._inputs = np.zeros(0, np.int64), np.zeros((count, 0), bool)
+        """Stamps of the latest inputs, ns, and which actuators need a joint then, (count, n)."""
         self._waiting = self._inputs  # those of messages whose inputs may be in the next batch
         self._faults: defaultdict[_Fault, Occurrences] = defaultdict(Occurrences)
 
     def take(self, messages: JointStateBatch, stamps: Array, valid: Array) -> None:
         """Judge the next messages of the topic.
 
-        The next inputs have stamps, ns, (n,), and may be valid for an actuator, (n, actuators).
+        The next inputs have stamps, ns, (n,), and may be valid for an actuator, (actuators, n).
         """
-        before, sets = (each[-WINDOW:] for each in self._inputs)
-        self._inputs = np.append(before, stamps), np.vstack([sets, valid & self._needed])
+        needed = self._needed[:, np.newaxis]
+        before, sets = (each[..., -WINDOW:] for each in self._inputs)
+        self._inputs = np.append(before, stamps), np.hstack([sets, valid & needed])
         at, having = ([each] for each in self._waiting)
         for _, names, stamp, fields in messages.contents():
             if not self._others:
                 self._judge(names, stamp, fields)
             there = np.isin(self._all, [self._actuators.get(name, -1) for name in names])
             at.append(stamp)
-            having.append(np.tile(there & self._needed, (len(stamp), 1)))
-        self._compare(np.concatenate(at), np.concatenate(having), waited=len(at[0]))
+            having.append(np.tile(needed & there[:, np.newaxis], len(stamp)))
+        self._compare(np.concatenate(at), np.hstack(having), waited=len(at[0]))
 
     def findings(self, topic: str, actuator: int | None = None) -> Iterator[Finding]:
         """Yield what is wrong with the messages as a whole, or with the joints of an actuator."""
@@ -92,26 +93,32 @@ class JoinedMessages:
 
     def _compare(self, stamps: Array, having: Array, waited: int) -> None:
         """Find messages that lack joints of their input and answer no other input."""
-        order = np.argsort(self._inputs[0], kind='stable')
-        in_stamps, needed = (each[order] for each in self._inputs)
+        in_stamps, needed = self._inputs
+        if (np.diff(in_stamps) < 0).any():
+            order = np.argsort(in_stamps, kind='stable')
+            in_stamps, needed = in_stamps[order], needed[:, order]
         first, last = (np.searchsorted(in_stamps, stamps, side) for side in ('left', 'right'))
-        needed = np.vstack([needed, self._needed])  # one more, for those behind all inputs
-        rows = np.flatnonzero((last - first != 1) | (needed[first] != having).any(axis=1))
-        first, last, stamps, having = (each[rows] for each in (first, last, stamps, having))
+        # One more, for those behind all inputs.
+        needed = np.hstack([needed, self._needed[:, np.newaxis]])
+        rows = np.flatnonzero((last - first != 1) | (needed[:, first] != having).any(axis=0))
+        first, last, stamps, having = (each[..., rows] for each in (first, last, stamps, having))
         waiting = (first == last) & (rows >= waited)
-        self._waiting = stamps[waiting], having[waiting]
+        self._waiting = stamps[waiting], having[:, waiting]
         own = _first_alike(needed, first, last, having, np.equal)
         larger = _first_alike(needed, first, last, having, np.greater_equal)
-        lacking = (needed[larger] > having) & ((own == last) & (larger < last))[:, np.newaxis]
-        for k in np.flatnonzero(lacking.any(axis=0)).tolist():
+        lacking = (needed[:, larger] > having) & (own == last) & (larger < last)
+        for k in np.flatnonzero(lacking.any(axis=1)).tolist():
             fault = k, FindingCause.JOINT_LEFT_OUT, '', ''
-            self._faults[fault].add(stamps[lacking[:, k]])
+            self._faults[fault].add(stamps[lacking[k]])
 
 
 def _first_alike(inputs: Array, first: Array, last: Array, sets: Array, alike: np.ufunc) -> Array:
-    """Find the first of the inputs from `first` to `last`, (n,), whose set is alike, or `last`."""
+    """Find the first of the inputs from `first` to `last`, (n,), whose set is alike, or `last`.
+
+    Sets of actuators are (actuators, n).
+    """
     at = first.copy()
-    while (other := (at < last) & ~alike(inputs[at], sets).all(axis=1)).any():
+    while (other := (at < last) & ~alike(inputs[:, at], sets).all(axis=0)).any():
         at += other
     return at
 
@@ -155,12 +162,12 @@ class ArmValidator:
             received: Any = np.array(messages[topic].received, np.int64)  # once for all
             messages[topic] = TopicMessages(data, received)
         stamps = np.zeros(len(messages[self._rotor].data), np.int64)
-        valid = np.zeros((len(stamps), len(self._validators)), bool)
+        valid = np.zeros((len(self._validators), len(stamps)), bool)
         for rows, _, stamp, _ in states[self._rotor].contents():
             stamps[rows] = stamp
         for k, validator in enumerate(self._validators):
             validator.take(messages)
-            valid[validator.samples.row, k] = True
+            valid[k, validator.samples.row] = True
         for topic, joined in self._joined.items():
             joined.take(states[topic], stamps, valid)
 

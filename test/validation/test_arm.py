@@ -89,7 +89,7 @@ def test_a_joint_that_an_arm_of_seventy_leaves_out_is_found_if_no_input_lacks_it
     for outputs, given in batches:
         data = [rotor_bytes(t, names[:n], [0.0] * n, [], []) for t, n in outputs]
         stamps = np.array([t for t, _ in given], np.int64)
-        valid = np.arange(70) < np.array([n for _, n in given]).reshape(-1, 1)
+        valid = np.arange(70).reshape(-1, 1) < np.array([n for _, n in given])
         joined.take(JointStateBatch(data), stamps, valid)
     found = [each for k in range(70) for each in joined.findings(OUTPUT, k)]
     assert [(each.cause, each.count) for each in found] == (
