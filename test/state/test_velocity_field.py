@@ -236,6 +236,26 @@ def meanings(time, position, velocity):
     return said
 
 
+@pytest.mark.parametrize('seed', range(4))
+@pytest.mark.parametrize('size', [1, 7, 50, 2000])
+def test_means_of_velocities_are_those_of_all_messages_however_they_come(size, seed):
+    """To the last bit, also between readings that are not in the same batch."""
+    time = np.arange(2000) / 500
+    velocity = 30.0 / math.pi * np.random.default_rng(seed).normal(20.0, 9.0, len(time))
+    values = np.column_stack([20.0 * time, velocity, np.full_like(time, np.nan)])
+    stamps = SECOND + np.round(time * SECOND).astype(np.int64)
+    single, batches = VelocityField(-1 / 19), VelocityField(-1 / 19)
+    for stamp, (position, given, _) in zip(stamps.tolist(), values.tolist(), strict=True):
+        if stamp < single.due:
+            single.add(given)
+        else:
+            single.note(stamp, position, given, 0.05)
+    for start in range(0, len(time), size):
+        part = slice(start, start + size)
+        batches.believed(stamps[part], values[part], 0.05)
+    assert batches.factor == single.factor == pytest.approx(30.0 / math.pi, rel=0.1)
+
+
 def test_delay_stays_named_until_velocities_are_right():
     """Not each part of this motion shows a delay of 0.06 s, which ends after 30 s."""
     time = np.arange(6000) / 100
