@@ -1,6 +1,6 @@
 #!/bin/bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# us.ihmc:mecano 17-0.18.1 (Java): the gradient of the gravity torque is wrong for a joint of two geared axes, by up to
+# us.ihmc:mecano 17-0.19.0 (Java): the gradient of the gravity torque is wrong for a joint of two geared axes, by up to
 # 26 %.
 #
 # Its RevoluteTwinsJoint is an elbow of two axes that a gear couples (angle of B = ratio times that of A + offset), its
@@ -24,7 +24,7 @@ cat > pom.xml <<'XML'
 <project xmlns="http://maven.apache.org/POM/4.0.0">
   <modelVersion>4.0.0</modelVersion><groupId>arm</groupId><artifactId>arm</artifactId><version>1</version>
   <dependencies>
-    <dependency><groupId>us.ihmc</groupId><artifactId>mecano</artifactId><version>17-0.18.1</version></dependency>
+    <dependency><groupId>us.ihmc</groupId><artifactId>mecano</artifactId><version>17-0.19.0</version></dependency>
   </dependencies>
 </project>
 XML

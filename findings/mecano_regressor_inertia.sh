@@ -1,6 +1,6 @@
 #!/bin/bash
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-# us.ihmc:mecano 17-0.18.1 (Java): once the regressor of an arm was computed to find its masses, the arm has none.
+# us.ihmc:mecano 17-0.19.0 (Java): once the regressor of an arm was computed to find its masses, the arm has none.
 #
 # An arm of 2 kg and 1 kg is held level; its shoulder bears 24.525 N·m and its elbow 4.905 N·m. Expected of compute() of
 # JointTorqueRegressorCalculator: the matrix by which the masses and inertias of the links give the torques of the
@@ -22,7 +22,7 @@ cat > pom.xml <<'XML'
 <project xmlns="http://maven.apache.org/POM/4.0.0">
   <modelVersion>4.0.0</modelVersion><groupId>arm</groupId><artifactId>arm</artifactId><version>1</version>
   <dependencies>
-    <dependency><groupId>us.ihmc</groupId><artifactId>mecano</artifactId><version>17-0.18.1</version></dependency>
+    <dependency><groupId>us.ihmc</groupId><artifactId>mecano</artifactId><version>17-0.19.0</version></dependency>
   </dependencies>
 </project>
 XML
