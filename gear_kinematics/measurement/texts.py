@@ -4,7 +4,9 @@
 import codecs
 import io
 import re
+from collections import Counter
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import IO, Any
 
 BLOCK = 2**17  # characters that are read at a time
@@ -21,21 +23,32 @@ simplified Chinese, four letters in Cyrillic, or two Chinese characters."""
 
 _LEVEL = r'(?:TRACE|DEBUG|INFO|NOTICE|WARN(?:ING)?|ERROR)'
 _LOGGED = re.compile(
-    r'(?m)^(?:\[(?=[^]\n]*\d:\d\d)([^]\n]*)\][ \t]*|(\d\d:\d\d:\d\d[.:]\d+) -?>[ \t]*|'
+    r'(?m)^(?:\[(?=[^]\n]*\d:\d\d)([^]\n]*)\][ \t]*'
+    r'(?:(?:<\w+>|\[[\w.-]+\])[ \t]+)*(?:[\w.-]+: +)?|'
+    r'(\d\d:\d\d:\d\d[.:]\d+) -?>[ \t]*|'
+    r'[A-Z][a-z]{2} [ \d]\d (\d\d:\d\d:\d\d(?:\.\d+)?) \S+ [\w./-]+(?:\[\d+\])?: |'
     rf'(\d{{4}}-\d\d-\d\d[ T]\d\d:\d\d:\d\d[.,]\d+)(?:[^\n\d]|[A-Za-z_]-?\d+)*?\b{_LEVEL}\b'
     r'(?: +\| \S+(?= -))?(?: -|[:\]])? +|'
     rf'(?:\[[\w.-]+-\d+\] )?\[{_LEVEL}\] \[(\d+\.\d+)\] \[[^]\n]*\]: |'
-    r'[EWIDV] \((\d+)\) [\w.-]+: |'
+    rf'[EWIDV] \((\d+)\) [\w.-]+: |\[{_LEVEL}\]:?()[ \t]+(?!\[)|'
     r'(\d{4}-\d\d-\d\d \d\d:\d\d:\d\d[.,]\d+) +(?![AP]M|UTC|Z|[-+](\d\d:|0\d{3})|\+1\d{3})'
     r'(?=[^ ,;\t\n]+[,;\t]))'
 )
-"""Stamps that terminals, such as Tera Term and the Arduino IDE, and the logs of Python, ROS and
-ESP-IDF write before each line."""
-_LABEL = re.compile(r'(?m)(?:(?<=[\s,;])|^)([^\W\d]\w*) ?[:=] ?(?=[-+.\d])')
+"""Stamps that terminals, such as Tera Term and the Arduino IDE, and the logs of Python, ROS,
+ESP-IDF, Zephyr, spdlog and journald write before each line, or a level without a stamp."""
+_LABEL = re.compile(r'(?m)(?:(?<=[\s,;|])|^)([^\W\d]\w*) ?[:=] ?(?=[-+.\d])')
 """Names before each number, as sketches print them for the plotter of the Arduino IDE."""
+_STAMP = re.compile(
+    r'(?:\d{4}-\d\d-\d\d[ T])?\d\d:\d\d:\d\d(?:[.,:]\d+)*|(?<!\w)[(\[] *(\d+(?:\.\d+)?)[)\]]|'
+    r'^[ \t]*(\d+(?:\.\d+)?)[\s,;|]*$'
+)
+"""Times before such names: those of journald and Zephyr, of Linux and ESP-IDF, or a number."""
+_WORDS = re.compile(r'\s+[^\W\d]\w*[:=].*')  # behind a number, such as state=running
+_TELEPLOT = re.compile(r'(?m)^>([^:\n]+):(?:(\d+):)?([-+.\deE]+)(?:§([^|\n]*))?(?:\|.*)?$')
+_COLOURS = re.compile(r'\x1b\[[\d;]*m')
 _PYTHON = re.compile(r"\b(?:np\.\w+|array|tensor)\((?:'\w', ?)?([^()=]*?)(?:, \w+=[\w.':]+)*\)")
 """Numbers and arrays as Python shows them, such as np.float64(1.5)."""
-_LINES = 100  # lines whose labels are compared
+_LINES, _LEAST_SHARE = 100, 0.1  # lines whose labels are compared; share that has the same
 
 
 class Rows(io.TextIOBase):
@@ -80,21 +93,58 @@ def plainer(text: str, separators: Sequence[str]) -> tuple[Callable[[str], str],
         What leaves it out of lines, with stamps in a column of their own; the names of all columns
         if a name is before each number, or else nothing.
     """
-    rules: list[tuple[re.Pattern[str], Any]] = [(_PYTHON, r'\1')] * bool(_PYTHON.search(text))
-    if logged := 2 * len(_LOGGED.findall(text)) > text.count('\n'):
-        rest = _LABEL.sub('', _LOGGED.sub('', text[: text.rfind('\n')]))
+    rules: list[tuple[re.Pattern[str], Any]] = [
+        (pattern, new)
+        for pattern, new in ((_PYTHON, r'\1'), (_COLOURS, ''))
+        if pattern.search(text)
+    ]
+    if 2 * len(_TELEPLOT.findall(text)) > text.count('\n'):
+        rules.append((_TELEPLOT, r'\1\t\2\t\3\t\4'))
+        return partial(_replaced, rules), ['name', 'time [ms]', 'value', 'unit']
+    lines = _replaced(rules, text).split('\n')[1:_LINES]
+    found = [(*_LABEL.findall(line),) for line in lines]
+    (labels, count), *_ = Counter(one for one in found if one[1:]).most_common(1) or [((), 0)]
+    if count > _LEAST_SHARE * len(lines):
+        heads = [_LABEL.split(line, 1)[0] for line in lines if (*_LABEL.findall(line),) == labels]
+        words = {' '.join(re.findall(r'[^\W\d_]+', _STAMP.sub('', head))) for head in heads}
+        if len(words) > 1:
+            kinds = ' and '.join(map(repr, sorted(words)[:2]))
+            raise ValueError(
+                f'lines with the same labels begin with {kinds}: save those of each in a file, or '
+                'write these words into the labels'
+            )
+        timed = bool(_STAMP.search(heads[0]))
+        names = ['time of the line'] * timed + [*labels]
+        return lambda text: _labelled(_replaced(rules, text), labels, timed=timed), names
+    if 2 * len(_LOGGED.findall(text)) > text.count('\n'):
+        rest = _LOGGED.sub('', text[: text.rfind('\n')])
         mark = max(separators, key=rest.count)
         joint = 'T' if mark == ' ' else ' '
-        rules.append(
-            (_LOGGED, lambda at: at[at.lastindex].replace(' ', joint).replace(',', '.') + mark)
-        )
-    labels = [*map(_LABEL.findall, text.split('\n')[1:_LINES])]
-    several = len(labels) > 1 and labels[0] == labels[-2] != labels[0][:1]
-    rules += [(_LABEL, '')] * several
+        rules.append((_LOGGED, lambda at: _plain(at).replace(' ', joint) + mark))
+    return partial(_replaced, rules), []
 
-    def plain(text: str) -> str:
-        for pattern, new in rules:
-            text = pattern.sub(new, text)
-        return text
 
-    return plain, [*['time of the line'] * logged, *labels[0]] if several else []
+def _replaced(rules: Sequence[tuple[re.Pattern[str], Any]], text: str) -> str:
+    for pattern, new in rules:
+        text = pattern.sub(new, text)
+    return text
+
+
+def _labelled(text: str, labels: Sequence[str], *, timed: bool) -> str:
+    """Return the numbers behind labels, and the stamps before them, without all other lines."""
+    rows = []
+    for line in text.split('\n'):
+        before, *parts = _LABEL.split(line)
+        if (*parts[::2],) == labels:
+            cells = [_WORDS.sub('', part).strip(' \t,;|') for part in parts[1::2]]
+            if timed:
+                stamp = _STAMP.search(before)
+                cells.insert(0, _plain(stamp) if stamp else '')
+            rows.append('\t'.join(cells))
+    return '\n'.join(rows) + '\n' * text.endswith('\n') or '\n'
+
+
+def _plain(stamp: re.Match[str]) -> str:
+    """Return a stamp with decimals behind a point: 00:00:01.234,567 is 00:00:01.234567."""
+    whole, _, decimals = stamp[stamp.lastindex or 0].replace(',', '.').partition('.')
+    return f'{whole}.{decimals.replace(".", "")}' if decimals else whole

@@ -138,6 +138,11 @@ def moment(mark='T', zone='', decimals='.'):
     ).replace('.', decimals)
 
 
+def in_zephyr(t):
+    whole = moment()(t)[11:]
+    return f'{whole[:-3]},{whole[-3:]}'
+
+
 def clock(form, hours=0):
     """The time of the day, in a form of strftime; it begins before noon or hours later."""
     return lambda seconds: (NOON + timedelta(hours=hours, seconds=seconds)).strftime(form)
@@ -251,6 +256,32 @@ ENCODERS = {
         [t, r, o], 'I (300) bench: rotor,output', (
             lambda v: f'I ({300 + 1e3 * v:.0f}) bench:', '{:.5f}', '{:.5f}')
         ).replace(':,', ': '),
+    'the log of Zephyr': lambda t, r, o: written(
+        [t, r, o], '[00:00:00.000,000] <inf> bench: rotor,output', (
+            lambda v: f'[{in_zephyr(v)}] <inf> bench:', '{:.5f}', '{:.5f}')).replace(':,', ': '),
+    'the log of Zephyr in colours, with labels': lambda t, r, o: written(
+        [t, r, o], '*** Booting Zephyr OS ***', (
+            lambda v: f'[{in_zephyr(v)}] \x1b[0m<inf> bench: ', 'motor={:.5f}',
+            'output={:.5f}\x1b[0m'), ' '),
+    'the log of spdlog': lambda t, r, o: written(
+        [t, r, o], '[2026-11-26 09:59:40.000] [bench] [info] rotor;output', (
+            lambda v: f'[{moment(" ")(v)[:-3]}] [bench] [info]', '{:.5f}', '{:.5f}'), ';'
+        ).replace('];', '] '),
+    'the journal of systemd': lambda t, r, o: written(
+        [t, r, o], 'Nov 26 09:59:40.000000 pi4 bench[812]: rotor,output', (
+            lambda v: f'Nov 26 {moment()(v)[11:]} pi4 bench[812]:', '{:.5f}', '{:.5f}')
+        ).replace(':,', ': '),
+    'the journal of systemd, with labels and other lines': lambda t, r, o: written(
+        [t, r, o], '-- Journal begins at Thu 2026-11-26 09:00:00 CET. --', (
+            lambda v: f'{moment()(v)}+0100 pi4 bench[812]: temperature: 31\n'
+            f'{moment()(v)}+0100 pi4 bench[812]: state=on', 'motor={:.5f}', 'output={:.5f}'), ' '),
+    'levels alone': lambda t, r, o: written(
+        [t, r, o], '[INFO] t,rotor,output', ('[INFO] {:.2f}', '{:.5f}', '{:.5f}')),
+    'levels alone, with labels and decimal commas': lambda t, r, o: in_german(written(
+        [t, r, o], '', ('[INFO] t={:.2f};', 'motor={:.5f};', 'output={:.5f}; state: 3a'), ' ')),
+    'Teleplot': lambda t, r, o: written(
+        [t * 1e3, r * DEG, t * 1e3, o * DEG], '', (
+            '>motor:{:.0f}', '{:.5f}§deg|g\n>output', '{:.0f}', '{:.5f}§deg|g'), ':'),
     'a label before each number': lambda t, r, o: written(
         [t * 1e3, r, o], '', ('t_ms:{:.0f}', 'motor: {:.5f}', 'output={:.5f}'), '\t'),
     'labels behind stamps of the Arduino IDE': lambda t, r, o: written(
@@ -1180,6 +1211,18 @@ def test_what_is_around_numbers_is_found_in_long_lines_at_once(line):
     text, began = 10 * f'{line}\n', process_time()
     assert plainer(text, ',')[0](text) == text
     assert process_time() - began < 1.0
+
+
+def test_lines_of_two_axes_with_the_same_labels_are_not_mixed(tmp_path, gear, reference):
+    t, r, o = reference('encoders')
+    text = written(
+        [t, r, t, o],
+        '',
+        ('[motor] t={:.2f}', 'pos={:.5f}\n[joint]', 't={:.2f}', 'pos={:.5f}'),
+        ' ',
+    )
+    with pytest.raises(RecordingError, match="labels begin with 'joint' and 'motor': save those"):
+        read(saved(tmp_path, text), gear)
 
 
 @pytest.mark.parametrize('timed', [False, True])
