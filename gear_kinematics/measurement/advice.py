@@ -3,7 +3,7 @@
 
 import re
 import shlex
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import chain, filterfalse, islice, permutations, product
 from pathlib import Path
@@ -126,6 +126,16 @@ def _rising(table: TableFile, names: Iterable[str]) -> Iterator[tuple[str, Any]]
             yield name, values
 
 
+def _loaded(table: TableFile, names: Sequence[str]) -> dict[str, Array]:
+    """Load columns, but for those that say no role and cannot be read, such as notes like 1-2."""
+    try:
+        return table.load(names)[0]
+    except ValueError:
+        if not names[1:] and meaning(names[0]).role:  # its cause says more than any advice
+            raise
+        return {k: v for name in names[1:] and names for k, v in _loaded(table, [name]).items()}
+
+
 def _completed(
     example: Mapping[str, str], sources: Sources, read: Callable[[Sources], object]
 ) -> dict[str, str]:
@@ -175,7 +185,7 @@ def _examples(table: TableFile) -> Iterator[Mapping[str, str]]:
         if left[1:] or len([*_rising(table, left)]) < len(left):
             angles = left
     likely = [name for name in angles if units[name] in ANGLE_UNITS or _LIKELY.search(name)]
-    raw, _ = table.load((likely if len(likely) > 1 else angles)[:_TRIED])
+    raw = _loaded(table, (likely if len(likely) > 1 else angles)[:_TRIED])
     raw = {name: array.astype(float) for name, array in raw.items() if array.dtype.kind in 'iuf'}
     pairs = [*_alike(raw, {name: ANGLE_UNITS.get(unit) or 0.0 for name, unit in units.items()})]
     yield from ({'rotor': rotor, 'output': output} for sure, rotor, output in pairs if sure)
@@ -183,7 +193,7 @@ def _examples(table: TableFile) -> Iterator[Mapping[str, str]]:
     words = {name: {*meaning(name).words} for name in names}
     loads = {
         name: -np.ptp(np.nan_to_num(array)) * TORQUE_UNITS.get(units[name], 1.0)
-        for name, array in table.load(torques[:_TRIED])[0].items()
+        for name, array in _loaded(table, torques[:_TRIED]).items()
         if array.dtype.kind in 'iuf' and len(array)
     }
     both = sorted(

@@ -53,11 +53,17 @@ def against(
         other: unit of the other angle; empty if that is unknown, too.
         least: the range of the angle that turns least, rad or as it is written.
         remark: titles and comments above the names.
+
+    Raises:
+        ValueError: if the numbers are whole turns, without the angle within a turn.
     """
-    if column.unit and not column.assumed:
-        return None
     numbers = np.round(values / column.scale, 6)  # as they are in the table
     moved, whole = np.abs(np.diff(values)), bool(np.all(numbers == np.round(numbers)))
+    if column.unit and not column.assumed:
+        if column.unit == 'rev' and whole and moved.any():
+            cause = 'has whole turns alone: add the angle within the turn in a column for both'
+            raise ValueError(f'{column.name} {cause}')
+        return None
     says = meaning(column.name)
     said = (_ANGLES if step else _TORQUES).search(remark)
     if said and says.role and not column.assumed:
@@ -88,7 +94,8 @@ def against(
     if stamp is not None and (moving := moved > 0.0).any():
         seconds = np.maximum(np.diff(stamp)[moving], 1) / SECOND
         if (speed := np.quantile(moved[moving] / seconds, MOST)) > FASTEST:
-            return f'has speeds of {speed:.3g} a second, as in degrees', 'deg'
+            cause = f'has speeds of {speed:.3g} a second, as in degrees'
+            return f'{cause} or beside times in another unit', 'deg'
     if other not in {'', 'rad'}:
         return f'has no unit, and that of the other angle is {other}', likely
     return None

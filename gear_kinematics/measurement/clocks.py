@@ -27,6 +27,7 @@ _EPOCHS = {
 _LEAST_STEP = dict.fromkeys(_EPOCHS, 1e-6) | dict.fromkeys(('ms', 'us', 'ns'), 5e-5)
 _MOST_STEP = 1.0
 """Likely intervals between samples, s: least for times in a unit, and greatest."""
+_SHORTEST_STEP = 5e-7  # s between rows that no bench falls below
 _UNREADABLE = 0.01  # greatest share of times that cannot be read
 _RISING = 0.5  # least share of all steps forward that remains at the end of doubtful times
 _UNORDERED = 0.25  # least share of steps back in rows that are in another order than that of time
@@ -109,11 +110,12 @@ def check_steps(clock: Column, times: Array, angle: Array, unit: str, role: str)
     size = 1.0 if unit else 1.0 / ANGLE_UNITS['deg']
     # A shaft at rest may be read on either side of the end of a turn.
     turn = np.quantile(np.minimum(turned, np.abs(turned - size * TURN)), MOST)
-    fast = 0.0 < mean * clock.scale * _IMPOSSIBLE * size < turn
-    if fast and (unit or np.any(angle % 1.0)):
-        slow = (u for u in ('us', 'ms') if turn <= FASTEST * mean * TIME_UNITS[u])
+    fast = mean * clock.scale * _IMPOSSIBLE * size < turn and (unit or np.any(angle % 1.0))
+    if mean > 0.0 and (fast or mean * clock.scale < _SHORTEST_STEP):
+        likely = (u for u in ('us', 'ms') if mean * TIME_UNITS[u] >= _LEAST_STEP[u])
+        slow = (u for u in likely if turn <= FASTEST * mean * TIME_UNITS[u])
         cause = f'the times in {clock.name} are {mean * clock.scale:.6g} s apart'
-        cause += f', in which the shaft would turn by {turn:.3g} rad'
+        cause += f', in which the shaft would turn by {turn:.3g} rad' * bool(fast)
         raise ColumnsError(cause, 'their unit', time=f'{clock.name} [{next(slow, "s")}]')
 
 

@@ -155,7 +155,7 @@ def find_columns(
     if own := [clocks[found[role]] for role in found if role != 'time' and found[role] in clocks]:
         found['time'] = own[0]
     if repeated := [name for name in found.values() if list(header).count(name) > 1]:
-        raise ValueError(f'more than one column {repeated[0]!r}')
+        raise ValueError(f'more than one column {repeated[0]!r}: rename all but one of them')
     angles = [found[role] for role in ANGULAR if role in found]
     if given.of_rotor and not (side == 'output' or meaning(found.get('angle', '')).on_output):
         given = replace(given, on_rotor=True)

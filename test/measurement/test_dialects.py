@@ -939,7 +939,13 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
            f'{name} does not say that it is a torque: .* --torque-column .{name} .N·m')
           for name in ('load', 'Iq')),
         ('arm_moves_freely', r'the output turns by 100° under torque: .* \(--on-rotor\)'),
-        ('degrees_without_unit', 'speeds of .* as in degrees: .* --angle-unit'),
+        ('degrees_without_unit',
+         'speeds of .* as in degrees or beside times in another unit: .* --angle-unit'),
+        (lambda t, r, o: written([t, r / 300, o / 300], 'time_us,rotor,output', '{:.6f}'),
+         r"times in time_us are 4e-08 s apart: .* 'time_us \[s\]'"),
+        (lambda t, r, o: written(
+            [t, np.floor(r * REV), o], 'time_s,rotor_turns,output_rad', '{:.6f}'),
+         'rotor_turns has whole turns alone: add the angle within the turn'),
         *((lambda t, r, o, names=names, scales=scales: written(
             [t, r * scales[0], o * scales[1]], f'time,{names}', '{:.6f}'),
            f'{lone} has no unit, and that of the other angle is {unit}: .* .{lone} .{unit}.')
@@ -1022,6 +1028,9 @@ UNTOLD = {
     'unknown word': plain('time,motor_pos_x,output_pos_x'),
     'times': lambda t, r, o: written([25 * t, r / 3, o / 3], NAMES),
     'both motors': plain('time,motor1_pos,motor2_pos'),
+    'degrees beside notes that are no numbers': lambda t, r, o: written(
+        [t, t, r * DEG, o * DEG], 'time,encoder_setup,encoder_1,encoder_2', (
+            '{:.2f}', lambda _: '1-2', '{:.5f}', '{:.5f}')),
     'accumulated angles beside raw ones': lambda t, r, o: written(  # adamhaze8/Cycloidal_Actuator
         [r * DEG % 360.0, 9.0 * o * DEG % 360.0, r * DEG, 9.0 * o * DEG, o * DEG, t],
         'Motor_Raw,MT6_Raw,Motor_Accum,MT6_Accum,Output_Accum,Progress_Perc', '{:.3f}'),

@@ -102,7 +102,7 @@ def test_loads_of_angles_that_cannot_be_rad_are_refused(tmp_path, config):
         path.read_text('utf-8').replace(' [deg]', '').replace('[mNm]', '[Nm]'), 'utf-8'
     )
     said = refusal('loads', path, '--config', config)
-    assert 'as in degrees: give its unit with --angle-unit' in said
+    assert 'as in degrees or beside times in another unit: give its unit with --angle-unit' in said
 
 
 def test_the_command_line_that_is_proposed_for_an_output_works(tmp_path, config):
