@@ -1030,7 +1030,7 @@ UNTOLD = {
     'both motors': plain('time,motor1_pos,motor2_pos'),
     'degrees beside notes that are no numbers': lambda t, r, o: written(
         [t, t, r * DEG, o * DEG], 'time,encoder_setup,encoder_1,encoder_2', (
-            '{:.2f}', lambda _: '1-2', '{:.5f}', '{:.5f}')),
+            '{:.2f}', lambda v: '3' if v < 20.0 else '1-2', '{:.5f}', '{:.5f}')),
     'accumulated angles beside raw ones': lambda t, r, o: written(  # adamhaze8/Cycloidal_Actuator
         [r * DEG % 360.0, 9.0 * o * DEG % 360.0, r * DEG, 9.0 * o * DEG, o * DEG, t],
         'Motor_Raw,MT6_Raw,Motor_Accum,MT6_Accum,Output_Accum,Progress_Perc', '{:.3f}'),
