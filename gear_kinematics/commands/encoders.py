@@ -15,6 +15,7 @@ from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.columns import GIVEN_UNITS, Sources, option
 from gear_kinematics.measurement.formats import is_table
 from gear_kinematics.measurement.recording import Recording
+from gear_kinematics.measurement.sentences import Observation
 from gear_kinematics.parameters import default_config
 from gear_kinematics.report.document import printable
 from gear_kinematics.wire.nearest import listed
@@ -149,8 +150,12 @@ def sources(options: argparse.Namespace) -> Sources:
 
 
 def say_columns(recording: Recording, options: argparse.Namespace) -> None:
-    """Print on stderr which columns of a table were read, in one line, and what cannot be true."""
-    taken = [', '.join(recording.columns)] if is_table(recording.path) else []
+    """Print on stderr which columns of a table were read, in one line.
+
+    Units that were assumed follow, and what cannot be true.
+    """
+    taken: list[object] = [', '.join(recording.columns)] if is_table(recording.path) else []
+    taken += (one for one in recording.remarks if one.what is Observation.UNITS_ASSUMED)
     for clause in () if options.quiet else (*taken, *recording.faults):
         print(printable(f'{recording.name}: {clause}'), file=sys.stderr)
 

@@ -2,12 +2,13 @@
 """Evidence against the unit that is assumed for a column without one."""
 
 import re
+from collections.abc import Sequence
 
 import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.clocks import FASTEST, MOST
-from gear_kinematics.measurement.columns import Column
+from gear_kinematics.measurement.columns import Column, ColumnsError
 from gear_kinematics.measurement.encoder_range import count_wraps, other_unit
 from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.measurement.names import ANGLE_UNITS, meaning, usual_unit
@@ -32,6 +33,11 @@ _TORQUES = re.compile(
 _COMPOUND = re.compile(r'(?i)torque|moment(?!um)')
 """What names of torques such as Bremsmoment and TorqueSensor contain."""
 _FEWEST, _ROWS = 10, 10_000  # least number of samples of a part; greatest number in all
+_LEAST_TURNS, _EVIDENT, _NARROW, _CLEAR = 8.0, 0.05, 2.0, 4.0
+"""Number of turns of the rotor that distinguish its error from those of gears; least share of the
+error that repeats once or twice in each; how often it is more than half a cycle in all from that,
+2.5 times in an even motion; and than further away, and in rad.
+In 36 simulations with an error of the rotor of 0.3°, it is at most 0.004 in another unit."""
 
 
 def against(
@@ -101,21 +107,65 @@ def against(
     return None
 
 
-def differ_as_degrees(rotor: Array, output: Array) -> bool:
-    """Return whether the output differs from the rotor by more than gears do in rad.
+def check_both(rotor: Array, output: Array, of_rotor: Column, of_output: Column) -> None:
+    """Raise ColumnsError if both encoders show that angles without a unit are not in rad.
 
-    The angles, (n,) each, are taken as rad, and the rotor's are unwrapped. What counts is the
-    usual error within a part of the recording.
+    The angles, (n,) each, are taken as rad, and the rotor's are unwrapped.
     """
+    if of_output.unit or of_rotor.unit not in {'', 'rad'}:
+        return
     output = np.unwrap(output) if count_wraps(output, TURN) else output
     every = max(1, len(rotor) // _ROWS)
     rotor, output = rotor[::every], output[::every]
     ratio = output_by_rotor(rotor, output) if len(rotor) >= _FEWEST * _BLOCKS else None
     if ratio is None:
-        return False
-    parts = np.array_split(np.stack([output - ratio * rotor, np.gradient(rotor)]), _BLOCKS, axis=1)
+        return
+    if _differ_as_degrees(rotor, output - ratio * rotor):
+        cause, likely = 'more than gears do in rad, as in degrees', 'deg'
+    elif not of_rotor.unit and _repeats_each_turn(rotor, output, output - ratio * rotor):
+        cause = 'an error that repeats with each turn of the rotor if that is in turns'
+        likely = 'rev'
+    else:
+        return
+    cause = f'{of_output.name} differs from {of_rotor.name} by {cause}'
+    lone = {'output': f'{of_output.name} [{likely}]'} if of_rotor.unit else {'unit': likely}
+    raise ColumnsError(cause, 'the unit', **lone)
+
+
+def _differ_as_degrees(rotor: Array, error: Array) -> bool:
+    """Return whether the error is more than that of gears in rad, usually within a part of it."""
+    parts = np.array_split(np.stack([error, np.gradient(rotor)]), _BLOCKS, axis=1)
     parts = [part - [[np.median(part[0])], [0.0]] for part in parts]
     error, speed = np.concatenate(parts, axis=1)
     delay = error @ speed / max(speed @ speed, np.finfo(float).tiny)
     spreads = [np.ptp(np.quantile(e - delay * v, (1.0 - MOST, MOST))) for e, v in parts]
     return bool(min(_LIKE) < np.median(spreads) < max(_LIKE))
+
+
+def _repeats_each_turn(rotor: Array, output: Array, error: Array) -> bool:
+    """Return whether the error repeats with the rotor as if it were in turns, and not in rad."""
+    turns = float(np.ptp(rotor))
+    if turns < _LEAST_TURNS:
+        return False
+    speed = np.gradient(rotor)
+    known = [rotor**0, rotor, speed, np.sign(speed)]
+    in_rad = max(_share(error, [*known, *_waves(output)], k * rotor) for k in (1.0, 2.0))
+    known += [*_waves(output), *_waves(TURN * output)]
+    for cycles in (1.0, 2.0):
+        apart = (cycles + step / turns for step in (0.0, -0.5, 0.5, -2.0, -1.0, 1.0, 2.0))
+        own, *near = (_share(error, known, TURN * each * rotor) for each in apart)
+        if own > max(_EVIDENT, _NARROW * max(near[:2]), _CLEAR * max(in_rad, *near[2:])):
+            return True
+    return False
+
+
+def _waves(angle: Array) -> tuple[Array, Array]:
+    return np.cos(angle), np.sin(angle)
+
+
+def _share(error: Array, known: Sequence[Array], angle: Array) -> float:
+    """Return the share of an error that repeats with an angle, of what is left by known terms."""
+    basis, _ = np.linalg.qr(np.stack([*known, *_waves(angle)], axis=1))
+    parts = basis.T @ error
+    left = error @ error - np.sum(parts[:-2] ** 2)
+    return float(np.sum(parts[-2:] ** 2) / max(left, np.finfo(float).tiny))

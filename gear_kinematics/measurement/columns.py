@@ -264,10 +264,16 @@ def _column(role: str, name: str, unit: str, given: Sources, usual: str) -> Colu
     return Column(name, scale, unit, on_rotor, on_output, unit != '' and not own)
 
 
+def assumed_unit(role: str, column: Column) -> str:
+    """Return the unit that is assumed for a column; empty if its unit is known."""
+    usual = column.unit or {'torque': 'N·m'}.get(role, 'rad')
+    return usual if column.assumed or not column.unit else ''
+
+
 def described(role: str, column: Column) -> str:
     """Describe a column by its unit, and by the side of the gear where it was measured."""
-    unit = column.unit + ', assumed' * column.assumed
-    unit = unit or {'torque': 'N·m, assumed'}.get(role, 'rad, assumed')
+    assumed = assumed_unit(role, column)
+    unit = f'{assumed}, assumed' if assumed else column.unit
     side = ' of the rotor' if column.on_rotor else ' at the output'
     side = side if role in {'angle', 'torque'} else ''
     return f'{role}{side} [{unit}] from {column.name}'

@@ -25,6 +25,7 @@ _RATIO = 'the recorded ratio is {measured:si}, not {assumed}'
 _SEEN = '{measured:si} after {degrees:.1f}° of the output'
 _TURNED = 'the rotor turned {turns:si} turns'
 _FALLS = 'The error falls from {before:arcmin} to {after:arcmin} arcmin rms on held-out data, '
+_UNKNOWN = '{answer}; the loads are unknown for {seconds:si} s, first '
 _INSIDE = '{inside:.1f} % of it within the {coverage} interval'
 _JUDGED = (
     ': {inside:.1f} ± {spread:.1f} % of the measured angles are within the {coverage} interval; '
@@ -94,6 +95,10 @@ class Observation(Enum):
     )
     READINGS_HELD = '{role}: each reading comes {every} times, and is used once'
     NO_RAMPS = '{why}'
+    UNITS_ASSUMED = (
+        'units are assumed, as none is given: {units}; if one is not right, the figures are '
+        'wrong: write units into the names, or give --angle-unit'
+    )
     # The ratio of both encoders
     NOT_THE_RATIO = 'The recording does not have the ratio {assumed}: {why}.'
     WRAPS_UNCOUNTED = (
@@ -270,13 +275,8 @@ class Observation(Enum):
         'first at {start:.3f} s' + _NEEDED
     )
     IMPLAUSIBLE = '{answer}; {question}'
-    LOADS_UNKNOWN = (
-        '{answer}; the loads are unknown for {seconds:si} s, first from {start:.3f} s on'
-    )
-    LOADS_BEGIN_LATE = (
-        '{answer}; the loads are unknown for {seconds:si} s, first before the first known load, '
-        'at 0 s'
-    )
+    LOADS_UNKNOWN = _UNKNOWN + 'from {start:.3f} s on'
+    LOADS_BEGIN_LATE = _UNKNOWN + 'before the first known load, at 0 s'
     BRANCH_OUT_OF_MESH = (
         'branch {branch} was out of mesh for {duration:si} s from {start:.3f} s on: {torque:si} '
         'N·m beyond the preload'

@@ -12,7 +12,7 @@ import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.measurement.advice import advice, no_times, rising
-from gear_kinematics.measurement.assumed_units import against, differ_as_degrees
+from gear_kinematics.measurement.assumed_units import against, check_both
 from gear_kinematics.measurement.clocks import (
     are_apart,
     are_no_times,
@@ -25,6 +25,7 @@ from gear_kinematics.measurement.columns import (
     Column,
     ColumnsError,
     Sources,
+    assumed_unit,
     described,
     find_columns,
     own_clocks,
@@ -185,6 +186,9 @@ class _Samples:
         named = ' and '.join(dict.fromkeys(clocks.values()))
         self.said = [f'time [{clock.unit}] from {named}' if clock else no_times(table, self.found)]
         self.said += map(described, self.found, self.found.values())
+        of = ((assumed_unit(role, one), one.name) for role, one in self.found.items())
+        if assumed := [f'{unit} for {name}' for unit, name in of if unit]:
+            self.remarks.append(Observation.UNITS_ASSUMED(units=assumed))
         kept = next(rows for roles, rows in groups if role in roles)
         rows = len(kept) if len(groups) == 1 else np.count_nonzero(kept)
         thinned = f', one in {self._every} of the file' if self._every > 1 else ''
@@ -337,12 +341,8 @@ class _Samples:
         motion = RotorMotion.of(main.stamp, rotor, effort, main.segment)
         steps_of_both = steps['rotor'], steps['output']
         both = Encoders(motion, self.timed, before, share, output[inside], *steps_of_both)
-        of_output, of_rotor = self.found['output'], self.found['rotor']
-        if not of_output.unit and of_rotor.unit in {'', 'rad'}:
-            turned = self.unwrapped('rotor', period) if self._sources.as_recorded else rotor
-            if differ_as_degrees(both.at_measured(turned), both.measured):
-                names = f'{of_output.name} differs from {of_rotor.name}'
-                cause = f'{names} by more than gears do in rad, as in degrees'
-                lone = {'output': f'{of_output.name} [deg]'} if of_rotor.unit else {'unit': 'deg'}
-                raise ColumnsError(cause, 'the unit', **lone)
+        turned = self.unwrapped('rotor', period) if self._sources.as_recorded else rotor
+        check_both(
+            both.at_measured(turned), both.measured, self.found['rotor'], self.found['output']
+        )
         return both

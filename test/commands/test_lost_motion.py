@@ -181,13 +181,14 @@ def test_unusable_recording_does_not_keep_the_others(recording, tmp_path, capsys
     flat = write_csv(tmp_path / 'flat.csv', angle=np.zeros(500), torque=np.zeros(500))
     assert main(['lost-motion', str(flat), str(recording), '--json', '-']) == 2
     captured = capsys.readouterr()
-    error, taken = captured.err.splitlines()
+    error, taken, assumed = captured.err.splitlines()
     cause = 'no torque ramp that goes to one side, to the other and back to zero'
     assert error == f'gearkin: {flat}: {cause}'
     assert taken == (
         'gear.csv: no times, angle at the output [deg] from angle_deg, '
         'torque at the output [N·m, assumed] from torque, 4201 of 4201 rows'
     )
+    assert assumed.startswith('gear.csv: units are assumed, as none is given: N·m for torque; ')
     (found,) = json.loads(captured.out)['recordings']
     assert found['recording'] == 'gear.csv'
 
@@ -307,7 +308,7 @@ def test_plot_that_cannot_be_made_loses_no_report(recording, motion, tmp_path, c
     files = ['--plot', str(tmp_path / 'x.png'), '--json', str(report)]
     assert main(['lost-motion', str(recording), str(motion), *files]) == 2
     told = 'gearkin: --plot: the recordings have no torque ramps in common\n'
-    assert capsys.readouterr().err.endswith(f' rows\n{told}')
+    assert capsys.readouterr().err.endswith(f'--angle-unit\n{told}')
     assert len(json.loads(report.read_bytes())['recordings']) == 2
 
 

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from gear_kinematics.bag import BagError
-from gear_kinematics.commands.encoders import add_recordings, sources
+from gear_kinematics.commands.encoders import add_recordings, say_columns, sources
 from gear_kinematics.measurement import dialects
 from gear_kinematics.measurement.cells import weight
 from gear_kinematics.measurement.columns import Sources
@@ -955,6 +955,8 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
               ('rotor,output_rev', 'rotor', 'rev', (1.0, 1.0 / math.tau)),
           )),
         ('vesc_tool', 'not say .* an angle: .* --angle-unit'),
+        (lambda t, r, o: written([t, (r + 0.05 * np.sin(r)) * REV, o * REV], NAMES, '{:.7f}'),
+         'repeats with each turn of the rotor if that is in turns: .* --angle-unit rev'),
     ],
 )  # fmt: skip
 def test_what_speaks_against_a_unit_is_said(tmp_path, gear, reference, table, written_as, cause):
@@ -985,6 +987,21 @@ def test_the_revolutions_of_moteus_are_assumed_unless_the_numbers_are_counts(
     path = saved(tmp_path, written([t, np.round(65536 * a * REV), q, q], names, forms))
     with pytest.raises(RecordingError, match='position has whole numbers, such as counts'):
         read(path, gear)
+
+
+@pytest.mark.parametrize('unit', ['', 'rad', 'deg'])
+def test_assumed_units_are_said_first_of_all(tmp_path, gear, reference, unit, capsys):
+    """An error of the rotor's encoder shows turns or degrees, and nothing speaks against rad."""
+    t, r, o = reference('encoders')
+    size = DEG if unit == 'deg' else 1.0
+    columns = t, (r + 0.05 * np.sin(r)) * size, o * size
+    path = saved(tmp_path, written(columns, NAMES, '{:.7f}'))
+    recording = read(path, gear, Sources(unit=unit or None))
+    assumed = Observation.UNITS_ASSUMED(units=['rad for rotor', 'rad for output'])
+    assert recording.remarks == ((assumed,) if not unit else ())
+    say_columns(recording, argparse.Namespace(quiet=False))
+    _, *said = capsys.readouterr().err.splitlines()
+    assert said == ([f'r.csv: {assumed}'] if not unit else [])
 
 
 @pytest.mark.parametrize('name', ['Bremsmoment', 'torquemeter_2'])
@@ -1159,7 +1176,9 @@ def test_seconds_and_their_fractions_are_one_time(tmp_path, gear, reference):
     t, r, o = reference('encoders')
     form = '{:.0f}', '{:.0f}', '{:.5f}', '{:.5f}'
     columns = t // 1, 1e6 * (t % 1.0), r, o
-    recording = read(saved(tmp_path, written(columns, 'secs,usecs,rotor,output', form)), gear)
+    recording = read(
+        saved(tmp_path, written(columns, 'secs,usecs,rotor_rad,output_rad', form)), gear
+    )
     assert recording.remarks == ()
     np.testing.assert_allclose(recording.both.seconds, t, atol=1e-6)
 
@@ -1238,7 +1257,7 @@ def test_lines_of_two_axes_with_the_same_labels_are_not_mixed(tmp_path, gear, re
 def test_weights_under_which_an_angle_is_read_twice_are_not_held(tmp_path, gear, timed):
     torque = np.repeat(np.round(8.0 * np.sin(np.linspace(0.0, 9.0, 60)), 3), 2)
     angle = torque / 3790.0 + 1e-5 * (np.arange(len(torque)) % 2)
-    columns, names = [angle, torque], 'angle,torque'
+    columns, names = [angle, torque], 'angle_rad,torque_Nm'
     if timed:
         columns, names = [np.arange(len(torque)), *columns], f'time_s,{names}'
     recording = read(saved(tmp_path, written(columns, names, '{:.6f}')), gear)
@@ -1564,7 +1583,7 @@ def test_other_files_are_refused_with_what_to_do(tmp_path, gear, reference, name
 def test_series_that_take_turns_are_all_read_in_part(tmp_path, gear, reference, monkeypatch):
     monkeypatch.setattr(dialects, '_MOST_ROWS', 1500)
     t, r, o = reference('encoders')
-    content = 'time,rotor,output\n' + ''.join(
+    content = 'time,rotor_rad,output_rad\n' + ''.join(
         f'{at:.4f},{rotor:.5f},\n{at + 5e-4:.4f},,{out:.5f}\n'
         for at, rotor, out in zip(t, r, o, strict=True)
     )
@@ -1583,7 +1602,7 @@ def test_a_sum_below_a_table_of_which_rows_are_left_out_is_no_sample(
     # A motion of both signs has a small sum.
     columns = [t, *(each - each.mean() + 0.01 * np.ptp(each) for each in angles)]
     content = written(columns, NAMES) + ','.join(str(sum(each)) for each in columns) + '\n'
-    recording = read_table(saved(tmp_path, content), Sources(), gear.gear.gear_ratio)
+    recording = read_table(saved(tmp_path, content), Sources(unit='rad'), gear.gear.gear_ratio)
     assert recording.remarks[0] == Observation.ROWS_THINNED(every=2)
     assert recording.remarks[1:] == (Observation.ROWS_LEFT_OUT(rows=1),)
     np.testing.assert_allclose(recording.both.measured, columns[2][::2], atol=1e-5)
@@ -1621,7 +1640,7 @@ def test_a_motion_that_ends_at_its_greatest_or_mean_angles_has_all_its_rows(
     last = 1 + int(np.argmax(r) if end == 'greatest' else np.argmin(np.abs(r[100:] - r.mean())))
     last += 100 * (end == 'mean')
     content = written([t[:last], r[:last], ahead[:last]], NAMES)
-    recording = read_table(saved(tmp_path, content), Sources(), gear.gear.gear_ratio)
+    recording = read_table(saved(tmp_path, content), Sources(unit='rad'), gear.gear.gear_ratio)
     assert (recording.rows, recording.remarks) == (last, ())
 
 

@@ -149,7 +149,7 @@ def test_rows_that_are_not_finite_are_left_out_and_reported(tmp_path, config, an
     holes = angle.copy()
     holes[[10, 500]] = math.nan, 1e17
     torque = [*TORQUE[:-1], 'N/A']
-    recording = read(write_csv(tmp_path / 'r.csv', angle=holes, torque=torque), config)
+    recording = read(write_csv(tmp_path / 'r.csv', angle_rad=holes, torque_Nm=torque), config)
     assert len(recording.locked.angle) == len(angle) - 3
     assert recording.remarks == (Observation.ROWS_LEFT_OUT(rows=3),)
 
@@ -186,7 +186,7 @@ def test_tiny_numbers_are_zero(tmp_path, config, measured, angle):
 def test_long_files_are_read_in_part(tmp_path, config, monkeypatch):
     monkeypatch.setattr(dialects, '_MOST_ROWS', 300)
     rows = np.arange(1000.0)
-    columns = {'angle': rows / 2**12, 'torque': rows / 2.5, 'time_s': rows}
+    columns = {'angle_rad': rows / 2**12, 'torque_Nm': rows / 2.5, 'time_s': rows}
     recording = read(write_csv(tmp_path / 'r.csv', **columns), config)
     np.testing.assert_array_equal(recording.locked.angle, rows[::4] / 2**12)
     assert recording.remarks == (Observation.ROWS_THINNED(every=4),)
