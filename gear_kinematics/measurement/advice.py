@@ -38,7 +38,7 @@ _NO_ANGLE = re.compile(
 )
 """Words in names of columns that are not proposed as angles."""
 _LIKELY = re.compile(
-    r'(?i)pos|\bq|_q|ang(?!e)|enc(?!y)|theta|winkel|rotation|(rad|deg|rev|inc|cnt|counts)\b|'
+    r'(?i)pos|\bq|_q|ang(?!e)|enc(?!y)|theta|winkel|rotation|(rad|deg|rev|inc|cnt|counts)(?![a-z]|_(s|per)(?![a-z]))|'
     'accum|lage|geber|codeur|угол|角|位置|编码|編碼|エンコーダ|'
     r'(motor|rotor|joint|link|output)$'
 )

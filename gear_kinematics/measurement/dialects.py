@@ -48,6 +48,7 @@ _NO_TABLES = {
     r'\s*(\(\d+\.\d+\)\s+)?(\w+\s+)?[\dA-F]{3,8}(#|\s+\[\d+\]\s+[\dA-F]{2}\b)|;\$FILEVERSION|'
     r'date \w{3} \w{3} \d': 'a log of CAN frames: decode the signals to columns, as by cantools',
     r'header:\s*$|---\s*$': 'the YAML of ros2 topic echo: add --csv to it, or record the topic',
+    r'\[?\s*\{"': 'lines of JSON: name it .jsonl, with an object in each line',
     '# Created by Octave': 'a text of Octave: save the variables with the option -v7, as a .mat',
 }
 """Beginnings of texts that are no tables, as of candump, PCAN-View and CANoe, and what to do."""

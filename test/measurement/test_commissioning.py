@@ -79,6 +79,14 @@ def value(result, name):
     return found
 
 
+@pytest.mark.parametrize('turns', [1, 2])
+def test_an_output_whose_positions_repeat_after_some_turns_is_unwrapped(turns):
+    times, rotor, output = readings()
+    result = commissioned(recorded(rotor, wrapped(output, turns * TURN, -1.0), times))
+    assert value(result, 'gear_ratio') == '-19'
+    assert result.longest.travel == pytest.approx(np.ptp(output), abs=1e-3)
+
+
 @pytest.mark.parametrize(
     ('ratio', 'senses', 'wraps'),
     [

@@ -891,6 +891,7 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
             f'{at:.2f},"[{rotor:.5f}{f", {out:.5f}" if at > 45.0 else ""}]"\n'
             for at, rotor, out in zip(t, r, o, strict=True)),
          'neither an angle and a torque nor a rotor and an output'),
+        ('{"t": 0.0, "rotor": 1.5}\n{"t": 0.1, "rotor": 1.6}\n', 'lines of JSON: name it .jsonl'),
         (' (1764230000.000000) can0 141#A100000000000000\n', 'a log of CAN frames: decode'),
         (lambda t, r, o: written([t, r, t, o], 'motor_time,motor_pos,output_time_ms,output_pos'),
          'are not in the same unit: give both units in the names'),
@@ -1045,6 +1046,7 @@ UNTOLD = {
     'unknown word': plain('time,motor_pos_x,output_pos_x'),
     'times': lambda t, r, o: written([25 * t, r / 3, o / 3], NAMES),
     'both motors': plain('time,motor1_pos,motor2_pos'),
+    'rad before a word': plain('time,front_rad_raw,rear_rad_raw'),
     'degrees beside notes that are no numbers': lambda t, r, o: written(
         [t, t, r * DEG, o * DEG], 'time,encoder_setup,encoder_1,encoder_2', (
             '{:.2f}', lambda v: '3' if v < 20.0 else '1-2', '{:.5f}', '{:.5f}')),

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import TURN, split_turns
-from gear_kinematics.measurement.encoder_range import count_wraps, find_range, other_unit
+from gear_kinematics.measurement.encoder_range import find_range, other_unit
 from gear_kinematics.measurement.gate import gated
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RecordingError
 from gear_kinematics.measurement.sentences import Observation
@@ -49,9 +49,10 @@ class Joint:
                 hint = 'for a CSV, --angle-unit, --rotor-counts and --output-counts give the unit'
                 raise RecordingError(f'{path}: the positions of the {body} are {unit}; {hint}')
         period, wraps = find_range(rotor, motion.seconds, encoders.rotor_step)
-        output_wraps = count_wraps(measured, TURN, seconds=encoders.seconds)
+        own, output_wraps = find_range(measured, encoders.seconds, encoders.output_step)
         rotor = np.unwrap(rotor, period=period) if wraps else rotor
-        measured = np.unwrap(measured) if output_wraps else measured
+        measured = np.unwrap(measured, period=own) if output_wraps else measured
+        output_wraps *= own == TURN
         turns, angle = split_turns(rotor)
         motion = motion._replace(turns=turns, angle=angle)
         unwrapped = replace(encoders, rotor=motion, measured=measured)
