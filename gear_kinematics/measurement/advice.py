@@ -32,7 +32,7 @@ _ALIKE, _COPIED = 0.3, 1.0 - 1e-6
 _LISTED = 600  # characters of the list of columns
 _NO_ANGLE = re.compile(
     r'(?i)torq|effort|force|curr|(?<!tra)vel(?!_mapper)|speed|rpm|/ ?s(ec)?\b|temp|time|stamp|'
-    r'control|elec|tau|index|valid|cell|strain(?!t|ed)|acc(?!um)|dot|err|volt|power|^t$|^[ftm][xyz]|'
+    r'control|elec|phase|tau|index|valid|cell|strain(?!t|ed)|acc(?!um)|dot|err|volt|power|^t$|^[ftm][xyz]|'
     r'(?<![a-z])(mm|[µu]m|inch|q[wxyz])(?![a-z])|'
     rf'^i_?[qd](?![a-z])|{WANTED}|fehler|geschwind|drehzahl|vitesse|[误誤]差|速度|[转轉]速'
 )
@@ -176,7 +176,7 @@ def _examples(table: TableFile) -> Iterator[Mapping[str, str]]:
     torques = [
         name
         for name in filterfalse(re.compile(f'(?i){WANTED}').search, names)
-        if _TORQUE.search(name) or units[name] in TORQUE_UNITS
+        if units[name] in TORQUE_UNITS or (_TORQUE.search(name) and units[name] not in FOREIGN)
     ]
     # Of columns without names, the first that only rises has times, unless there are but two.
     nameless = {*filter(_NO_NAME.fullmatch, angles)}

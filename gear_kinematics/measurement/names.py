@@ -34,7 +34,7 @@ _KINDS = {word: kind for kind, words in _VOCABULARY.items() for word in words.sp
 _RANKS = {word: rank for rank, word in enumerate(_KINDS)}
 _EITHER = {'shaft', 'joint', 'gearbox', 'gear'}
 """Words for the output that do not mean it beside one for the rotor, as in motor_shaft."""
-_SHARES, _OTHERS = '% ‰ percent pct permille', 'a ma v mv volts adc w n kg g m mm °c min h'
+_SHARES, _OTHERS = '% ‰ percent pct permille', 'a ma v mv mv/v volts adc w n kg g m mm °c min h'
 FOREIGN = {*_SHARES.split(), *_OTHERS.split()}
 """Units of quantities other than torque and angle, and words that may be times."""
 _CERTAIN = {'time', 'stamp', 'timestamp', 'timestamps', 'zeit', 'zeitstempel'}

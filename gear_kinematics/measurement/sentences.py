@@ -95,6 +95,7 @@ class Observation(Enum):
     )
     READINGS_HELD = '{role}: each reading comes {every} times, and is used once'
     NO_RAMPS = '{why}'
+    OPPOSED = 'the angle falls where the torque grows, and is used with the other sign'
     UNITS_ASSUMED = (
         'units are assumed, as none is given: {units}; if one is not right, the figures are '
         'wrong: write units into the names, or give --angle-unit'
@@ -179,10 +180,7 @@ class Observation(Enum):
     )
     # What commissioning determines and leaves open, and the evidence
     GEAR_RATIO = 'The gear has the ratio {ratio} ({evidence}).'
-    RATIO_AND_RANGE = (
-        "The gear has the ratio {ratio} ({evidence}). The rotor's position repeats after "
-        '{size:si.6} rad.'
-    )
+    RATIO_AND_RANGE = GEAR_RATIO + " The rotor's position repeats after {size:si.6} rad."
     FITS_GIVEN_RATIO = _SEEN + ', which the given ratio fits'
     ONLY_FRACTION = _SEEN + ', the only simple fraction'
     NO_RATIO = 'The ratio is undetermined: {why}.'

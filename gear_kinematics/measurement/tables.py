@@ -321,6 +321,9 @@ class _Samples:
         if locked.not_locked:
             of = ", or the angle is the motor's (--on-rotor)" * (angle.on_rotor == angle.on_output)
             raise ColumnsError(f'{locked.not_locked}, or the unit is another (--angle-unit){of}')
+        if locked.torque @ (locked.angle - locked.angle.mean()) < 0.0:  # that of the clamp
+            locked = replace(locked, angle=-locked.angle)
+            self.remarks.append(Observation.OPPOSED())
         return locked
 
     def encoders(self, period: float) -> Encoders:
@@ -342,7 +345,6 @@ class _Samples:
         steps_of_both = steps['rotor'], steps['output']
         both = Encoders(motion, self.timed, before, share, output[inside], *steps_of_both)
         turned = self.unwrapped('rotor', period) if self._sources.as_recorded else rotor
-        check_both(
-            both.at_measured(turned), both.measured, self.found['rotor'], self.found['output']
-        )
+        columns = self.found['rotor'], self.found['output']
+        check_both(both.at_measured(turned), both.measured, *columns)
         return both

@@ -932,6 +932,10 @@ def test_counts_that_a_driver_reads_without_their_sign_are_negative(tmp_path, ge
                                  'time,mot_ang,ank_ang,mot_ang_deg', ('{:.2f}', *3 * ['{:.7f}'])),
          'for example: .* --output-column .?ank_ang'),
         ('time;rotor;output\nsec;U;U\n0;0;0\n', 'rotor: the unit u is not known'),
+        ('time;angle;torque\ns;deg;mV/V\n0;0;1\n', 'torque is in mv/v: convert it'),
+        ('time,angle (deg),torque (mV/V)\n0,0,1\n1,2,3\n', 'with their units, by --angle-column'),
+        (lambda t, r, o: written([t, r * 7, o], 'time,motor_phase_rad,output_rad'),
+         'with their units, by --angle-column'),
         (lambda t, r, o: 'time,signal,value,unit\n' + ''.join(
             f'{at:.2f},motor,{rotor:.5f},{"rad" if at < 9.0 else "deg"}\n'
             f'{at:.2f},output,{out:.5f},rad\n' for at, rotor, out in zip(t, r, o, strict=True)),
@@ -1253,6 +1257,16 @@ def test_lines_of_two_axes_with_the_same_labels_are_not_mixed(tmp_path, gear, re
     )
     with pytest.raises(RecordingError, match="labels begin with 'joint' and 'motor': save those"):
         read(saved(tmp_path, text), gear)
+
+
+def test_a_torque_of_the_clamp_has_the_other_sign(tmp_path, gear, reference):
+    """Springs give way: where the angle falls, the sensor measures the reaction."""
+    t, a, q = reference('ramps')
+    head = 'time_s,angle_rad,torque_Nm'
+    recording = read(saved(tmp_path, written([t, a, 3.0 - q], head, 3 * ['{:.7f}'])), gear)
+    assert recording.remarks == (Observation.OPPOSED(),)
+    recording = read(saved(tmp_path, written([t, a, -q], head, 3 * ['{:.7f}'])), gear)
+    assert_measured(recording, gear)
 
 
 @pytest.mark.parametrize('timed', [False, True])
