@@ -43,6 +43,8 @@ _STAMP = re.compile(
     r'^[ \t]*(\d+(?:\.\d+)?)[\s,;|]*$'
 )
 """Times before such names: those of journald and Zephyr, of Linux and ESP-IDF, or a number."""
+_NUMBERS = re.compile(r'[ \t]*[-+.:\deE]+([,;|\t]+ *[-+.:\deE]+)+[,;|\t ]*')
+"""Cells of a table before such names, which are in its last column then."""
 _WORDS = re.compile(r'\s+[^\W\d]\w*[:=].*')  # behind a number, such as state=running
 _TELEPLOT = re.compile(r'(?m)^>([^:\n]+):(?:(\d+):)?([-+.\deE]+)(?:§([^|\n]*))?(?:\|.*)?$')
 _COLOURS = re.compile(r'\x1b\[[\d;]*m')
@@ -99,13 +101,12 @@ def plainer(text: str, separators: Sequence[str]) -> tuple[Callable[[str], str],
         if pattern.search(text)
     ]
     if 2 * len(_TELEPLOT.findall(text)) > text.count('\n'):
-        rules.append((_TELEPLOT, r'\1\t\2\t\3\t\4'))
-        return partial(_replaced, rules), ['name', 'time [ms]', 'value', 'unit']
+        return _values, ['name', 'time [ms]', 'value', 'unit']
     lines = _replaced(rules, text).split('\n')[1:_LINES]
     found = [(*_LABEL.findall(line),) for line in lines]
     (labels, count), *_ = Counter(one for one in found if one[1:]).most_common(1) or [((), 0)]
-    if count > _LEAST_SHARE * len(lines):
-        heads = [_LABEL.split(line, 1)[0] for line in lines if (*_LABEL.findall(line),) == labels]
+    heads = [_LABEL.split(line, 1)[0] for line in lines if (*_LABEL.findall(line),) == labels]
+    if count > _LEAST_SHARE * len(lines) and not _NUMBERS.fullmatch(heads[0]):
         words = {' '.join(re.findall(r'[^\W\d_]+', _STAMP.sub('', head))) for head in heads}
         if len(words) > 1:
             kinds = ' and '.join(map(repr, sorted(words)[:2]))
@@ -128,6 +129,12 @@ def _replaced(rules: Sequence[tuple[re.Pattern[str], Any]], text: str) -> str:
     for pattern, new in rules:
         text = pattern.sub(new, text)
     return text
+
+
+def _values(text: str) -> str:
+    """Return what lines of Teleplot contain, without all other lines."""
+    rows = ['\t'.join(one) for one in _TELEPLOT.findall(text)]
+    return '\n'.join(rows) + '\n' * text.endswith('\n') or '\n'
 
 
 def _labelled(text: str, labels: Sequence[str], *, timed: bool) -> str:

@@ -281,7 +281,9 @@ ENCODERS = {
         [t, r, o], '', ('[INFO] t={:.2f};', 'motor={:.5f};', 'output={:.5f}; state: 3a'), ' ')),
     'Teleplot': lambda t, r, o: written(
         [t * 1e3, r * DEG, t * 1e3, o * DEG], '', (
-            '>motor:{:.0f}', '{:.5f}§deg|g\n>output', '{:.0f}', '{:.5f}§deg|g'), ':'),
+            '>motor:{:.0f}', '{:.5f}§deg|g\nready\n>output', '{:.0f}', '{:.5f}§deg|g'), ':'),
+    'labels in a column of notes': lambda t, r, o: written(
+        [t, r, o], f'{NAMES},note', ('{:.2f}', '{:.5f}', '{:.5f},a: 1 b: 2')),
     'a label before each number': lambda t, r, o: written(
         [t * 1e3, r, o], '', ('t_ms:{:.0f}', 'motor: {:.5f}', 'output={:.5f}'), '\t'),
     'labels behind stamps of the Arduino IDE': lambda t, r, o: written(
