@@ -12,10 +12,11 @@ from gear_kinematics.measurement.encoder_step import UNITS
 _VOCABULARY = {
     'rotor': 'rotor motor mot odrive antrieb moteur motore 电机 馬達 モータ モーター 모터',
     'output': 'output out load gearbox gear shaft link joint abtrieb ausgang sortie uscita salida '
-    '输出 输出轴 负载 负载端 关节 輸出 輸出軸 負載 出力 出力軸 負荷 負荷側 출력 출력축 부하',
+    'saída 输出 输出轴 负载 负载端 关节 輸出 輸出軸 負載 出力 出力軸 負荷 負荷側 출력 출력축 부하',
     'input': 'input eingang entrée ingresso entrada 输入 输入轴 輸入 輸入軸 入力 入力軸 입력',
     'angle': 'position positions pos angle ang encoder enc theta phi θ φ ϕ deflection twist '
-    'rotation winkel drehwinkel verdrehwinkel angolo ángulo angulo posición posizione 位置 '
+    'rotation winkel drehwinkel verdrehwinkel angolo ángulo angulo ângulo posición posizione '
+    'posição 位置 '
     '角度 转角 扭转角 回転角 ねじれ角 编码器 編碼器 각도 위치 엔코더',
     'torque': 'torque torques tor effort efforts trq tq tau τ drehmoment moment couple coppia '
     '扭矩 力矩 转矩 轉矩 トルク 토크',
@@ -26,7 +27,7 @@ _VOCABULARY = {
     'filling': 'header receive log dynamic measured meas actual act filtered raw field data value '
     'values feedback state states axis angular rotary present sensor abs side in ist host pi ros '
     'system unix epoch tv channel ch fb fbk ave estimate scalars signals date datum utc wall '
-    'application main plc prg gvl payload msg message torsional accum',
+    'application main plc prg gvl payload msg message torsional accum do da del',
 }
 """Words in names by kind, the likeliest first. The input is the rotor if a quantity is said, too.
 The filling may accompany all others; any other word shows a command, a speed or the like."""

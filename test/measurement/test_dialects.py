@@ -282,6 +282,8 @@ ENCODERS = {
     'Teleplot': lambda t, r, o: written(
         [t * 1e3, r * DEG, t * 1e3, o * DEG], '', (
             '>motor:{:.0f}', '{:.5f}§deg|g\nready\n>output', '{:.0f}', '{:.5f}§deg|g'), ':'),
+    'Portuguese': plain(
+        'Tempo (s);Ângulo do motor (graus);Posição da saída (graus)', ';', angle=DEG, german=True),
     'labels in a column of notes': lambda t, r, o: written(
         [t, r, o], f'{NAMES},note', ('{:.2f}', '{:.5f}', '{:.5f},a: 1 b: 2')),
     'a label before each number': lambda t, r, o: written(
