@@ -16,8 +16,7 @@ _VOCABULARY = {
     'input': 'input eingang entrée ingresso entrada 输入 输入轴 輸入 輸入軸 入力 入力軸 입력',
     'angle': 'position positions pos angle ang encoder enc theta phi θ φ ϕ deflection twist '
     'rotation winkel drehwinkel verdrehwinkel angolo ángulo angulo ângulo posición posizione '
-    'posição 位置 '
-    '角度 转角 扭转角 回転角 ねじれ角 编码器 編碼器 각도 위치 엔코더',
+    'posição 位置 角度 转角 扭转角 回転角 ねじれ角 编码器 編碼器 각도 위치 엔코더',
     'torque': 'torque torques tor effort efforts trq tq tau τ drehmoment moment couple coppia '
     '扭矩 力矩 转矩 轉矩 トルク 토크',
     'current': 'current',
