@@ -81,6 +81,12 @@ class Loading:
         turned = np.degrees(np.ptp(self.angle))
         return f'the output turns by {turned:.3g}° under torque: it is not locked'
 
+    @property
+    def opposed(self) -> bool:
+        """Whether the angle falls where the torque grows, by ranks, as readings may be stray."""
+        torque, angle = (np.unique(v, return_inverse=True)[1] for v in (self.torque, self.angle))
+        return bool(torque @ (angle - angle.mean()) < 0.0)
+
     def chosen(self, rows: Array | slice) -> Self:
         """Return the samples of some rows."""
         moment = self.moment[rows]

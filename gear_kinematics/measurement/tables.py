@@ -321,7 +321,7 @@ class _Samples:
         if locked.not_locked:
             of = ", or the angle is the motor's (--on-rotor)" * (angle.on_rotor == angle.on_output)
             raise ColumnsError(f'{locked.not_locked}, or the unit is another (--angle-unit){of}')
-        if locked.torque @ (locked.angle - locked.angle.mean()) < 0.0:  # that of the clamp
+        if locked.opposed:  # as the sensor measures the torque of the clamp
             locked = replace(locked, angle=-locked.angle)
             self.remarks.append(Observation.OPPOSED())
         return locked
