@@ -109,7 +109,8 @@ class RotorLimits(NamedTuple):
         position, changed, step, took = last
         late = held_up.late(changed - took, changed)
         ways = [(step + former[2], took + former[3] + max(0.0, late))]
-        if late > 0.0:  # stamps of a burst tell little of the speed, the one before the pause more
+        # Stamps of a burst tell little of the speed, the one before the pause more.
+        if late > 0.0 and not math.isnan(held_up.position):
             way = math.remainder(position - held_up.position, self.period)
             ways.append((way, changed - held_up.end + held_up.length))
         stale, speed = _stale(last, former, late), 0.0

@@ -407,6 +407,14 @@ def test_an_encoder_that_is_stuck_is_named_after_a_burst_and_a_clock_that_was_se
     assert judge.beyond_limits
 
 
+def test_a_reading_is_repeated_where_stamps_of_a_coarse_clock_are_the_same():
+    """The clock ticks each 10 ms, less or more than 1 ns."""
+    times = 0, 10_000_001, 10_000_001, 20_000_000, 30_000_001, 40_000_000, 40_000_000, 50_000_001
+    judge = Plausibility(300.0, 500.0, TURN)
+    for time, steps in zip((*times, times[-1]), (0, 0, 1, 2, 3, 4, 5, 5, 5), strict=True):
+        assert judge.judge(1.8 * steps % TURN, START + time) is BELIEVED
+
+
 @pytest.mark.parametrize('period', [2_000_000, 500_000])
 def test_a_wrong_reading_in_a_second_burst_is_out_of_reach(period):
     """The driver is held up twice, for 11 ms; the rotor can turn 2.9 rad within 4.5 ms."""
