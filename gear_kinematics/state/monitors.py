@@ -289,8 +289,10 @@ def _not_referenced(reference: TurnReference | None, apart: Fact | None) -> Fact
     if not reference:
         return Condition.NOT_REFERENCED()
     decision = reference.decision
-    if decision and decision.unambiguous:  # but slower motion has excluded these turns
-        decision = reference.refuted or decision
+    if decision and decision.unambiguous:
+        # But slower motion has excluded these turns, or the motion could explain a jump.
+        margin = min(decision.margin, reference.jump_margin)
+        decision = reference.refuted or decision._replace(margin=margin)
     if not decision:
         why = Condition.NO_SAMPLES(count=SAMPLES)
     elif found := apart or decision.outside:

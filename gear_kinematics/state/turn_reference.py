@@ -71,6 +71,7 @@ class Decision(NamedTuple):
     turns: int  # or other periods of the rotor's encoder, to add to its count
     distance: float  # what they leave of the error
     budget: float  # what measured and true angle may differ by
+    slow: bool  # whether a delay explains no more of it than the gear
     margin: float  # of which the budget must be less, as it could explain other turns
     tolerance: float  # beyond which the error contradicts a count that is known
     measured: float  # of the last one, in the turn that the turns or the range tell
@@ -160,7 +161,10 @@ def decide(
             distance, margin = measured - angle - turns * step, 0.5 * min(abs(step), TURN)
     tolerance = budget if period else budget + margin
     outside = range_fault(parameters, measured, budget, repeats) if budget < margin else None
-    return Decision(angle, error, turns, distance, budget, margin, tolerance, measured, outside)
+    slow = delay <= known
+    return Decision(
+        angle, error, turns, distance, budget, slow, margin, tolerance, measured, outside
+    )
 
 
 class TurnReference:
@@ -206,12 +210,12 @@ class TurnReference:
         for sample in samples:
             if errors := self._block.add(sample):
                 unseen = self.rotor.turns.unseen_travel
-                least = self.refuted.budget if self.refuted else self._least_for_jump()
+                least = self.refuted.budget if self.refuted else math.inf
                 self.decision = decision = decide(errors, self.rotor.parameters, unseen)
                 if decision.disagreement or decision.budget < decision.margin:
                     self.disagreement = decision.disagreement
                 if decision.unambiguous:
-                    alike = decision.budget <= _ALIKE * least
+                    alike = decision.budget <= min(_ALIKE * least, self.jump_margin)
                     if not referenced and alike and not doubt():
                         self._refer(decision)
                         self.restart()
@@ -220,18 +224,19 @@ class TurnReference:
                     self.refuted = decision
         return samples if referenced else ()
 
-    def _least_for_jump(self) -> float:
-        """Return the budget, rad, that a jump of an encoder that repeats asks for, if one did.
+    @property
+    def jump_margin(self) -> float:
+        """Half of the jump, rad at the output, if turns of an encoder that repeats are lost by it.
 
-        A greater one explains the jump, behind which the encoder may have another zero.
+        A motion of which the budget is greater could explain the jump, behind which the encoder
+        may have another zero. Slow motion is not restricted, as rest would hardly tell more.
         """
-        rotor, ratio = self.rotor, float(self.rotor.parameters.gear.gear_ratio)
+        rotor, decision = self.rotor, self.decision
         jump = rotor.plausibility.jump if rotor.turns.lost and rotor.turns.period else None
-        if not jump:
+        if not jump or (decision and decision.slow):
             return math.inf
-        least = 4.0 * rotor.parameters.transmission_error_limit  # of jumps that can be told
-        angle: float = jump.values['angle'] / ratio
-        return max(abs(angle), least) / (2.0 * _ALIKE)
+        angle: float = jump.values['angle']
+        return 0.5 * abs(angle / float(rotor.parameters.gear.gear_ratio))
 
     def _refer(self, decision: Decision) -> None:
         """Add turns, or what is missing to the measured angle, to the rotor's count."""

@@ -392,7 +392,31 @@ def test_motion_that_could_explain_a_jump_finds_no_turns(wrong, stops):
         assert gear.referenced or not 400 <= k < 1200
     assert gear.input.plausibility.jumps
     assert gear.referenced is (wrong == 10 and stops)
+    facts = gear.report(0.0, Connections())['rotor input'].facts
     if gear.referenced:
         turns, angle = gear.sample.position
         error = math.remainder(math.tau * turns + angle - turned, 19.0 * math.tau)
         assert error == pytest.approx(0.0, abs=1e-9)
+    elif not stops:
+        used = math.degrees(SINGLE.transmission_error_limit + 0.02 * 120.0 / 19)
+        why = Condition.AMBIGUOUS(used_deg=near(used), margin_deg=near(math.degrees(1.1 / 19)))
+        assert Condition.NOT_FOUND(why=why) in facts
+
+
+@pytest.mark.parametrize('noise', [0.0, 0.01])
+@pytest.mark.parametrize('jump', [0.5, 1.0, 2.2])
+def test_rest_finds_turns_after_a_jump_beside_a_noisy_encoder(jump, noise):
+    """Its noise of 0.01 rad is more than half a jump of 0.5 rad of the rotor, over 121."""
+    limits = {'max_rotor_speed': 250.0, 'max_rotor_acceleration': 500.0}
+    gear, generator = GearState(replace(SINGLE, **limits, **LARA)), np.random.default_rng(0)
+    for k in range(600):
+        stamp = START + k * SECOND // 200
+        turned = 0.01 * min(k, 50)
+        with suppress(RejectedInputError):
+            gear.rotor(rotor_bytes(stamp, position=[turned + jump * (200 <= k < 210)]), int)
+        measured = turned / 121.0 + noise * generator.uniform(-1.0, 1.0)
+        gear.encoder(rotor_bytes(stamp, ['shaft'], [measured]), int)
+        assert gear.referenced or not 150 <= k < 200
+    assert gear.input.plausibility.jumps
+    assert gear.referenced
+    assert gear.sample.position == (0, 0.5)
