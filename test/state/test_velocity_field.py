@@ -11,6 +11,7 @@ import pytest
 from live import SECOND, rotor_bytes
 
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.disorder import sums_between
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.statuses import Condition
 from gear_kinematics.state.velocity_field import VelocityField
@@ -234,6 +235,29 @@ def meanings(time, position, velocity):
         field.believed(stamps[second], values[second], 0.05)
         said.append(field.meaning and field.meaning.condition)
     return said
+
+
+@pytest.mark.parametrize('rows', [[], [0], [0, 1, 199], [50, 100, 150], [3, 40, 41, 80, 140]])
+@pytest.mark.parametrize('count', [0, 200])
+@pytest.mark.parametrize('carried', [0.0, -7.3])
+def test_sums_between_rows_are_those_of_one_addition_after_another(rows, count, carried):
+    """To the last bit, so that batches of any size give the same mean velocities."""
+    generator = np.random.default_rng(1)
+    values = generator.normal(size=count) * 10.0 ** generator.integers(-6, 7, count)
+    given = generator.random(count) < 0.8
+    values[~given] = 0.0
+    values[41:80] = -0.0
+    rows = [row for row in rows if row < count]
+    expected, counts = [], []
+    for start, end in zip([-1, *rows], [*rows, count], strict=True):
+        total = 0.0 if expected else carried
+        for value in values[start + 1 : end].tolist():
+            total += value
+        expected.append(total)
+        counts.append(int(given[start + 1 : end].sum()))
+    sums, found = sums_between(values, given, np.array(rows, np.intp), carried)
+    assert [total.hex() for total in sums] == [total.hex() for total in expected]
+    assert found == counts
 
 
 @pytest.mark.parametrize('seed', range(4))
