@@ -58,6 +58,7 @@ class Plausibility:
         """
         self.jumps, self.alternation = 0, Alternation()
         self.jump: Fact | None = None  # the latest; of an encoder that repeats, in its range
+        self.jumped_by = 0.0  # rad, of all jumps since the last reference
         self.restrict(max_speed, max_acceleration, period)
         self.reset()
 
@@ -328,6 +329,7 @@ class Plausibility:
             self.jumps += 1
             size = self._wrapped(first - before * elapsed)
             self.jump = Condition.JUMPED(angle=size, time=times[0] / 1e9)
+            self.jumped_by = self._wrapped(self.jumped_by + size)
             if not self.period:
                 self.wraps.note(first, positions[0], elapsed, (before, speed), jump=True)
         last, noise = self._last, self.noise

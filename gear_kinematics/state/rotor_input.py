@@ -144,6 +144,7 @@ class RotorInput(JointCounts):
         zero = self.turns.home(rotor_angle, self._parameters.rotor_direction)
         self.zero, self.origin = split_turns(zero), Condition.HOMED()
         self.plausibility.repeats.lasts = 0.0  # until the next step shows it, of a mended driver
+        self.plausibility.jumped_by = 0.0
         self._restarts += 1
         self.rezeroed += 1
         return zero
@@ -158,6 +159,7 @@ class RotorInput(JointCounts):
         self.zero = RotorPosition(zero_turns - direction * turns, zero_angle - direction * angle)
         self.origin = origin
         self.turns.refer()
+        self.plausibility.jumped_by = 0.0
         self._restarts += 1
 
     def zero_for(self, rotor_angle: float) -> float:

@@ -24,6 +24,7 @@ from gear_kinematics.state.statuses import Condition, Fact
 from gear_kinematics.wire.batches import Array
 
 _ALIKE = 1.5  # greatest ratio of the budgets of two blocks at rest
+_BACK = 0.1  # rad, of the rotor: greatest sum of jumps there and back
 
 
 def range_fault(
@@ -226,17 +227,18 @@ class TurnReference:
 
     @property
     def jump_margin(self) -> float:
-        """Half of the jump, rad at the output, if turns of an encoder that repeats are lost by it.
+        """Half of the sum of jumps since the last reference, rad at the output; else infinite.
 
-        A motion of which the budget is greater could explain the jump, behind which the encoder
-        may have another zero. Slow motion is not restricted, as rest would hardly tell more.
+        A motion of which the budget is greater could explain the jumps, behind which an encoder
+        that repeats may have another zero. Jumps there and back leave it. Nothing restricts slow
+        motion, as rest would hardly tell more.
         """
         rotor, decision = self.rotor, self.decision
-        jump = rotor.plausibility.jump if rotor.turns.lost and rotor.turns.period else None
-        if not jump or (decision and decision.slow):
+        gate, ratio = rotor.plausibility, float(rotor.parameters.gear.gear_ratio)
+        slow = decision and decision.slow
+        if slow or not gate.period or abs(gate.jumped_by) <= _BACK:
             return math.inf
-        angle: float = jump.values['angle']
-        return 0.5 * abs(angle / float(rotor.parameters.gear.gear_ratio))
+        return 0.5 * abs(gate.jumped_by / ratio)
 
     def _refer(self, decision: Decision) -> None:
         """Add turns, or what is missing to the measured angle, to the rotor's count."""
