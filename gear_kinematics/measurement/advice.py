@@ -32,13 +32,14 @@ _ALIKE, _COPIED = 0.3, 1.0 - 1e-6
 _LISTED = 600  # characters of the list of columns
 _NO_ANGLE = re.compile(
     r'(?i)torq|effort|force|curr|(?<!tra)vel(?!_mapper)|speed|rpm|/ ?s(ec)?\b|temp|time|stamp|'
-    r'control|elec|phase|tau|index|valid|cell|strain(?!t|ed)|acc(?!um)|dot|err|volt|power|^t$|^[ftm][xyz]|'
-    r'(?<![a-z])(mm|[µu]m|inch|q[wxyz])(?![a-z])|'
+    r'control|elec|phase|tau|index|valid|cell|strain(?!t|ed)|acc(?!um)|dot|err|volt|power|^t$|'
+    r'^[ftm][xyz]|(?<![a-z])(mm|[µu]m|inch|q[wxyz])(?![a-z])|'
     rf'^i_?[qd](?![a-z])|{WANTED}|fehler|geschwind|drehzahl|vitesse|[误誤]差|速度|[转轉]速'
 )
 """Words in names of columns that are not proposed as angles."""
 _LIKELY = re.compile(
-    r'(?i)pos|\bq|_q|ang(?!e)|enc(?!y)|theta|winkel|rotation|(rad|deg|rev|inc|cnt|counts)(?![a-z]|_(s|per)(?![a-z]))|'
+    r'(?i)pos|\bq|_q|ang(?!e)|enc(?!y)|theta|winkel|rotation|'
+    r'(rad|deg|rev|inc|cnt|counts)(?![a-z]|_(s|per)(?![a-z]))|'
     'accum|lage|geber|codeur|угол|角|位置|编码|編碼|エンコーダ|'
     r'(motor|rotor|joint|link|output)$'
 )
@@ -207,12 +208,13 @@ def _examples(table: TableFile) -> Iterator[Mapping[str, str]]:
 def _alike(
     columns: Mapping[str, Array], sizes: Mapping[str, float]
 ) -> Iterator[tuple[bool, str, str]]:
-    """Yield the pairs of columns that move alike, the likeliest first, and in each the faster.
+    """Yield the pairs of columns that move alike, the likeliest first, as rotor and output.
 
-    `sizes` are those of their units, 0 where unknown: then both are taken to have the same unit.
-    A pair is sure if both move much alike and their names do not contradict that. Of those that
-    move nearly as alike, the likeliest share the most words, such as those of one joint, and say
-    the most sides of the gear. Letters are no words: c1 and c2 are no joint.
+    The rotor is the faster, unless the names say the opposite: where an output wraps, its steps
+    are large. `sizes` are those of their units, 0 where unknown: then both are taken to have the
+    same unit. A pair is sure if both move much alike and their names do not contradict that. Of
+    those that move nearly as alike, the likeliest share the most words, such as those of one
+    joint, and say the most sides of the gear. Letters are no words: c1 and c2 are no joint.
     """
     pairs = {}
     for rotor, output in permutations(columns, 2):
@@ -227,10 +229,11 @@ def _alike(
             fast, slow = meaning(rotor), meaning(output)
             named = not (fast.on_output or slow.on_rotor)
             shared = [w for w in {*fast.words} & {*slow.words} if w.isdigit() or w[1:]]
-            fitting = len(shared) + fast.on_rotor + slow.on_output
+            said = fast.on_rotor + slow.on_output, slow.on_rotor + fast.on_output
             if likeness > _COPIED:
                 likeness = 0.0  # comes last
             sure = named and likeness > _ALIKE
-            pairs[sure, round(likeness, 1), fitting, likeness] = rotor, output
+            pair_of = (output, rotor) if said[1] > said[0] else (rotor, output)
+            pairs[sure, round(likeness, 1), len(shared) + max(said), likeness] = pair_of
     for key in sorted(pairs, reverse=True)[:_FEWEST]:
         yield key[0], *pairs[key]

@@ -1134,6 +1134,16 @@ def test_every_refusal_ends_with_a_command_line_that_works(tmp_path, gear, refer
         assert_followed(recording.both)
 
 
+def test_advice_heeds_names_where_an_output_wraps_and_seems_faster(tmp_path, gear, reference):
+    t, r, o = reference('encoders')
+    columns = t, r * REV, 10.0 * o * DEG % 360.0
+    path = saved(tmp_path, written(columns, 'time,input_rev,output_deg'))
+    with pytest.raises(RecordingError) as told:
+        read(path, gear)
+    given = followed(told.value)
+    assert (given.rotor, given.output) == ('input_rev', 'output_deg')
+
+
 def test_advice_repeats_the_options_that_were_given(tmp_path, gear, reference):
     path = saved(tmp_path, UNTOLD['counts'](*reference('encoders')))
     line = f'gearkin calibrate {path} --ratio -30 --rotor-counts 4096'
