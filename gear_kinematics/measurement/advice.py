@@ -41,7 +41,7 @@ _LIKELY = re.compile(
     r'(?i)pos|\bq|_q|ang(?!e)|enc(?!y)|theta|winkel|rotation|'
     r'(rad|deg|rev|inc|cnt|counts)(?![a-z]|_(s|per)(?![a-z]))|'
     'accum|lage|geber|codeur|угол|角|位置|编码|編碼|エンコーダ|'
-    r'(motor|rotor|joint|link|output)$'
+    r'(motor|rotor|input|joint|link|output)$'
 )
 """Words in names of columns that are proposed first."""
 _NO_NAME = re.compile(r'(?i)(.*\[|(data|ch|channel|column|signal|var|axis|joint|j)[ _]?)?\d+\]?')

@@ -1055,6 +1055,7 @@ UNTOLD = {
     'unknown word': plain('time,motor_pos_x,output_pos_x'),
     'times': lambda t, r, o: written([25 * t, r / 3, o / 3], NAMES),
     'both motors': plain('time,motor1_pos,motor2_pos'),
+    'sides alone': plain('time,input,output'),
     'rad before a word': plain('time,front_rad_raw,rear_rad_raw'),
     'degrees beside notes that are no numbers': lambda t, r, o: written(
         [t, t, r * DEG, o * DEG], 'time,encoder_setup,encoder_1,encoder_2', (
