@@ -43,8 +43,8 @@ _STAMP = re.compile(
     r'^[ \t]*(\d+(?:\.\d+)?)[\s,;|]*$'
 )
 """Times before such names: those of journald and Zephyr, of Linux and ESP-IDF, or a number."""
-_NUMBERS = re.compile(r'[ \t]*[-+.:\deE]+([,;|\t]+ *[-+.:\deE]+)+[,;|\t ]*')
-"""Cells of a table before such names, which are in its last column then."""
+_NUMBERS = re.compile(r'(?:^|[,;|\t])[ \t]*[-+.\d]+(?:[eE][-+]?\d+)?\s*(?=[,;|\t]|$)')
+"""Cells with a number before such names: with several, it is a table with these in a column."""
 _WORDS = re.compile(r'\s+[^\W\d]\w*[:=].*')  # behind a number, such as state=running
 _TELEPLOT = re.compile(r'(?m)^>([^:\n]+):(?:(\d+):)?([-+.\deE]+)(?:§([^|\n]*))?(?:\|.*)?$')
 _COLOURS = re.compile(r'\x1b\[[\d;]*m')
@@ -106,7 +106,7 @@ def plainer(text: str, separators: Sequence[str]) -> tuple[Callable[[str], str],
     found = [(*_LABEL.findall(line),) for line in lines]
     (labels, count), *_ = Counter(one for one in found if one[1:]).most_common(1) or [((), 0)]
     heads = [_LABEL.split(line, 1)[0] for line in lines if (*_LABEL.findall(line),) == labels]
-    if count > _LEAST_SHARE * len(lines) and not _NUMBERS.fullmatch(heads[0]):
+    if count > _LEAST_SHARE * len(lines) and not _NUMBERS.findall(heads[0])[1:]:
         words = {' '.join(re.findall(r'[^\W\d_]+', _STAMP.sub('', head))) for head in heads}
         if len(words) > 1:
             kinds = ' and '.join(map(repr, sorted(words)[:2]))

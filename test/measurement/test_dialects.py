@@ -287,6 +287,11 @@ ENCODERS = {
         'Tempo (s);Ângulo do motor (graus);Posição da saída (graus)', ';', angle=DEG, german=True),
     'labels in a column of notes': lambda t, r, o: written(
         [t, r, o], f'{NAMES},note', ('{:.2f}', '{:.5f}', '{:.5f},a: 1 b: 2')),
+    'labels in a column of notes behind a date and a state': lambda t, r, o: written([t, r, o, t],
+        f'{NAMES},state,note', (moment(), '{:.5f}', '{:.5f}', lambda v: (
+            f'{"rest" if v < 9.0 else "run"},a: 1 b: 2'))),
+    'labels behind the time of the day': lambda t, r, o: written([t, r, o], 'start', (
+        clock('%H:%M:%S,%f'), 'motor={:.5f}', 'output={:.5f}'), ' '),
     'a label before each number': lambda t, r, o: written(
         [t * 1e3, r, o], '', ('t_ms:{:.0f}', 'motor: {:.5f}', 'output={:.5f}'), '\t'),
     'labels behind stamps of the Arduino IDE': lambda t, r, o: written(
