@@ -1019,6 +1019,19 @@ def test_assumed_units_are_said_first_of_all(tmp_path, gear, reference, unit, ca
     assert said == ([f'r.csv: {assumed}'] if not unit else [])
 
 
+def test_an_error_that_is_sampled_as_if_once_a_turn_does_not_speak_against_rad(tmp_path, gear):
+    """Three waves in a turn, in a motion that moves on by as much as one wave, and one revolution.
+
+    3 m = τ (m - 1) for a motion by m in each sample: both waves have the same values.
+    """
+    even = np.arange(600.0) * math.tau / (math.tau - 3.0)
+    rotor = np.concatenate([even, even[-2::-1]])
+    output = -rotor / 30.0 + 0.002 * np.sin(3.0 * rotor)
+    columns = np.arange(len(rotor)) / 50.0, rotor, output
+    recording = read(saved(tmp_path, written(columns, NAMES)), gear)
+    np.testing.assert_allclose(recording.both.measured, output, atol=1e-5)
+
+
 @pytest.mark.parametrize('name', ['Bremsmoment', 'torquemeter_2'])
 def test_compound_words_say_that_they_are_torques(tmp_path, gear, reference, name):
     path = saved(tmp_path, written(reference('ramps'), f'time,angle,{name}', '{:.5f}'))
