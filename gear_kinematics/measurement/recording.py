@@ -23,6 +23,7 @@ Array = NDArray[Any]
 MOST_MESSAGES = 500_000  # of the rotor that are examined; they take about 200 bytes each
 _SPEED_WINDOW = 0.02  # s, over which the speed is averaged
 _MOST_TWIST = 0.35  # rad of the output under torque; a shaft that turns further is not locked
+_RANKED = 100_000  # samples whose ranks are compared
 _YIELDS, _READINGS = 0.5, 3
 """Share of the output's motion that a held rotor moves by less than, unlike one that drives it;
 most readings of an encoder that shows little but its steps, which may be coarser."""
@@ -84,7 +85,9 @@ class Loading:
     @property
     def opposed(self) -> bool:
         """Whether the angle falls where the torque grows, by ranks, as readings may be stray."""
-        torque, angle = (np.unique(v, return_inverse=True)[1] for v in (self.torque, self.angle))
+        some = slice(None, None, max(1, len(self.torque) // _RANKED))
+        both = self.torque[some], self.angle[some]
+        torque, angle = (np.unique(values, return_inverse=True)[1] for values in both)
         return bool(torque @ (angle - angle.mean()) < 0.0)
 
     def chosen(self, rows: Array | slice) -> Self:
