@@ -216,24 +216,27 @@ def test_in_a_terminal_it_asks_and_interrupted_leaves_nothing(tmp_path):
 
 
 def within_its_errors(page, expect) -> bool:
-    """Apply what is found to the node and undo it; tells whether both zeros agree."""
+    """Apply what is found to the node and undo it; tells whether both new zeros agree."""
     answer, undo = page.locator('#answer'), page.locator('#undo')
     page.get_by_role('button', name='Apply to the running node').click()
-    expect(answer).to_have_text(
-        f'Changed in {NODE}: output_encoder_joint, output_encoder_zero, rotor_zero. '
+    # An output that is within 1° of the node's zero at that moment leaves it.
+    changed = re.compile(
+        f'Changed in {NODE}: output_encoder_joint(, output_encoder_zero)?, rotor_zero. '
         'Write the file to keep it after a restart.'
     )
+    expect(answer).to_have_text(changed)
     names = 'output_encoder_joint', 'output_encoder_zero', 'rotor_zero'
     joint, zero, rotor_zero = parameters(*names)
     assert joint == 'shaft'
     expect(undo).to_have_text(
-        "Undo back to rotor_zero 0, output_encoder_joint '', output_encoder_zero 0"
+        "Undo back to rotor_zero 0, output_encoder_joint ''"
+        + bool(zero) * ', output_encoder_zero 0'
     )
     undo.get_by_role('button').click()
     expect(answer).to_contain_text('Undone: ')
     expect(undo).not_to_contain_text("output_encoder_joint ''")  # nor is a command refused
     assert parameters(*names) == ['', 0.0, 0.0]
-    return abs(rotor_zero + 19 * zero) <= 19 * 2e-4
+    return zero != 0.0 and abs(rotor_zero + 19 * zero) <= 19 * 2e-4
 
 
 @pytest.mark.live
