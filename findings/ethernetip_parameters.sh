@@ -6,7 +6,7 @@
 # path 20 0f 25 00 2c 01 30 01 in four words, as the drive pads 16-bit numbers; version 1.1.1 and pycomm3 1.2.16 send it
 # so, and so does mkReqPath() in 1.2.0. What happens: 20 0f 25 2c 01 30 01, whose length is given as three words, since
 # the pad byte is missing. A drive reads instance 12289 without an attribute, and the byte 01 as data. Parameter 200
-# is right. setAttrSingle() has the same path. Instance 0, the class itself, has no segment of its own any more.
+# is right. Instance 0, the class itself, has no segment of its own any more.
 # The outputs of an I/O connection are a list of bits that begin as 0. Expected of outputs[0] = True, 1 or numpy.True_:
 # bit 0 is on. What happens: only True itself, as in its example, is sent as on. A brake that is to be
 # released at numpy's `speed > limit` is not, though its list shows it as on.

@@ -5,11 +5,11 @@
 #
 # Expected of wrap_mpi2_pi2(), documented to fold an angle, as that of a latitude, into [-90°, 90°]: the angle from -90°
 # to 90° that has the same sine, for any angle, as wrap_0_pi() gives the one from 0° to 180° with the same cosine.
-# What happens: it is so from -180° to 180°. Beyond them the result is far out of the range: 185° gives -175°, 270°
+# What happens: it is so between -180° and 180°. Beyond them the result is far out of the range: 185° gives -175°, 270°
 # gives 270° and 370° gives -350°, as each quarter turn, instead of each half turn, takes half a turn away. The sine is
 # right, but the sign and the size of the elevation are not. No exception says so.
 # Output: -100 to -80, 100 to 80, 170 to 10, 185 to -175, 190 to -170, 270 to 270, 370 to -350 degrees
-# For us: take asin(sin(angle)), or wrap the angle by wrap_mpi_pi() beforehand.
+# For us: take asin(sin(angle)).
 #
 # Exit code 0: still so. Installs the versions into a temporary folder.
 set -eu
