@@ -64,10 +64,13 @@ def against(
     Raises:
         ValueError: if the numbers are whole turns, without the angle within a turn.
     """
+    known = column.unit and not column.assumed
+    if known and column.unit != 'rev':
+        return None
     numbers = np.round(values / column.scale, 6)  # as they are in the table
     moved, whole = np.abs(np.diff(values)), bool(np.all(numbers == np.round(numbers)))
-    if column.unit and not column.assumed:
-        if column.unit == 'rev' and whole and moved.any():
+    if known:
+        if whole and moved.any():
             cause = 'has whole turns alone: add the angle within the turn in a column for both'
             raise ValueError(f'{column.name} {cause}')
         return None
@@ -121,9 +124,10 @@ def check_both(rotor: Array, output: Array, of_rotor: Column, of_output: Column)
     ratio = output_by_rotor(rotor, output) if len(rotor) >= _FEWEST * _BLOCKS else None
     if ratio is None:
         return
-    if _differ_as_degrees(rotor, output - ratio * rotor):
+    error = output - ratio * rotor
+    if _differ_as_degrees(rotor, error):
         cause, likely = 'more than gears do in rad, as in degrees', 'deg'
-    elif not of_rotor.unit and _repeats_each_turn(rotor, output, output - ratio * rotor):
+    elif not of_rotor.unit and _repeats_each_turn(rotor, output, error):
         cause = 'an error that repeats with each turn of the rotor if that is in turns'
         likely = 'rev'
     else:
