@@ -132,9 +132,11 @@ def _loaded(table: TableFile, names: Sequence[str]) -> dict[str, Array]:
     try:
         return table.load(names)[0]
     except ValueError:
-        if not names[1:] and meaning(names[0]).role:  # its cause says more than any advice
+        if names[1:]:
+            return {k: v for name in names for k, v in _loaded(table, [name]).items()}
+        if meaning(names[0]).role:  # its cause says more than any advice
             raise
-        return {k: v for name in names[1:] and names for k, v in _loaded(table, [name]).items()}
+        return {}
 
 
 def _completed(

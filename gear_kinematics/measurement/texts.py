@@ -105,7 +105,8 @@ def plainer(text: str, separators: Sequence[str]) -> tuple[Callable[[str], str],
     lines = _replaced(rules, text).split('\n')[1:_LINES]
     found = [(*_LABEL.findall(line),) for line in lines]
     (labels, count), *_ = Counter(one for one in found if one[1:]).most_common(1) or [((), 0)]
-    heads = [_LABEL.split(line, 1)[0] for line in lines if (*_LABEL.findall(line),) == labels]
+    alike = (line for line, one in zip(lines, found, strict=True) if one == labels)
+    heads = [_LABEL.split(line, 1)[0] for line in alike]
     if count > _LEAST_SHARE * len(lines) and not _NUMBERS.findall(heads[0])[1:]:
         words = {' '.join(re.findall(r'[^\W\d_]+', _STAMP.sub('', head))) for head in heads}
         if len(words) > 1:
@@ -133,8 +134,7 @@ def _replaced(rules: Sequence[tuple[re.Pattern[str], Any]], text: str) -> str:
 
 def _values(text: str) -> str:
     """Return what lines of Teleplot contain, without all other lines."""
-    rows = ['\t'.join(one) for one in _TELEPLOT.findall(text)]
-    return '\n'.join(rows) + '\n' * text.endswith('\n') or '\n'
+    return _joined(_TELEPLOT.findall(text), text)
 
 
 def _labelled(text: str, labels: Sequence[str], *, timed: bool) -> str:
@@ -147,8 +147,13 @@ def _labelled(text: str, labels: Sequence[str], *, timed: bool) -> str:
             if timed:
                 stamp = _STAMP.search(before)
                 cells.insert(0, _plain(stamp) if stamp else '')
-            rows.append('\t'.join(cells))
-    return '\n'.join(rows) + '\n' * text.endswith('\n') or '\n'
+            rows.append(cells)
+    return _joined(rows, text)
+
+
+def _joined(rows: Sequence[Sequence[str]], text: str) -> str:
+    """Return rows of cells as lines, of which the last one ends if that of their text does."""
+    return '\n'.join(map('\t'.join, rows)) + '\n' * text.endswith('\n') or '\n'
 
 
 def _plain(stamp: re.Match[str]) -> str:
